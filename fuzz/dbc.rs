@@ -4,7 +4,7 @@
 //! A line of `=====` stands between the database, the mapping and the frames: identifier in four bytes,
 //! length in one, data. Nothing may panic, and every frame is counted.
 
-use octant_instruments::dbc::{CanFrame, Database, Gatherer, Mapping};
+use octant_instruments::dbc::{CanFrame, Database, Gatherer, SignalMapping};
 
 /// A database, a mapping, frames.
 pub(crate) fn bus(bytes: &[u8]) {
@@ -14,7 +14,7 @@ pub(crate) fn bus(bytes: &[u8]) {
     let (database, rest) = (&bytes[..first], &bytes[first + MARK.len()..]);
     let Some(second) = cut(rest) else { return };
     let (mapping, mut rest) = (&rest[..second], &rest[second + MARK.len()..]);
-    let mapping = Mapping::parse("a.toml", &String::from_utf8_lossy(mapping));
+    let mapping = SignalMapping::parse("a.toml", &String::from_utf8_lossy(mapping));
     let database = Database::parse("a.dbc", &String::from_utf8_lossy(database));
     let (Ok(database), Ok(mapping)) = (database, mapping) else { return };
     let Ok(mut gatherer) = Gatherer::new(&database, &mapping) else { return };

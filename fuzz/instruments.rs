@@ -4,7 +4,7 @@
 //! difference.
 
 use octant_instruments::{
-    AnyDecoder, Axes, Counters, Event, Protocol, Sampler, Settings, Unusable,
+    AnyDecoder, Axes, ReadingCounters, FramingEvent, Protocol, Sampler, SamplerSettings, Unusable,
 };
 
 /// The protocol that the first byte chooses, in pieces of the length that the second one says.
@@ -13,7 +13,7 @@ pub(crate) fn stream(bytes: &[u8]) {
     let protocol = Protocol::ALL[usize::from(*choice) % Protocol::ALL.len()];
     let (mut whole, mut cut) = (AnyDecoder::new(protocol), AnyDecoder::new(protocol));
     let mut rest = bytes;
-    let mut events: Vec<Event> = std::iter::from_fn(|| whole.next(&mut rest)).collect();
+    let mut events: Vec<FramingEvent> = std::iter::from_fn(|| whole.next(&mut rest)).collect();
     assert!(rest.is_empty());
     events.extend(std::iter::from_fn(|| whole.end()));
     let mut in_pieces = Vec::new();
@@ -25,10 +25,10 @@ pub(crate) fn stream(bytes: &[u8]) {
     assert_eq!(format!("{events:?}"), format!("{in_pieces:?}"));
     assert_eq!(whole.counters(), cut.counters());
     accounted(whole.counters(), bytes.len(), events.len());
-    let mut sampler = Sampler::new(Settings { axes: Axes::SAME, period_ns: 5_000_000 });
+    let mut sampler = Sampler::new(SamplerSettings { axes: Axes::SAME, period_ns: 5_000_000 });
     let mut last = None;
     for event in events {
-        let Event::Reading(reading) = event else { continue };
+        let FramingEvent::Reading(reading) = event else { continue };
         match sampler.sample(&reading, None) {
             Ok(sample) => {
                 assert!(last.is_none_or(|last| sample.sequence > last));
@@ -39,7 +39,7 @@ pub(crate) fn stream(bytes: &[u8]) {
     }
 }
 
-fn accounted(counters: &Counters, bytes: usize, events: usize) {
+fn accounted(counters: &ReadingCounters, bytes: usize, events: usize) {
     assert_eq!(counters.bytes, bytes as u64);
     assert_eq!(counters.bytes_framed + counters.bytes_lost, counters.bytes);
     let lost = counters.checksum + counters.malformed + counters.unknown;

@@ -3,9 +3,9 @@
 //! Nothing may panic, every byte and frame has to be accounted for, and a message that was accepted
 //! has to be one that can be sent.
 
-use octant_wire::can::{self, Format, Frame, Reassembler};
-use octant_wire::message::{ClockTime, Kind, Message, Role};
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
+use octant_wire::message::{ClockTime, MessageKind, Message, EndRole};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 
 /// A message that was received goes out and comes back as it was, on both encodings.
 fn holds(message: &Message) {
@@ -13,19 +13,19 @@ fn holds(message: &Message) {
     let again =
         Message::read(payload.kind(), payload.bytes()).expect("what was read is read again");
     assert!(again.same_bits(message), "{message:?}");
-    let mut encoder = Encoder::new();
+    let mut encoder = SerialEncoder::new();
     let mut frame = encoder.encode(message, ClockTime::default());
-    let Some(Event::Received(received)) = Decoder::new().next(&mut frame) else {
+    let Some(DecodeEvent::Received(received)) = SerialDecoder::new().next(&mut frame) else {
         panic!("its frame is no frame: {message:?}")
     };
     assert!(received.message.same_bits(message), "{message:?}");
-    for sender in Role::ALL {
-        for format in [Format::Classic, Format::Fd] {
+    for sender in EndRole::ALL {
+        for format in [CanVersion::Classic, CanVersion::Fd] {
             let Ok(frames) = can::segments(message, sender, format) else { continue };
             let mut reassembler = Reassembler::new(&[sender], format);
             let last = frames.filter_map(|frame| reassembler.receive(&frame)).last();
             match last {
-                Some(can::Event::Received { message: found, .. }) => {
+                Some(can::ReassemblyEvent::Received { message: found, .. }) => {
                     assert!(found.same_bits(message), "{message:?}");
                 }
                 // A hello says itself who sends it.
@@ -39,11 +39,11 @@ fn holds(message: &Message) {
 /// in a frame, lost, a zero or not yet decided. And a payload: kind, then bytes.
 pub(crate) fn serial(bytes: &[u8]) {
     let Some((first, bytes)) = bytes.split_first() else { return };
-    let (mut whole, mut cut) = (Decoder::new(), Decoder::new());
+    let (mut whole, mut cut) = (SerialDecoder::new(), SerialDecoder::new());
     let mut events = Vec::new();
     let mut rest = bytes;
     while let Some(event) = whole.next(&mut rest) {
-        if let Event::Received(received) = &event {
+        if let DecodeEvent::Received(received) = &event {
             holds(&received.message);
         }
         events.push(event);
@@ -66,7 +66,7 @@ pub(crate) fn serial(bytes: &[u8]) {
         let zeros = bytes.iter().filter(|byte| **byte == 0).count();
         assert_eq!(counters.bytes_lost, (bytes.len() - zeros) as u64);
     }
-    if let Some(kind) = Kind::of(*first)
+    if let Some(kind) = MessageKind::of(*first)
         && let Ok(message) = Message::read(kind, bytes)
     {
         holds(&message);
@@ -75,17 +75,17 @@ pub(crate) fn serial(bytes: &[u8]) {
 
 /// A bus: identifier in two bytes, length in one, data; and so on.
 pub(crate) fn can(bytes: &[u8]) {
-    for format in [Format::Classic, Format::Fd] {
-        let mut reassembler = Reassembler::new(&Role::ALL, format);
+    for format in [CanVersion::Classic, CanVersion::Fd] {
+        let mut reassembler = Reassembler::new(&EndRole::ALL, format);
         let (mut rest, mut frames, mut messages) = (bytes, 0, 0);
         while let Some(([low, high, length], tail)) = rest.split_first_chunk::<3>() {
             let (data, tail) = tail.split_at(usize::from(*length).min(tail.len()));
             rest = tail;
-            let Some(frame) = Frame::new(u16::from_le_bytes([*low, *high]), format, data) else {
+            let Some(frame) = BusFrame::new(u16::from_le_bytes([*low, *high]), format, data) else {
                 continue;
             };
             frames += 1;
-            if let Some(can::Event::Received { message, .. }) = reassembler.receive(&frame) {
+            if let Some(can::ReassemblyEvent::Received { message, .. }) = reassembler.receive(&frame) {
                 holds(&message);
                 messages += 1;
             }

@@ -6,7 +6,7 @@ use super::standard::Standard;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use octant_base::number::plain;
 use octant_fmu::c::CATEGORIES;
-use octant_fmu::table::{Causality, Kind, Model, Quantity, Ticks, Variability, Variable};
+use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredQuantity, Ticks, DeclaredVariability, DeclaredVariable};
 
 /// Builds the page.
 pub(super) fn documentation(
@@ -59,12 +59,12 @@ pub(super) fn documentation(
 }
 
 /// Kinds of variables in the order of the page.
-const PARTS: [(Causality, &str, &str); 5] = [
-    (Causality::Input, "inputs", "Inputs"),
-    (Causality::Output, "outputs", "Outputs"),
-    (Causality::Parameter, "parameters", "Parameters"),
-    (Causality::CalculatedParameter, "calculated", "Calculated parameters"),
-    (Causality::Local, "local", "Local variables"),
+const PARTS: [(DeclaredCausality, &str, &str); 5] = [
+    (DeclaredCausality::Input, "inputs", "Inputs"),
+    (DeclaredCausality::Output, "outputs", "Outputs"),
+    (DeclaredCausality::Parameter, "parameters", "Parameters"),
+    (DeclaredCausality::CalculatedParameter, "calculated", "Calculated parameters"),
+    (DeclaredCausality::Local, "local", "Local variables"),
 ];
 
 fn contents(model: &Model, has_reference: bool) -> Markup {
@@ -139,7 +139,7 @@ fn variables(model: &Model, standard: Standard) -> Markup {
     }
 }
 
-fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
+fn row(slot: usize, variable: &DeclaredVariable, standard: Standard) -> Markup {
     let references = match (standard, variable.elements) {
         (Standard::Fmi2, count) if count > 1 => format!("{slot}–{}", slot + count - 1),
         _ => slot.to_string(),
@@ -148,7 +148,7 @@ fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
         tr {
             td {
                 code { (variable.name) @if variable.elements > 0 { "[" (variable.elements) "]" } }
-                @if variable.variability == Variability::Tunable { " " span.soft { "tunable" } }
+                @if variable.variability == DeclaredVariability::Tunable { " " span.soft { "tunable" } }
             }
             td { (references) }
             td { (kind(variable.kind, standard)) }
@@ -157,13 +157,13 @@ fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
             @if has_start(variable) { td { (start(variable)) } }
             td {
                 (variable.description)
-                @if let Kind::Binary(binary) = variable.kind {
+                @if let ElementType::Binary(binary) = variable.kind {
                     p.soft {
                         (binary.mime_type) ", at most " (binary.max_bytes) " bytes, at the ticks of "
                         (binary.clock)
                     }
                 }
-                @if let Kind::Enumeration(enumeration) = variable.kind {
+                @if let ElementType::Enumeration(enumeration) = variable.kind {
                     ul {
                         @for (value, name, description) in enumeration.items {
                             li { (value) " " b { (name) } ": " (description) }
@@ -175,25 +175,25 @@ fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
     }
 }
 
-fn kind(kind: Kind, standard: Standard) -> &'static str {
+fn kind(kind: ElementType, standard: Standard) -> &'static str {
     match (standard, kind) {
-        (Standard::Fmi2, Kind::Real | Kind::Count) => "Real",
-        (Standard::Fmi2, Kind::Integer | Kind::Enumeration(_)) => "Integer",
-        (Standard::Fmi3, Kind::Real) => "Float64",
-        (Standard::Fmi3, Kind::Count) => "UInt64",
-        (Standard::Fmi3, Kind::Integer) => "Int32",
-        (Standard::Fmi3, Kind::Enumeration(_)) => "Enumeration",
-        (_, Kind::Boolean) => "Boolean",
-        (_, Kind::Binary(_)) => "Binary",
-        (_, Kind::Clock(Ticks::Triggered)) => "Clock, triggered",
-        (_, Kind::Clock(Ticks::Countdown)) => "Clock, countdown",
+        (Standard::Fmi2, ElementType::Real | ElementType::Count) => "Real",
+        (Standard::Fmi2, ElementType::Integer | ElementType::Enumeration(_)) => "Integer",
+        (Standard::Fmi3, ElementType::Real) => "Float64",
+        (Standard::Fmi3, ElementType::Count) => "UInt64",
+        (Standard::Fmi3, ElementType::Integer) => "Int32",
+        (Standard::Fmi3, ElementType::Enumeration(_)) => "Enumeration",
+        (_, ElementType::Boolean) => "Boolean",
+        (_, ElementType::Binary(_)) => "Binary",
+        (_, ElementType::Clock(Ticks::Triggered)) => "Clock, triggered",
+        (_, ElementType::Clock(Ticks::Countdown)) => "Clock, countdown",
     }
 }
 
 /// Renders a unit, with the display unit in brackets.
-fn unit(variable: &Variable) -> Markup {
+fn unit(variable: &DeclaredVariable) -> Markup {
     html! {
-        @if let Some(Quantity { unit, display, .. }) = variable.quantity {
+        @if let Some(DeclaredQuantity { unit, display, .. }) = variable.quantity {
             (unit.name)
             @if let Some(display) = display { " " span.soft { "(" (display) ")" } }
         }
@@ -201,7 +201,7 @@ fn unit(variable: &Variable) -> Markup {
 }
 
 /// Renders a value in the display unit.
-fn displayed(variable: &Variable, value: f64) -> String {
+fn displayed(variable: &DeclaredVariable, value: f64) -> String {
     match shown_in(variable) {
         Some((name, factor)) => format!("{} {name}", plain(value * factor, 6)),
         None => plain(value, 6),
@@ -209,7 +209,7 @@ fn displayed(variable: &Variable, value: f64) -> String {
 }
 
 /// Returns the display unit and its factor: display units per unit.
-fn shown_in(variable: &Variable) -> Option<(&'static str, f64)> {
+fn shown_in(variable: &DeclaredVariable) -> Option<(&'static str, f64)> {
     let quantity = variable.quantity?;
     match quantity.display {
         Some(display) => quantity.unit.display.iter().find(|(name, _)| *name == display).copied(),
@@ -218,7 +218,7 @@ fn shown_in(variable: &Variable) -> Option<(&'static str, f64)> {
     }
 }
 
-fn range(variable: &Variable) -> String {
+fn range(variable: &DeclaredVariable) -> String {
     let smallest = variable.min.map(|min| displayed(variable, min));
     let largest = variable.max.map(|max| displayed(variable, max));
     match (smallest, largest) {
@@ -229,16 +229,16 @@ fn range(variable: &Variable) -> String {
     }
 }
 
-fn start(variable: &Variable) -> String {
+fn start(variable: &DeclaredVariable) -> String {
     let value = |element| {
         let value = variable.start_of(element).unwrap_or(0.0);
         match variable.kind {
-            Kind::Boolean => (value != 0.0).to_string(),
-            Kind::Enumeration(enumeration) => {
+            ElementType::Boolean => (value != 0.0).to_string(),
+            ElementType::Enumeration(enumeration) => {
                 let item = enumeration.items.iter().find(|(item, ..)| f64::from(*item) == value);
                 item.map_or_else(|| value.to_string(), |(_, name, _)| (*name).to_owned())
             }
-            Kind::Binary(_) | Kind::Clock(_) => String::new(),
+            ElementType::Binary(_) | ElementType::Clock(_) => String::new(),
             _ => displayed(variable, value),
         }
     };

@@ -40,7 +40,7 @@ use library::Library;
 use octant_fmu::c::token;
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu::calibrator_can::CalibratorCan;
-use octant_fmu::component::Component as _;
+use octant_fmu::component::ModelComponent as _;
 use octant_fmu::plant::Plant;
 use octant_fmu::table::Model;
 use octant_scenario::Scenario;

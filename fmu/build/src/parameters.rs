@@ -3,7 +3,7 @@
 use super::element::number;
 use super::names::scalar_names;
 use super::ssp::ParameterValues;
-use octant_fmu::table::{Kind, Model};
+use octant_fmu::table::{ElementType, Model};
 
 /// Renders a table: name in FMI 2.0, name in FMI 3.0 and element, value, unit, and the value in its
 /// display unit.
@@ -25,13 +25,13 @@ pub(super) fn csv(model: &'static Model, values: &ParameterValues) -> String {
                 quantity.unit.display.iter().find(|(display, _)| *display == name)
             });
             let item = match variable.kind {
-                Kind::Enumeration(of) => of.items.iter().find(|i| f64::from(i.0) == *value),
+                ElementType::Enumeration(of) => of.items.iter().find(|i| f64::from(i.0) == *value),
                 _ => None,
             };
             let displayed = match (display, item, variable.kind) {
                 (Some((_, factor)), ..) => number(value * factor),
                 (_, Some((_, item, _)), _) => (*item).to_owned(),
-                (.., Kind::Boolean) => (*value != 0.0).to_string(),
+                (.., ElementType::Boolean) => (*value != 0.0).to_string(),
                 _ => number(*value),
             };
             let display_unit = display.map_or(unit, |(name, _)| name);

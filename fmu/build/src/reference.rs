@@ -11,9 +11,9 @@ use super::describe::{STEP_S, STOP_S};
 use super::element::{list, number};
 use super::names::scalar_names;
 use super::standard::Standard;
-use octant_fmu::component::Component;
-use octant_fmu::table::{Causality, Kind, Model, Variable};
-use octant_fmu::values::Values;
+use octant_fmu::component::ModelComponent;
+use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredVariable};
+use octant_fmu::values::CellValues;
 use std::fmt::Write;
 
 /// Returns whether a result has a row after so many steps: at the start, and ten times a second.
@@ -27,9 +27,9 @@ fn has_row(step: usize) -> bool {
 pub(super) struct Reference {
     model: &'static Model,
     /// Step count and values before each following step.
-    inputs: Vec<(usize, Values)>,
+    inputs: Vec<(usize, CellValues)>,
     /// Step count and values after that many steps, where [`has_row`].
-    outputs: Vec<(usize, Values)>,
+    outputs: Vec<(usize, CellValues)>,
 }
 
 impl Reference {
@@ -47,8 +47,8 @@ impl Reference {
 ///
 /// # Errors
 /// If the start values contradict themselves, or a step is refused: a mistake in the tables.
-pub(super) fn closed_loop<A: Component, B: Component>() -> Result<[Reference; 2], String> {
-    let (mut a_values, mut b_values) = (Values::new(A::MODEL), Values::new(B::MODEL));
+pub(super) fn closed_loop<A: ModelComponent, B: ModelComponent>() -> Result<[Reference; 2], String> {
+    let (mut a_values, mut b_values) = (CellValues::new(A::MODEL), CellValues::new(B::MODEL));
     let mut a = A::initialize(&mut a_values).map_err(|error| error.to_string())?;
     let mut b = B::initialize(&mut b_values).map_err(|error| error.to_string())?;
     let to_b = wires(A::MODEL, B::MODEL);
@@ -75,18 +75,18 @@ pub(super) fn closed_loop<A: Component, B: Component>() -> Result<[Reference; 2]
 
 /// Pairs the slots of outputs with those of the inputs of the same names.
 fn wires(from: &Model, to: &Model) -> Vec<(usize, usize)> {
-    let outputs = from.with_slots().filter(|(_, v)| v.causality == Causality::Output);
+    let outputs = from.with_slots().filter(|(_, v)| v.causality == DeclaredCausality::Output);
     outputs
         .filter_map(|(slot, output)| {
             let (other, input) = to.find(output.name)?;
-            let same = input.causality == Causality::Input && input.slots() == output.slots();
+            let same = input.causality == DeclaredCausality::Input && input.slots() == output.slots();
             same.then(|| (0..output.slots()).map(move |i| (slot + i, other + i)))
         })
         .flatten()
         .collect()
 }
 
-fn copy(wires: &[(usize, usize)], from: &Values, to: &mut Values) {
+fn copy(wires: &[(usize, usize)], from: &CellValues, to: &mut CellValues) {
     for (from_slot, to_slot) in wires {
         to.cells_mut()[*to_slot] = from.cells()[*from_slot];
     }
@@ -99,8 +99,8 @@ pub(super) fn files(reference: &Reference, standard: Standard) -> [File; 3] {
         File::new(format!("documentation/{identifier}_{suffix}"), text)
     };
     let model = reference.model;
-    let inputs = table(model, Causality::Input, standard, &reference.inputs);
-    let outputs = table(model, Causality::Output, standard, &reference.outputs);
+    let inputs = table(model, DeclaredCausality::Input, standard, &reference.inputs);
+    let outputs = table(model, DeclaredCausality::Output, standard, &reference.outputs);
     let options = format!(
         "StartTime, 0\nStopTime, {}\nStepSize, {}\nRelTol, 1e-12\n",
         number(STOP_S),
@@ -113,11 +113,11 @@ pub(super) fn files(reference: &Reference, standard: Standard) -> [File; 3] {
 /// one, with its elements separated by spaces.
 fn table(
     model: &Model,
-    causality: Causality,
+    causality: DeclaredCausality,
     standard: Standard,
-    rows: &[(usize, Values)],
+    rows: &[(usize, CellValues)],
 ) -> String {
-    let these: Vec<(usize, &Variable)> =
+    let these: Vec<(usize, &DeclaredVariable)> =
         model.with_slots().filter(|(_, v)| v.causality == causality).collect();
     let mut text = "\"time\"".to_owned();
     for (_, variable) in &these {
@@ -155,13 +155,13 @@ fn column(text: &mut String, name: &str) {
     let _ = write!(text, ",\"{name}\"");
 }
 
-fn cell(values: &Values, slot: usize, kind: Kind) -> String {
+fn cell(values: &CellValues, slot: usize, kind: ElementType) -> String {
     match kind {
-        Kind::Real => number(values.real(slot)),
-        Kind::Integer | Kind::Enumeration(_) => values.integer(slot).to_string(),
-        Kind::Count => values.count(slot).to_string(),
-        Kind::Boolean => u8::from(values.boolean(slot)).to_string(),
+        ElementType::Real => number(values.real(slot)),
+        ElementType::Integer | ElementType::Enumeration(_) => values.integer(slot).to_string(),
+        ElementType::Count => values.count(slot).to_string(),
+        ElementType::Boolean => u8::from(values.boolean(slot)).to_string(),
         // Models with such variables have no table of values.
-        Kind::Binary(_) | Kind::Clock(_) => String::new(),
+        ElementType::Binary(_) | ElementType::Clock(_) => String::new(),
     }
 }

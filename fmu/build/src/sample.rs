@@ -1,12 +1,12 @@
 //! A model with every kind of variable, for tests.
 
 use core::array::TryFromSliceError;
-use octant_fmu::component::Component;
+use octant_fmu::component::ModelComponent;
 use octant_fmu::quantities;
-use octant_fmu::table::{Enumeration, Kind, Model, Variable};
-use octant_fmu::values::Values;
+use octant_fmu::table::{DeclaredEnumeration, ElementType, Model, DeclaredVariable};
+use octant_fmu::values::CellValues;
 
-static COLOUR: Enumeration = Enumeration {
+static COLOUR: DeclaredEnumeration = DeclaredEnumeration {
     name: "Colour",
     description: "A colour",
     items: &[(0, "none", "none at all"), (2, "red", "red & \"warm\"")],
@@ -18,43 +18,43 @@ pub(super) static SAMPLE: Model = Model {
     stem: "sample",
     description: "A model with every kind of variable",
     variables: &[
-        Variable::input("gyro.delta_theta", Kind::Real)
+        DeclaredVariable::input("gyro.delta_theta", ElementType::Real)
             .described("Increments x, y, z")
             .elements(3)
             .of(&quantities::ANGLE_INCREMENT)
             .within(-0.03, 0.03)
             .nominal(1e-6),
-        Variable::input("imu.valid", Kind::Boolean).described("There is a sample"),
-        Variable::input("reference.kind", Kind::Enumeration(&COLOUR)).described("What is given"),
-        Variable::input("imu.sequence", Kind::Count).described("Number of the sample"),
-        Variable {
+        DeclaredVariable::input("imu.valid", ElementType::Boolean).described("There is a sample"),
+        DeclaredVariable::input("reference.kind", ElementType::Enumeration(&COLOUR)).described("What is given"),
+        DeclaredVariable::input("imu.sequence", ElementType::Count).described("Number of the sample"),
+        DeclaredVariable {
             depends_on: &["imu.valid", "gyro.delta_theta"],
-            ..Variable::output("navigation.latitude", Kind::Real)
+            ..DeclaredVariable::output("navigation.latitude", ElementType::Real)
                 .described("Latitude")
                 .of(&quantities::ANGLE)
                 .within(-1.6, 1.6)
         },
-        Variable::output("health", Kind::Integer).described("Flags").elements(2),
-        Variable::output("answer.sequence", Kind::Count).described("Number of the sample answered"),
-        Variable::parameter("sequence.azimuth", Kind::Real)
+        DeclaredVariable::output("health", ElementType::Integer).described("Flags").elements(2),
+        DeclaredVariable::output("answer.sequence", ElementType::Count).described("Number of the sample answered"),
+        DeclaredVariable::parameter("sequence.azimuth", ElementType::Real)
             .described("Stops")
             .elements(4)
             .of(&quantities::ANGLE)
             .start(&[0.0, 1.5, 0.1, 1e-9]),
-        Variable::parameter("noise", Kind::Real)
+        DeclaredVariable::parameter("noise", ElementType::Real)
             .described("Random walk")
             .of(&quantities::ANGLE_RANDOM_WALK)
             .min(0.0)
             .start(&[2e-7]),
-        Variable::parameter("gate", Kind::Boolean)
+        DeclaredVariable::parameter("gate", ElementType::Boolean)
             .described("With the gate")
             .tunable()
             .start(&[1.0]),
-        Variable::parameter("seed", Kind::Count)
+        DeclaredVariable::parameter("seed", ElementType::Count)
             .within(0.0, 9007199254740992.0)
             .described("Seed")
             .start(&[9007199254740992.0]),
-        Variable::parameter("colour", Kind::Enumeration(&COLOUR))
+        DeclaredVariable::parameter("colour", ElementType::Enumeration(&COLOUR))
             .described("Its colour")
             .start(&[2.0]),
     ],
@@ -67,12 +67,12 @@ pub(super) struct Sample {
     steps: u64,
 }
 
-impl Component for Sample {
+impl ModelComponent for Sample {
     const MODEL: &'static Model = &SAMPLE;
 
     type Error = TryFromSliceError;
 
-    fn initialize(_: &mut Values) -> Result<Self, TryFromSliceError> {
+    fn initialize(_: &mut CellValues) -> Result<Self, TryFromSliceError> {
         Ok(Self { steps: 0 })
     }
 
@@ -80,7 +80,7 @@ impl Component for Sample {
         5_000_000
     }
 
-    fn step(&mut self, values: &mut Values) -> Result<(), TryFromSliceError> {
+    fn step(&mut self, values: &mut CellValues) -> Result<(), TryFromSliceError> {
         self.steps += 1;
         values.set_count(SAMPLE.slot("answer.sequence"), self.steps);
         values.set_real(SAMPLE.slot("navigation.latitude"), self.steps as f64 * 0.1);
@@ -91,7 +91,7 @@ impl Component for Sample {
         bytes.extend(self.steps.to_le_bytes());
     }
 
-    fn load(bytes: &[u8], _: &Values) -> Result<Self, TryFromSliceError> {
+    fn load(bytes: &[u8], _: &CellValues) -> Result<Self, TryFromSliceError> {
         Ok(Self { steps: u64::from_le_bytes(bytes.try_into()?) })
     }
 }

@@ -6,7 +6,7 @@
 use super::describe::{TOOL, base_unit, units};
 use super::element::{Element, number};
 use super::names::scalar_names;
-use octant_fmu::table::{Causality, Kind, Model, Variable};
+use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredVariable};
 
 /// Parameter values of one component, as built by [`super::parameters`].
 pub(super) type ParameterValues = Vec<(&'static str, Vec<f64>)>;
@@ -88,17 +88,17 @@ pub(super) fn parameter_set(
         .child(unit_list("ssv:Units", [model]))
 }
 
-fn parameter(variable: &Variable, value: f64) -> Element {
+fn parameter(variable: &DeclaredVariable, value: f64) -> Element {
     match variable.kind {
-        Kind::Real | Kind::Count => Element::new("ssv:Real")
+        ElementType::Real | ElementType::Count => Element::new("ssv:Real")
             .with("value", number(value))
             .with_some("unit", unit_of(variable)),
-        Kind::Integer | Kind::Enumeration(_) => {
+        ElementType::Integer | ElementType::Enumeration(_) => {
             Element::new("ssv:Integer").with("value", number(value))
         }
-        Kind::Boolean => Element::new("ssv:Boolean").with("value", (value != 0.0).to_string()),
+        ElementType::Boolean => Element::new("ssv:Boolean").with("value", (value != 0.0).to_string()),
         // No parameter has such a type.
-        Kind::Binary(_) | Kind::Clock(_) => Element::new("ssv:Binary"),
+        ElementType::Binary(_) | ElementType::Clock(_) => Element::new("ssv:Binary"),
     }
 }
 
@@ -106,15 +106,15 @@ fn parameter(variable: &Variable, value: f64) -> Element {
 struct Wire {
     from: &'static Model,
     to: &'static Model,
-    variable: &'static Variable,
+    variable: &'static DeclaredVariable,
 }
 
 /// Pairs outputs of one model with the inputs of the other, by name.
 fn wires(from: &'static Model, to: &'static Model) -> Vec<Wire> {
-    let outputs = from.variables.iter().filter(|v| v.causality == Causality::Output);
+    let outputs = from.variables.iter().filter(|v| v.causality == DeclaredCausality::Output);
     let taken = outputs.filter(|output| {
         to.find(output.name).is_some_and(|(_, input)| {
-            input.causality == Causality::Input
+            input.causality == DeclaredCausality::Input
                 && input.kind == output.kind
                 && input.elements == output.elements
         })
@@ -128,8 +128,8 @@ fn component(component: &Component, wires: &[Wire], step_s: f64) -> Element {
         let wired = wires.iter().any(|wire| wire.variable.name == variable.name);
         let kind = match variable.causality {
             // An unconnected input keeps its start value.
-            Causality::Input if wired => Some("input"),
-            Causality::Output if wired || is_result(variable) => Some("output"),
+            DeclaredCausality::Input if wired => Some("input"),
+            DeclaredCausality::Output if wired || is_result(variable) => Some("output"),
             _ => None,
         };
         kind.into_iter().flat_map(move |kind| {
@@ -157,7 +157,7 @@ fn component(component: &Component, wires: &[Wire], step_s: f64) -> Element {
 /// Returns whether an output becomes a connector without a connection: the results that a user
 /// inspects first. The others are still in the FMU; a tool that lists all connectors shouldn't have
 /// to list hundreds.
-fn is_result(variable: &Variable) -> bool {
+fn is_result(variable: &DeclaredVariable) -> bool {
     const RESULTS: [&str; 7] =
         ["mode", "stop", "moving", "navigation.", "filter.", "health", "parameters.revision"];
     RESULTS.iter().any(|result| match result.strip_suffix('.') {
@@ -166,18 +166,18 @@ fn is_result(variable: &Variable) -> bool {
     })
 }
 
-fn connector_type(variable: &Variable) -> Element {
+fn connector_type(variable: &DeclaredVariable) -> Element {
     match variable.kind {
-        Kind::Real | Kind::Count => Element::new("ssc:Real").with_some("unit", unit_of(variable)),
-        Kind::Integer | Kind::Enumeration(_) => Element::new("ssc:Integer"),
-        Kind::Boolean => Element::new("ssc:Boolean"),
+        ElementType::Real | ElementType::Count => Element::new("ssc:Real").with_some("unit", unit_of(variable)),
+        ElementType::Integer | ElementType::Enumeration(_) => Element::new("ssc:Integer"),
+        ElementType::Boolean => Element::new("ssc:Boolean"),
         // SSP 1.0 has no clocks: models with clocks are in no system.
-        Kind::Binary(_) | Kind::Clock(_) => Element::new("ssc:Binary"),
+        ElementType::Binary(_) | ElementType::Clock(_) => Element::new("ssc:Binary"),
     }
 }
 
 /// Returns the name of the unit, if the schema can express it.
-fn unit_of(variable: &Variable) -> Option<&'static str> {
+fn unit_of(variable: &DeclaredVariable) -> Option<&'static str> {
     let unit = variable.quantity?.unit;
     unit.exponents.is_some().then_some(unit.name)
 }

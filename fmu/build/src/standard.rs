@@ -19,10 +19,10 @@ impl Standard {
     }
 
     /// Converts into the library's type.
-    pub(super) fn of_library(self) -> octant_fmu::c::Standard {
+    pub(super) fn of_library(self) -> octant_fmu::c::ServedStandard {
         match self {
-            Self::Fmi2 => octant_fmu::c::Standard::Fmi2,
-            Self::Fmi3 => octant_fmu::c::Standard::Fmi3,
+            Self::Fmi2 => octant_fmu::c::ServedStandard::Fmi2,
+            Self::Fmi3 => octant_fmu::c::ServedStandard::Fmi3,
         }
     }
 

@@ -4,7 +4,7 @@
 use super::bus;
 use super::element::Element;
 use super::graphics::{corners, picture};
-use octant_fmu::table::{Causality, Model, Variable};
+use octant_fmu::table::{DeclaredCausality, Model, DeclaredVariable};
 
 /// Terminal: its name, its description, and the prefixes of its variables' names.
 struct Terminal {
@@ -42,14 +42,14 @@ pub(super) fn terminals(model: &Model) -> Element {
     let mut left = Vec::new();
     let mut right = Vec::new();
     for terminal in &TERMINALS {
-        let members: Vec<&Variable> = members(model, terminal).collect();
+        let members: Vec<&DeclaredVariable> = members(model, terminal).collect();
         match members.first().map(|variable| variable.causality) {
-            Some(Causality::Input) => left.push((terminal, members)),
+            Some(DeclaredCausality::Input) => left.push((terminal, members)),
             Some(_) => right.push((terminal, members)),
             None => {}
         }
     }
-    let side = |terminals: Vec<(&'static Terminal, Vec<&'static Variable>)>, x: f64| {
+    let side = |terminals: Vec<(&'static Terminal, Vec<&'static DeclaredVariable>)>, x: f64| {
         let count = terminals.len() as f64;
         terminals.into_iter().enumerate().map(move |(index, (terminal, members))| {
             let y = (100.0 - 200.0 * (index as f64 + 1.0) / (count + 1.0)).round();
@@ -69,14 +69,14 @@ pub(super) fn terminals(model: &Model) -> Element {
 }
 
 /// Lists the inputs and outputs that belong to a terminal.
-fn members(model: &Model, terminal: &Terminal) -> impl Iterator<Item = &'static Variable> {
+fn members(model: &Model, terminal: &Terminal) -> impl Iterator<Item = &'static DeclaredVariable> {
     model.variables.iter().filter(|variable| {
-        matches!(variable.causality, Causality::Input | Causality::Output)
+        matches!(variable.causality, DeclaredCausality::Input | DeclaredCausality::Output)
             && terminal.prefixes.iter().any(|prefix| variable.name.starts_with(prefix))
     })
 }
 
-fn element(terminal: &Terminal, members: &[&Variable], place: [f64; 4]) -> Element {
+fn element(terminal: &Terminal, members: &[&DeclaredVariable], place: [f64; 4]) -> Element {
     let members = members.iter().map(|variable| {
         Element::new("TerminalMemberVariable")
             .with("variableName", variable.name)

@@ -1,6 +1,6 @@
 //! The shared libraries of an FMU, read without running them.
 
-pub use super::binary::Binary;
+pub use super::binary::LibraryProperties;
 
 use super::binary::is_beside;
 use super::elf;
@@ -76,7 +76,7 @@ pub(super) fn check(
     model: &Model<'_, '_>,
     archive: &mut Archive,
     findings: &mut Findings,
-) -> Vec<Binary> {
+) -> Vec<LibraryProperties> {
     let mut folders: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for entry in archive.entries() {
         let mut parts = entry.name.splitn(3, '/');
@@ -157,9 +157,9 @@ fn library(
     platform: Platform,
     beside: &BTreeSet<String>,
     findings: &mut Findings,
-) -> Binary {
+) -> LibraryProperties {
     let place = Place { entry, ..Place::default() };
-    let mut binary = Binary { entry: entry.to_owned(), ..Binary::default() };
+    let mut binary = LibraryProperties { entry: entry.to_owned(), ..LibraryProperties::default() };
     let bytes = match archive.read(entry) {
         Ok(bytes) => bytes,
         Err(error) => {
@@ -218,7 +218,7 @@ fn symbols(
     model: &Model<'_, '_>,
     object: &object::File<'_>,
     place: Place<'_>,
-    binary: &mut Binary,
+    binary: &mut LibraryProperties,
     findings: &mut Findings,
 ) {
     let mut exported: BTreeSet<String> = BTreeSet::new();
@@ -288,7 +288,7 @@ fn libraries(
     object: &object::File<'_>,
     place: Place<'_>,
     beside: &BTreeSet<String>,
-    binary: &mut Binary,
+    binary: &mut LibraryProperties,
     findings: &mut Findings,
 ) {
     let Ok(imports) = object.import_libraries() else { return };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// Properties of a library.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Binary {
+pub struct LibraryProperties {
     /// The file inside the FMU.
     pub entry: String,
     /// `Elf`, `Pe`, `MachO`.

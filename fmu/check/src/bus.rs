@@ -13,7 +13,7 @@ use super::terminals;
 use super::text::text;
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::xml::{Element, File};
-use octant_fmu_host::description::{Causality, IntervalVariability, Kind, Variability, Variable};
+use octant_fmu_host::description::{Causality, IntervalVariability, VariableType, Variability, Variable};
 use std::collections::BTreeSet;
 
 /// Name of the standard, and the folder of its manifest.
@@ -230,7 +230,7 @@ fn low_cut(
     ] {
         let is_so = data.is_some_and(|(data, _)| {
             let clock = clock.map(|(clock, _)| clock.reference);
-            data.kind == Kind::Binary
+            data.kind == VariableType::Binary
                 && data.causality == direction
                 && clock.is_none_or(|clock| data.clocks.contains(&clock))
         });
@@ -296,7 +296,7 @@ fn configuration(
         | (Causality::Output, Variability::Constant) => is_simulation,
         _ => false,
     };
-    if variable.kind != Kind::Boolean || !is_so {
+    if variable.kind != VariableType::Boolean || !is_so {
         let found = format!("{}, {}", variable.name, described(variable));
         let expected = match is_simulation {
             true => "a Boolean, a fixed calculated parameter or a constant output",

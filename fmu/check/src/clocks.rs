@@ -7,7 +7,7 @@ use super::rules::{
     CLOCK_PRIORITY,
 };
 use super::variables::{name, word};
-use octant_fmu_host::description::{Causality, Clock, IntervalVariability, Variability};
+use octant_fmu_host::description::{Causality, ClockProperties, IntervalVariability, Variability};
 
 /// Checks the clocks.
 pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
@@ -44,7 +44,7 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
 fn interval(
     model: &Model<'_, '_>,
     declared: &Declared<'_, '_>,
-    clock: &Clock,
+    clock: &ClockProperties,
     findings: &mut Findings,
 ) {
     use IntervalVariability::{Constant, Countdown, Fixed, Triggered};

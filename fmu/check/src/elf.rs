@@ -1,7 +1,7 @@
 //! Checks specific to Linux libraries: a search path, a stack that may be executable, versions of
 //! symbols.
 
-use super::binary::{Binary, is_beside};
+use super::binary::{LibraryProperties, is_beside};
 use super::finding::{Findings, Place};
 use super::rules::{BINARY_GLIBC, BINARY_RPATH, BINARY_STACK};
 use object::read::elf::FileHeader;
@@ -17,7 +17,7 @@ pub(super) fn check<'data, Elf: FileHeader<Endian = object::Endianness>>(
     elf: &object::read::elf::ElfFile<'data, Elf>,
     place: Place<'_>,
     beside: &BTreeSet<String>,
-    binary: &mut Binary,
+    binary: &mut LibraryProperties,
     findings: &mut Findings,
 ) {
     use object::Object as _;

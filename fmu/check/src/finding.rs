@@ -1,6 +1,6 @@
 //! Collection of findings.
 
-use super::rules::{Rule, Severity};
+use super::rules::{CheckRule, Severity};
 use octant_fmu_host::description::Standard;
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
@@ -12,9 +12,9 @@ const KEPT: usize = 25;
 
 /// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
+pub struct RuleFinding {
     /// Rule that is broken.
-    pub rule: &'static Rule,
+    pub rule: &'static CheckRule,
     /// File inside the FMU; empty: the FMU itself.
     pub entry: String,
     /// Line, if the finding is about one.
@@ -29,7 +29,7 @@ pub struct Finding {
     pub clause: String,
 }
 
-impl Serialize for Finding {
+impl Serialize for RuleFinding {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut state = serializer.serialize_struct("Finding", 8)?;
         state.serialize_field("severity", &self.rule.severity)?;
@@ -55,7 +55,7 @@ pub(super) struct Place<'a> {
 /// Findings so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
-    kept: Vec<Finding>,
+    kept: Vec<RuleFinding>,
     counts: BTreeMap<&'static str, usize>,
     standard: Option<Standard>,
 }
@@ -69,7 +69,7 @@ impl Findings {
     /// Adds a violation of a rule.
     pub(super) fn add(
         &mut self,
-        rule: &'static Rule,
+        rule: &'static CheckRule,
         place: Place<'_>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -79,7 +79,7 @@ impl Findings {
         if *count > KEPT {
             return;
         }
-        self.kept.push(Finding {
+        self.kept.push(RuleFinding {
             rule,
             entry: place.entry.to_owned(),
             line: place.line,
@@ -92,7 +92,7 @@ impl Findings {
 
     /// Returns all findings: worst first, each severity in the order of the file; and the number of
     /// findings of each rule that weren't kept.
-    pub(super) fn finish(mut self) -> (Vec<Finding>, BTreeMap<&'static str, usize>) {
+    pub(super) fn finish(mut self) -> (Vec<RuleFinding>, BTreeMap<&'static str, usize>) {
         self.kept.sort_by_key(|finding| std::cmp::Reverse(finding.rule.severity));
         let more = self
             .counts
@@ -110,7 +110,7 @@ impl Findings {
 }
 
 /// Clause of a rule in a standard.
-fn clause(rule: &Rule, standard: Option<Standard>) -> String {
+fn clause(rule: &CheckRule, standard: Option<Standard>) -> String {
     let (name, section) = match standard {
         Some(Standard::Fmi3) => ("FMI 3.0", rule.fmi3),
         Some(Standard::Fmi2) if rule.fmi2.is_empty() => ("FMI 3.0", rule.fmi3),

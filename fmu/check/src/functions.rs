@@ -2,7 +2,7 @@
 //! variables.
 
 use octant_fmu_host::description::{
-    Causality, Clock, Description, Initial, Interface, IntervalVariability, Kind, Variability,
+    Causality, ClockProperties, Description, Initial, Interface, IntervalVariability, VariableType, Variability,
     Variable,
 };
 
@@ -77,7 +77,7 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
     };
     // Variables that can't be set need no function that sets them.
     let sets = name.starts_with("Set");
-    let has = |kind: Kind| {
+    let has = |kind: VariableType| {
         description
             .variables
             .iter()
@@ -85,10 +85,10 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
     };
     // FMI 2.0 reads enumerations as integers.
     let of_type = |name: &str| match name {
-        "Real" => has(Kind::Float64),
-        "Integer" => has(Kind::Int32) || has(Kind::Enumeration),
-        "Int64" => has(Kind::Int64) || has(Kind::Enumeration),
-        name => Kind::ALL.into_iter().any(|kind| kind.name() == name && has(kind)),
+        "Real" => has(VariableType::Float64),
+        "Integer" => has(VariableType::Int32) || has(VariableType::Enumeration),
+        "Int64" => has(VariableType::Int64) || has(VariableType::Enumeration),
+        name => VariableType::ALL.into_iter().any(|kind| kind.name() == name && has(kind)),
     };
     match name {
         "GetFMUstate" | "SetFMUstate" | "FreeFMUstate" | "GetFMUState" | "SetFMUState"
@@ -151,7 +151,7 @@ fn is_settable(variable: &Variable) -> bool {
 }
 
 /// Returns whether there is a clock whose interval comes from the FMU, and for which `and` is true.
-fn has_clock(description: &Description, and: impl Fn(&Clock) -> bool) -> bool {
+fn has_clock(description: &Description, and: impl Fn(&ClockProperties) -> bool) -> bool {
     use IntervalVariability::{Changing, Countdown, Tunable};
     description.variables.iter().filter_map(|variable| variable.clock.as_ref()).any(|clock| {
         matches!(clock.interval_variability, Tunable | Changing | Countdown) && and(clock)

@@ -45,11 +45,11 @@ mod text;
 mod units;
 mod variables;
 
-use binaries::Binary;
-use finding::{Finding, Findings, Place};
+use binaries::LibraryProperties;
+use finding::{RuleFinding, Findings, Place};
 use model::Model;
-use octant_fmu_host::archive::{Archive, ArchiveError, Limits};
-use octant_fmu_host::description::schema::{self, Breaks, Node, Violation};
+use octant_fmu_host::archive::{Archive, ArchiveError, ArchiveLimits};
+use octant_fmu_host::description::schema::{self, Breaks, ElementRule, Violation};
 use octant_fmu_host::description::xml::{Element, File};
 use octant_fmu_host::description::{Description, Standard, read};
 use octant_fmu_host::library::platforms;
@@ -64,7 +64,7 @@ const DESCRIPTION: &str = "modelDescription.xml";
 
 /// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct CheckReport {
     /// File name of the FMU.
     pub file: String,
     /// `fmiVersion`, if it can be read.
@@ -74,14 +74,14 @@ pub struct Report {
     /// Number of variables.
     pub variables: usize,
     /// Properties of the libraries.
-    pub binaries: Vec<Binary>,
+    pub binaries: Vec<LibraryProperties>,
     /// Findings, worst first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<RuleFinding>,
     /// Number of further findings of each rule that has too many.
     pub more: BTreeMap<&'static str, usize>,
 }
 
-impl Report {
+impl CheckReport {
     /// Number of findings of a severity.
     #[must_use]
     pub fn count(&self, severity: Severity) -> usize {
@@ -101,7 +101,7 @@ pub struct Checked {
     /// Description, if it can be read.
     pub description: Option<Description>,
     file: String,
-    binaries: Vec<Binary>,
+    binaries: Vec<LibraryProperties>,
     findings: Findings,
 }
 
@@ -111,7 +111,7 @@ impl Checked {
     pub fn can_be_loaded(&self) -> bool {
         let Some(description) = &self.description else { return false };
         let here = platforms(description.standard);
-        let is_here = |binary: &Binary| {
+        let is_here = |binary: &LibraryProperties| {
             here.iter().any(|platform| binary.entry.starts_with(&format!("binaries/{platform}/")))
         };
         self.archive.problems().is_empty() && self.binaries.iter().any(is_here)
@@ -119,10 +119,10 @@ impl Checked {
 
     /// Makes the report of all findings.
     #[must_use]
-    pub fn report(self) -> Report {
+    pub fn report(self) -> CheckReport {
         let (findings, more) = self.findings.finish();
         let description = self.description.as_ref();
-        Report {
+        CheckReport {
             file: self.file,
             fmi_version: description.map(|description| description.fmi_version.clone()),
             model_name: description.map(|description| description.model_name.clone()),
@@ -139,7 +139,7 @@ impl Checked {
 /// # Errors
 /// If it is no archive, or has no description.
 pub fn check(path: &Path) -> Result<Checked, ArchiveError> {
-    let mut checked = check_archive(Archive::survey(path, Limits::DEFAULT)?)?;
+    let mut checked = check_archive(Archive::survey(path, ArchiveLimits::DEFAULT)?)?;
     let is_fmu = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu"));
     if !is_fmu && !checked.archive.is_folder() {
         let found = format!("{:?}", path.file_name().unwrap_or_default());
@@ -169,7 +169,7 @@ pub fn check_archive(mut archive: Archive) -> Result<Checked, ArchiveError> {
 
 /// Checks a description alone.
 #[must_use]
-pub fn check_description(text: &str) -> (Option<Description>, Vec<Finding>) {
+pub fn check_description(text: &str) -> (Option<Description>, Vec<RuleFinding>) {
     let mut findings = Findings::default();
     let description = with_description(text, &mut findings, |_, _| {});
     (description, findings.finish().0)
@@ -234,7 +234,7 @@ fn with_description(
 }
 
 /// Turns violations of a schema into findings.
-fn follow_schema(entry: &str, root: Element<'_, '_>, node: &Node, findings: &mut Findings) {
+fn follow_schema(entry: &str, root: Element<'_, '_>, node: &ElementRule, findings: &mut Findings) {
     schema::walk(root, node, &mut |Violation { breaks, line, place, found, expected }| {
         let rule = match breaks {
             Breaks::UnknownElement => &rules::SCHEMA_ELEMENT,
@@ -325,7 +325,7 @@ fn others(model: &Model<'_, '_>, archive: &mut Archive, findings: &mut Findings)
 /// Reads another XML file, checks it by its schema, and continues with its root; `None`: the file
 /// is missing.
 fn xml(
-    (entry, node, rule): (&str, &'static Node, &'static rules::Rule),
+    (entry, node, rule): (&str, &'static ElementRule, &'static rules::CheckRule),
     archive: &mut Archive,
     findings: &mut Findings,
     then: impl FnOnce(Element<'_, '_>, &Archive, &mut Findings),

@@ -6,11 +6,11 @@
 use super::Checked;
 use super::finding::Place;
 use super::rules::{
-    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, Rule,
+    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, CheckRule,
 };
-use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variable};
-use octant_fmu_host::instance::open::{OpenError, open_archive};
-use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options, Outcome, Plan};
+use octant_fmu_host::description::{Causality, Description, Initial, VariableType, Variable};
+use octant_fmu_host::instance::open::{FmuOpenError, open_archive};
+use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome, AccessPlan};
 
 /// Step of an FMU whose description has none, s.
 const STEP_S: f64 = 0.01;
@@ -20,7 +20,7 @@ const STARTS_MAX: usize = 100_000;
 
 /// Loads the FMU with each of its interfaces, and makes an instance; with `step` the instance is
 /// initialized, and makes a first step. Failures become findings.
-pub fn load(checked: &mut Checked, options: &Options, step: bool) {
+pub fn load(checked: &mut Checked, options: &OpenOptions, step: bool) {
     let Some(description) = checked.description.clone() else { return };
     let kinds = [
         (InterfaceKind::CoSimulation, "CoSimulation", &description.co_simulation),
@@ -38,7 +38,7 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
             checked.findings.add(&LOAD_TOOL, place, found, "an FMU that stands alone");
             continue;
         }
-        let options = Options { interface: kind, ..options.clone() };
+        let options = OpenOptions { interface: kind, ..options.clone() };
         if let Err(failure) = one(checked, &description, &options, name, step) {
             checked.findings.add(failure.rule, place, failure.found, failure.rule.says);
         }
@@ -47,13 +47,13 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
 
 /// A failed call, and the rule that it breaks.
 struct Failure {
-    rule: &'static Rule,
+    rule: &'static CheckRule,
     found: String,
 }
 
 impl Failure {
     /// Assigns an error to a rule: `rule` is that of the call.
-    fn of(error: &InstanceError, rule: &'static Rule) -> Self {
+    fn of(error: &InstanceError, rule: &'static CheckRule) -> Self {
         let rule = match error {
             InstanceError::Process { .. } => &LOAD_SURVIVES,
             InstanceError::Load { .. } => &LOAD_OPENS,
@@ -67,13 +67,13 @@ impl Failure {
 fn one(
     checked: &mut Checked,
     description: &Description,
-    options: &Options,
+    options: &OpenOptions,
     name: &str,
     step: bool,
 ) -> Result<(), Failure> {
     let mut instance =
         open_archive(&mut checked.archive, options).map_err(|error| match error {
-            OpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
+            FmuOpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
             error => Failure { rule: &LOAD_OPENS, found: error.to_string() },
         })?;
     if !step {
@@ -98,7 +98,7 @@ fn one(
         .unwrap_or(STEP_S);
     let steps = |error: InstanceError| Failure::of(&error, &LOAD_STEPS);
     let stepped = instance.advance(start_s, step_s).map_err(steps)?;
-    if stepped.outcome == Outcome::Discarded {
+    if stepped.outcome == StepOutcome::Discarded {
         let found = format!("a step of {step_s} s from {start_s} s is refused");
         return Err(Failure { rule: &LOAD_STEPS, found });
     }
@@ -112,14 +112,14 @@ fn other_starts(
     description: &Description,
 ) -> Result<Option<String>, InstanceError> {
     let is_exact = |variable: &&Variable| {
-        let number = !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock);
+        let number = !matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock);
         let exact =
             variable.initial == Some(Initial::Exact) || variable.causality == Causality::Input;
         number && exact && !variable.start.is_empty() && variable.clocks.is_empty()
     };
     let variables: Vec<&Variable> =
         description.variables.iter().filter(is_exact).take(STARTS_MAX).collect();
-    let plan = Plan::new(description, &variables)?;
+    let plan = AccessPlan::new(description, &variables)?;
     // Variables that can't be read don't count as different; another rule reports a missing
     // function.
     let mut values = vec![None; plan.elements];
@@ -153,11 +153,11 @@ fn other_starts(
 }
 
 /// Reads a start value as f64, the form in which numbers are exchanged.
-fn start(kind: Kind, text: &str) -> Option<f64> {
+fn start(kind: VariableType, text: &str) -> Option<f64> {
     use octant_fmu_host::description::xml::{boolean, real};
     match kind {
-        Kind::Boolean => boolean(text).map(f64::from),
-        Kind::Float32 => text.trim().parse::<f32>().ok().map(f64::from),
+        VariableType::Boolean => boolean(text).map(f64::from),
+        VariableType::Float32 => text.trim().parse::<f32>().ok().map(f64::from),
         _ => real(text),
     }
 }

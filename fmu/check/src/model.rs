@@ -1,9 +1,9 @@
 //! A description together with the text of its file: rules need both.
 
 use super::finding::{Findings, Place};
-use super::rules::Rule;
+use super::rules::CheckRule;
 use octant_fmu_host::description::xml::Element;
-use octant_fmu_host::description::{Description, Kind, Standard, Variable};
+use octant_fmu_host::description::{Description, VariableType, Standard, Variable};
 use std::collections::HashMap;
 
 /// A description and its XML tree.
@@ -75,7 +75,7 @@ impl<'a, 't: 'a> Model<'a, 't> {
     pub(super) fn broken(
         &self,
         findings: &mut Findings,
-        rule: &'static Rule,
+        rule: &'static CheckRule,
         declared: &Declared<'_, '_>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -88,7 +88,7 @@ impl<'a, 't: 'a> Model<'a, 't> {
 /// Finds the element with type, start and limits of a variable's element; `None`: it is no
 /// variable.
 fn value<'a, 't: 'a>(element: Element<'a, 't>, standard: Standard) -> Option<Element<'a, 't>> {
-    let known = |name: &str| Kind::ALL.iter().any(|kind| kind.name() == name);
+    let known = |name: &str| VariableType::ALL.iter().any(|kind| kind.name() == name);
     match standard {
         Standard::Fmi3 => known(element.name()).then_some(element),
         Standard::Fmi2 if element.name() == "ScalarVariable" => element.children().find(|child| {

@@ -7,7 +7,7 @@ use super::rules::{
     VARIABLE_SIZE, VARIABLE_START_COUNT, VARIABLE_STRUCTURAL,
 };
 use octant_fmu_host::description::{
-    Causality, Dimension, ELEMENTS_MAX, Initial, Kind, Variability, Variable,
+    Causality, ArrayDimension, ELEMENTS_MAX, Initial, VariableType, Variability, Variable,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,8 +24,8 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
         .iter()
         .flat_map(|declared| &declared.variable.dimensions)
         .filter_map(|dimension| match dimension {
-            Dimension::Of(reference) => Some(*reference),
-            Dimension::Fixed(_) => None,
+            ArrayDimension::Of(reference) => Some(*reference),
+            ArrayDimension::Fixed(_) => None,
         })
         .collect();
     for declared in &model.variables {
@@ -48,8 +48,8 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
 /// Checks aliases: variables of FMI 2.0 that share a value reference are one variable.
 fn aliases(model: &Model<'_, '_>, findings: &mut Findings) {
     // Enumerations are read as integers.
-    let base = |kind: Kind| match kind {
-        Kind::Enumeration => Kind::Int32,
+    let base = |kind: VariableType| match kind {
+        VariableType::Enumeration => VariableType::Int32,
         kind => kind,
     };
     let mut sets: BTreeMap<(&str, u32), Vec<&Declared<'_, '_>>> = BTreeMap::new();
@@ -103,7 +103,7 @@ fn array(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
     let mut elements = Some(1u64);
     for dimension in &variable.dimensions {
         let size = match *dimension {
-            Dimension::Fixed(0) => {
+            ArrayDimension::Fixed(0) => {
                 let expected = "at least one element";
                 model.broken(
                     findings,
@@ -114,12 +114,12 @@ fn array(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
                 );
                 return;
             }
-            Dimension::Fixed(size) => Some(size),
-            Dimension::Of(reference) => {
+            ArrayDimension::Fixed(size) => Some(size),
+            ArrayDimension::Of(reference) => {
                 let parameter =
                     model.by_reference.get(&reference).map(|&i| model.variables[i].variable);
                 let is_size = parameter.is_some_and(|parameter| {
-                    parameter.kind == Kind::UInt64
+                    parameter.kind == VariableType::UInt64
                         && (parameter.causality == Causality::StructuralParameter
                             || parameter.variability == Variability::Constant)
                 });
@@ -190,7 +190,7 @@ fn clocked(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fi
     for reference in &variable.clocks {
         let clock = model.by_reference.get(reference).map(|&i| model.variables[i].variable);
         let found = match clock {
-            Some(clock) if clock.kind == Kind::Clock => continue,
+            Some(clock) if clock.kind == VariableType::Clock => continue,
             Some(other) => format!("clock {:?}, which is {}", other.name, other.kind.name()),
             None => format!("clock {reference}, a value reference that no variable has"),
         };

@@ -27,13 +27,13 @@ fn edited(text: &str, edits: &[Edit<'_>]) -> String {
     text
 }
 
-fn ids(findings: &[Finding]) -> Vec<&'static str> {
+fn ids(findings: &[RuleFinding]) -> Vec<&'static str> {
     let ids: BTreeSet<&str> = findings.iter().map(|finding| finding.rule.id).collect();
     ids.into_iter().collect()
 }
 
 /// Rules of the description that an edit breaks.
-fn broken(good: &str, edits: &[Edit<'_>]) -> (Vec<&'static str>, Vec<Finding>) {
+fn broken(good: &str, edits: &[Edit<'_>]) -> (Vec<&'static str>, Vec<RuleFinding>) {
     let (_, findings) = check_description(&edited(good, edits));
     (ids(&findings), findings)
 }
@@ -130,8 +130,8 @@ fn packed_by(options: SimpleFileOptions, files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     writer.finish().expect("finishes").into_inner()
 }
 
-fn survey(bytes: Vec<u8>) -> Report {
-    let archive = Archive::survey_bytes("good.fmu", bytes, Limits::DEFAULT).expect("opens");
+fn survey(bytes: Vec<u8>) -> CheckReport {
+    let archive = Archive::survey_bytes("good.fmu", bytes, ArchiveLimits::DEFAULT).expect("opens");
     check_archive(archive).expect("is checked").report()
 }
 
@@ -159,7 +159,7 @@ fn a_change_of_a_file_is_found_by_one_rule() {
     use rules::*;
     const ICONS: &str = "terminalsAndIcons/terminalsAndIcons.xml";
     const BUILDS: &str = "sources/buildDescription.xml";
-    let cases: Vec<(&Rule, &str, Vec<Change>)> = vec![
+    let cases: Vec<(&CheckRule, &str, Vec<Change>)> = vec![
         (&FILES_DOCUMENTATION, GOOD2, vec![Remove("documentation/index.html")]),
         (&FILES_LICENCE, GOOD2, vec![Remove("documentation/licenses/license.txt")]),
         (
@@ -381,7 +381,7 @@ fn a_library_for_windows_is_read() {
     assert_eq!(found, [] as [&str; 0]);
     assert_eq!(
         binaries,
-        [Binary {
+        [LibraryProperties {
             entry: "binaries/win64/good.dll".into(),
             format: "Pe".into(),
             architecture: "X86_64".into(),

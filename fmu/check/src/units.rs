@@ -8,7 +8,7 @@ use super::rules::{
 };
 use octant_fmu_host::description::units::{dimension, known};
 use octant_fmu_host::description::xml::Element;
-use octant_fmu_host::description::{BaseUnit, Kind};
+use octant_fmu_host::description::{BaseUnit, VariableType};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest relative distance of the factor of a common name from its common meaning: the digits
@@ -254,7 +254,7 @@ fn derivative(
         .iter()
         .find(|d| d.variable.causality == octant_fmu_host::description::Causality::Independent)
         .and_then(|d| d.variable.unit.as_deref());
-    if time.is_some_and(|unit| unit != "s") || variable.kind != Kind::Float64 {
+    if time.is_some_and(|unit| unit != "s") || variable.kind != VariableType::Float64 {
         return;
     }
     if let (Some(rate), Some(value)) = (base(variable.unit.as_deref()), base(state.unit.as_deref()))

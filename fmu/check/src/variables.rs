@@ -9,7 +9,7 @@ use super::rules::{
     VARIABLE_START, VARIABLE_START_FINITE, VARIABLE_START_RANGE,
 };
 use octant_fmu_host::description::xml::{real, shortened};
-use octant_fmu_host::description::{Causality, Initial, Kind, Standard, Variability};
+use octant_fmu_host::description::{Causality, Initial, VariableType, Standard, Variability};
 use std::collections::BTreeSet;
 
 /// Checks every variable.
@@ -63,7 +63,7 @@ fn variability(model: &Model<'_, '_>, declared: &Declared<'_, '_>) -> Variabilit
 fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) -> bool {
     let variable = declared.variable;
     let variability = variability(model, declared);
-    if variable.kind == Kind::Clock {
+    if variable.kind == VariableType::Clock {
         return false;
     }
     let allowed = allowed_variability(variable.causality);
@@ -163,7 +163,7 @@ fn start(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
 /// Checks the start values.
 fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) {
     let variable = declared.variable;
-    if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Boolean | Kind::Clock) {
+    if matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Boolean | VariableType::Clock) {
         return;
     }
     let items =
@@ -176,7 +176,7 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
         };
         // A value that isn't a number breaks the schema, which reports it.
         let Some(value) = real(text) else { continue };
-        if variable.kind == Kind::Enumeration
+        if variable.kind == VariableType::Enumeration
             && let (Some(items), Ok(value)) = (items, text.trim().parse::<i64>())
             && !items.iter().any(|(item, _)| *item == value)
         {

@@ -1,12 +1,12 @@
 //! Converts a value on a wire: units, transformations, and the type at its end.
 
 use super::flat::Hop;
-use super::ssp::parameters::{Enumeration, Transformation};
+use super::ssp::parameters::{SystemEnumeration, Transformation};
 use super::values::{fits, is_float, is_numeric, kind_name, rounded};
 use octant_fmu_host::description::units::{
-    Conversion as UnitConversion, candidates, dimension, known, meant,
+    UnitConversion as UnitConversion, candidates, dimension, known, meant,
 };
-use octant_fmu_host::description::{BaseUnit, Description, Kind, Variable};
+use octant_fmu_host::description::{BaseUnit, Description, VariableType, Variable};
 
 /// One operation on a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,10 +19,10 @@ enum Step {
 
 /// Operations on a value on its way to a variable.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Conversion {
+pub struct WireConversion {
     steps: Vec<Step>,
     /// Type at the end.
-    kind: Kind,
+    kind: VariableType,
     /// Values of an enumeration at the end, where the description names them.
     items: Vec<f64>,
     /// True if every value of the source fits.
@@ -31,7 +31,7 @@ pub struct Conversion {
 
 /// Unit: its name, and its possible meanings; empty if the unit is unknown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unit {
+pub struct WireUnit {
     /// Name.
     pub name: String,
     /// Possible meanings in SI.
@@ -40,7 +40,7 @@ pub struct Unit {
 
 /// Reason why a wire can't carry values from one variable to another.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConversionError {
+pub enum WireConversionError {
     /// A unit isn't known.
     #[error(
         "the unit {found:?} is neither defined nor a known one, and is to be converted with {other:?}"
@@ -115,7 +115,7 @@ pub enum ConversionError {
     },
 }
 
-impl Unit {
+impl WireUnit {
     /// Returns the unit of a variable.
     #[must_use]
     pub fn of_variable(description: &Description, variable: &Variable) -> Option<Self> {
@@ -140,13 +140,13 @@ impl Unit {
     ///
     /// # Errors
     /// If a unit isn't known, or they measure different things.
-    pub fn to(&self, other: &Self) -> Result<UnitConversion, ConversionError> {
+    pub fn to(&self, other: &Self) -> Result<UnitConversion, WireConversionError> {
         if self.name == other.name {
             return Ok(UnitConversion::IDENTITY);
         }
         for (unit, wanted) in [(self, other), (other, self)] {
             if unit.bases.is_empty() {
-                return Err(ConversionError::UnknownUnit {
+                return Err(WireConversionError::UnknownUnit {
                     found: unit.name.clone(),
                     other: wanted.name.clone(),
                 });
@@ -159,7 +159,7 @@ impl Unit {
                 }
             }
         }
-        Err(ConversionError::Units {
+        Err(WireConversionError::Units {
             from: self.name.clone(),
             from_dimension: dimension(self.bases[0].exponents),
             to: other.name.clone(),
@@ -172,13 +172,13 @@ impl Unit {
 #[derive(Clone, Debug)]
 pub struct Terminal<'a> {
     /// Type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Unit, if there is one.
-    pub unit: Option<Unit>,
+    pub unit: Option<WireUnit>,
     /// Values and names of the variable's enumeration.
     pub items: &'a [(i64, String)],
     /// Enumeration of the structure that the connector names.
-    pub enumeration: Option<&'a Enumeration>,
+    pub enumeration: Option<&'a SystemEnumeration>,
 }
 
 impl Terminal<'_> {
@@ -193,7 +193,7 @@ impl Terminal<'_> {
     }
 }
 
-impl Conversion {
+impl WireConversion {
     /// Builds the conversion of a wire from one variable to another by way of some connections.
     ///
     /// # Errors
@@ -203,7 +203,7 @@ impl Conversion {
         to: &Terminal<'_>,
         hops: &[Hop],
         units: &[(String, BaseUnit)],
-    ) -> Result<Self, ConversionError> {
+    ) -> Result<Self, WireConversionError> {
         let mut steps = Vec::new();
         let mut unit = from.unit.clone();
         let mut mapped = false;
@@ -211,7 +211,7 @@ impl Conversion {
             let end = if index + 1 == hops.len() {
                 to.unit.clone()
             } else {
-                hop.unit.as_ref().map(|name| Unit::named(name, units))
+                hop.unit.as_ref().map(|name| WireUnit::named(name, units))
             };
             if hop.suppress_unit_conversion {
                 // Without unit conversion the value is taken to be in the unit of this end,
@@ -222,7 +222,7 @@ impl Conversion {
                     let conversion = unit.to(end)?;
                     if !conversion.is_identity() {
                         if !is_float(from.kind) && !is_float(to.kind) {
-                            return Err(ConversionError::WholeNumbers {
+                            return Err(WireConversionError::WholeNumbers {
                                 from_kind: kind_name(from.kind),
                                 to_kind: kind_name(to.kind),
                                 from: unit.name.clone(),
@@ -243,7 +243,7 @@ impl Conversion {
         }
         let total = check_types(from, to, mapped, !steps.is_empty())?;
         let items = match to.kind {
-            Kind::Enumeration => to.items.iter().map(|(value, _)| *value as f64).collect(),
+            VariableType::Enumeration => to.items.iter().map(|(value, _)| *value as f64).collect(),
             _ => Vec::new(),
         };
         Ok(Self { steps, kind: to.kind, items, total })
@@ -251,7 +251,7 @@ impl Conversion {
 
     /// Type at the end.
     #[must_use]
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> VariableType {
         self.kind
     }
 
@@ -284,10 +284,10 @@ fn step(
     transformation: &Transformation,
     from: &Terminal<'_>,
     to: &Terminal<'_>,
-) -> Result<Option<Step>, ConversionError> {
+) -> Result<Option<Step>, WireConversionError> {
     let whole = is_numeric(from.kind) && !is_float(from.kind);
     let wrong = |expected| {
-        Err(ConversionError::Transformation {
+        Err(WireConversionError::Transformation {
             transformation: transformation.name(),
             found: kind_name(from.kind),
             expected,
@@ -295,13 +295,13 @@ fn step(
     };
     Ok(match transformation {
         Transformation::Linear { factor, offset } => {
-            if matches!(from.kind, Kind::Boolean | Kind::Enumeration) || !is_numeric(from.kind) {
+            if matches!(from.kind, VariableType::Boolean | VariableType::Enumeration) || !is_numeric(from.kind) {
                 return wrong("numbers");
             }
             (*factor != 1.0 || *offset != 0.0).then_some(Step::Linear(*factor, *offset))
         }
         Transformation::Boolean(table) => {
-            if from.kind != Kind::Boolean {
+            if from.kind != VariableType::Boolean {
                 return wrong("Booleans");
             }
             let number = |value: bool| f64::from(u8::from(value));
@@ -311,22 +311,22 @@ fn step(
             Some(Step::Map([false, true].into_iter().filter_map(entry).collect()))
         }
         Transformation::Integer(table) => {
-            if !whole || from.kind == Kind::Boolean {
+            if !whole || from.kind == VariableType::Boolean {
                 return wrong("whole numbers and enumerations");
             }
             let entry = |(source, target): &(i64, i64)| (*source as f64, *target as f64);
             Some(Step::Map(table.iter().map(entry).collect()))
         }
         Transformation::Enumeration(table) => {
-            if from.kind != Kind::Enumeration || to.kind != Kind::Enumeration {
+            if from.kind != VariableType::Enumeration || to.kind != VariableType::Enumeration {
                 return wrong("enumerations at both ends");
             }
             let entry = |(source, target): &(String, String)| {
-                let unknown = |name: &str| ConversionError::Item { found: name.to_owned() };
+                let unknown = |name: &str| WireConversionError::Item { found: name.to_owned() };
                 let source = from.item(source).ok_or_else(|| unknown(source))?;
                 Ok((source, to.item(target).ok_or_else(|| unknown(target))?))
             };
-            Some(Step::Map(table.iter().map(entry).collect::<Result<_, ConversionError>>()?))
+            Some(Step::Map(table.iter().map(entry).collect::<Result<_, WireConversionError>>()?))
         }
     })
 }
@@ -337,26 +337,26 @@ fn check_types(
     to: &Terminal<'_>,
     mapped: bool,
     altered: bool,
-) -> Result<bool, ConversionError> {
+) -> Result<bool, WireConversionError> {
     let (source, target) = (from.kind, to.kind);
-    let refused = || Err(ConversionError::Types { from: kind_name(source), to: kind_name(target) });
+    let refused = || Err(WireConversionError::Types { from: kind_name(source), to: kind_name(target) });
     if !is_numeric(source) || !is_numeric(target) {
         // Texts and bytes go only to their own type, unchanged.
-        return if source == target && source != Kind::Clock && !altered {
+        return if source == target && source != VariableType::Clock && !altered {
             Ok(true)
         } else {
             refused()
         };
     }
     match (source, target) {
-        (_, Kind::Float64 | Kind::Float32) => Ok(true),
-        (Kind::Boolean, Kind::Enumeration) | (Kind::Enumeration, Kind::Boolean) if !mapped => {
+        (_, VariableType::Float64 | VariableType::Float32) => Ok(true),
+        (VariableType::Boolean, VariableType::Enumeration) | (VariableType::Enumeration, VariableType::Boolean) if !mapped => {
             refused()
         }
-        (Kind::Enumeration, Kind::Enumeration) if !mapped => {
+        (VariableType::Enumeration, VariableType::Enumeration) if !mapped => {
             for (value, name) in from.items {
                 if to.item(name) != Some(*value as f64) {
-                    return Err(ConversionError::Enumerations {
+                    return Err(WireConversionError::Enumerations {
                         item: name.clone(),
                         value: *value,
                     });
@@ -372,13 +372,13 @@ fn check_types(
 mod tests {
     use super::*;
 
-    fn terminal(kind: Kind, unit: Option<&str>) -> Terminal<'static> {
-        let unit = unit.map(|name| Unit::named(name, &[]));
+    fn terminal(kind: VariableType, unit: Option<&str>) -> Terminal<'static> {
+        let unit = unit.map(|name| WireUnit::named(name, &[]));
         Terminal { kind, unit, items: &[], enumeration: None }
     }
 
-    fn convert(from: Kind, to: Kind, hops: &[Hop]) -> Result<Conversion, ConversionError> {
-        Conversion::of(&terminal(from, None), &terminal(to, None), hops, &[])
+    fn convert(from: VariableType, to: VariableType, hops: &[Hop]) -> Result<WireConversion, WireConversionError> {
+        WireConversion::of(&terminal(from, None), &terminal(to, None), hops, &[])
     }
 
     fn hop(transformation: Transformation) -> Hop {
@@ -387,41 +387,41 @@ mod tests {
 
     #[test]
     fn units_are_converted_before_the_transformation() {
-        let (from, to) = (Kind::Float64, Kind::Float64);
+        let (from, to) = (VariableType::Float64, VariableType::Float64);
         let linear = Transformation::Linear { factor: 2.0, offset: 1.0 };
         let ends = (terminal(from, Some("km")), terminal(to, Some("m")));
-        let both = Conversion::of(&ends.0, &ends.1, &[hop(linear.clone())], &[]).unwrap();
+        let both = WireConversion::of(&ends.0, &ends.1, &[hop(linear.clone())], &[]).unwrap();
         assert_eq!(both.apply(3.0), Some(2.0 * 3000.0 + 1.0));
         let mut instead = hop(linear);
         instead.suppress_unit_conversion = true;
-        let instead = Conversion::of(&ends.0, &ends.1, &[instead], &[]).unwrap();
+        let instead = WireConversion::of(&ends.0, &ends.1, &[instead], &[]).unwrap();
         assert_eq!(instead.apply(3.0), Some(7.0));
         // Through a connector of a system.
         let through = [Hop { unit: Some("cm".into()), ..Hop::default() }, Hop::default()];
-        let through = Conversion::of(&ends.0, &ends.1, &through, &[]).unwrap();
+        let through = WireConversion::of(&ends.0, &ends.1, &through, &[]).unwrap();
         assert!((through.apply(3.0).unwrap() - 3000.0).abs() < 1e-9);
         let celsius = (terminal(from, Some("degC")), terminal(to, Some("K")));
-        let warm = Conversion::of(&celsius.0, &celsius.1, &[Hop::default()], &[]).unwrap();
+        let warm = WireConversion::of(&celsius.0, &celsius.1, &[Hop::default()], &[]).unwrap();
         assert_eq!(warm.apply(20.0), Some(293.15));
-        let same = Conversion::of(&ends.0, &ends.0, &[Hop::default()], &[]).unwrap();
+        let same = WireConversion::of(&ends.0, &ends.0, &[Hop::default()], &[]).unwrap();
         assert_eq!(same.apply(-0.0).unwrap().to_bits(), (-0.0f64).to_bits());
         for (a, b, expected) in [
             ("deg", "m", "can't become"),
             ("m", "furlong", "\"furlong\" is neither defined nor a known one"),
         ] {
             let ends = (terminal(from, Some(a)), terminal(to, Some(b)));
-            let error = Conversion::of(&ends.0, &ends.1, &[Hop::default()], &[]).unwrap_err();
+            let error = WireConversion::of(&ends.0, &ends.1, &[Hop::default()], &[]).unwrap_err();
             let error = error.to_string();
             assert!(error.contains(expected), "{error}");
             let suppressed = Hop { suppress_unit_conversion: true, ..Hop::default() };
-            let kept = Conversion::of(&ends.0, &ends.1, &[suppressed], &[]).unwrap();
+            let kept = WireConversion::of(&ends.0, &ends.1, &[suppressed], &[]).unwrap();
             assert_eq!(kept.apply(5.5), Some(5.5));
         }
     }
 
     #[test]
     fn types_become_others_where_nothing_is_lost() {
-        use Kind::*;
+        use VariableType::*;
         let via = |from, to, value| convert(from, to, &[Hop::default()]).unwrap().apply(value);
         assert_eq!(via(Int32, Float64, -3.0), Some(-3.0));
         assert_eq!(via(Boolean, Float64, 1.0), Some(1.0));
@@ -445,28 +445,28 @@ mod tests {
     #[test]
     fn mappings_give_what_they_say_and_nothing_else() {
         let table = Transformation::Integer(vec![(1, 10), (2, -20)]);
-        let map = convert(Kind::Int32, Kind::Int16, &[hop(table.clone())]).unwrap();
+        let map = convert(VariableType::Int32, VariableType::Int16, &[hop(table.clone())]).unwrap();
         assert_eq!([1.0, 2.0, 3.0].map(|v| map.apply(v)), [Some(10.0), Some(-20.0), None]);
         let not = Transformation::Boolean([Some(true), Some(false)]);
-        let not = convert(Kind::Boolean, Kind::Boolean, &[hop(not)]).unwrap();
+        let not = convert(VariableType::Boolean, VariableType::Boolean, &[hop(not)]).unwrap();
         assert_eq!([0.0, 1.0].map(|v| not.apply(v)), [Some(1.0), Some(0.0)]);
-        let error = convert(Kind::Float64, Kind::Float64, &[hop(table)]).unwrap_err().to_string();
+        let error = convert(VariableType::Float64, VariableType::Float64, &[hop(table)]).unwrap_err().to_string();
         assert!(error.contains("is for whole numbers and enumerations"), "{error}");
 
         let items = |names: &[(i64, &str)]| {
             names.iter().map(|(value, name)| (*value, (*name).to_owned())).collect::<Vec<_>>()
         };
         let (a, b) = (items(&[(0, "off"), (1, "on")]), items(&[(5, "off"), (6, "run")]));
-        let of = |items| Terminal { kind: Kind::Enumeration, unit: None, items, enumeration: None };
-        let plain = Conversion::of(&of(&a), &of(&b), &[Hop::default()], &[]).unwrap_err();
+        let of = |items| Terminal { kind: VariableType::Enumeration, unit: None, items, enumeration: None };
+        let plain = WireConversion::of(&of(&a), &of(&b), &[Hop::default()], &[]).unwrap_err();
         let plain = plain.to_string();
         assert!(plain.contains("no item \"off\" with value 0"), "{plain}");
         let names = [("off", "off"), ("on", "run")];
         let names = names.map(|(a, b)| (a.to_owned(), b.to_owned())).to_vec();
         let named = hop(Transformation::Enumeration(names));
-        let named = Conversion::of(&of(&a), &of(&b), &[named], &[]).unwrap();
+        let named = WireConversion::of(&of(&a), &of(&b), &[named], &[]).unwrap();
         assert_eq!([0.0, 1.0].map(|v| named.apply(v)), [Some(5.0), Some(6.0)]);
-        let number = Conversion::of(&terminal(Kind::Int32, None), &of(&b), &[Hop::default()], &[]);
+        let number = WireConversion::of(&terminal(VariableType::Int32, None), &of(&b), &[Hop::default()], &[]);
         let number = number.unwrap();
         assert_eq!([5.0, 7.0].map(|v| number.apply(v)), [Some(5.0), None]);
     }

@@ -1,7 +1,7 @@
 //! Determines duration and step of a run: from the command line, the structure, or the FMUs.
 
 use super::flat::Flat;
-use super::ssp::structure::Structure;
+use super::ssp::structure::SystemStructure;
 use octant_fmu_host::description::Description;
 
 /// Maximum number of steps of a run: with more, the step is surely too short.
@@ -9,7 +9,7 @@ const STEPS_MAX: f64 = 1e12;
 
 /// Settings of the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Said {
+pub struct GivenSettings {
     /// Start, s.
     pub start_s: Option<f64>,
     /// End, s.
@@ -87,7 +87,7 @@ pub enum ExperimentError {
 
 /// Duration and step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Experiment {
+pub struct RunExperiment {
     /// Start, s.
     pub start_s: f64,
     /// Communication step, s.
@@ -96,14 +96,14 @@ pub struct Experiment {
     pub steps: u64,
 }
 
-impl Experiment {
+impl RunExperiment {
     /// Chooses among the settings of command line, structure and FMUs.
     ///
     /// # Errors
     /// If none is given, or they contradict each other.
     pub fn of(
-        said: &Said,
-        structure: &Structure,
+        said: &GivenSettings,
+        structure: &SystemStructure,
         flat: &Flat,
         descriptions: &[&Description],
     ) -> Result<Self, ExperimentError> {

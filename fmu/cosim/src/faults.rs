@@ -1,30 +1,30 @@
 //! Faults on connections, resolved in a system: which wires, in which unit, on which condition.
 
-use super::convert::Unit;
-use super::system::{Spot, System, Wire};
+use super::convert::WireUnit;
+use super::system::{Spot, System, NumberPath};
 use super::values::{is_float, kind_name, limits};
 use octant_base::names::nearest;
-use octant_faults::catalogue::{Bounds, Parameter, Takes};
+use octant_faults::catalogue::{ParameterBounds, FaultParameter, Takes};
 use octant_faults::connection::kinds::Target;
-use octant_faults::connection::{Spec, Station};
-use octant_faults::{BuildError, Value, Values};
-use octant_fmu_host::description::{Description, Kind};
+use octant_faults::connection::{ConnectionFaultSpec, ConnectionStation};
+use octant_faults::{FaultBuildError, Value, Values};
+use octant_fmu_host::description::{Description, VariableType};
 use octant_scenario::{ConnectionFault, Given, Problem, ScenarioError, quantity_of};
 
 /// Faults of a run, ready to act.
 #[derive(Debug)]
 pub struct Faulting {
     /// The faults themselves; elements are the numbers of the wires.
-    pub station: Station,
+    pub station: ConnectionStation,
     /// Condition of each fault that waits for a value of an output.
-    pub conditions: Vec<Option<Condition>>,
+    pub conditions: Vec<Option<OutputCondition>>,
     /// Steps at which faults are triggered by hand, in order.
     pub fires: Vec<(u64, String)>,
 }
 
 /// A condition on an output.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Condition {
+pub struct OutputCondition {
     /// The output.
     pub spot: Spot,
     /// True if it waits for values above; else below.
@@ -33,7 +33,7 @@ pub struct Condition {
     pub value: f64,
 }
 
-impl Condition {
+impl OutputCondition {
     /// Returns whether the condition holds for a value; `None` for NaN.
     #[must_use]
     pub fn holds(&self, value: f64) -> Option<bool> {
@@ -130,10 +130,10 @@ impl Faulting {
             fires.extend(fault.fires.iter().map(|at| (*at, fault.id.clone())));
         }
         fires.sort_unstable();
-        let station = Station::new(&specs, seed, step_s).map_err(|(id, error)| {
+        let station = ConnectionStation::new(&specs, seed, step_s).map_err(|(id, error)| {
             let fault = faults.iter().find(|fault| fault.id == id);
             let (key, message) = match error {
-                BuildError::Value { parameter, problem } => (parameter, problem),
+                FaultBuildError::Value { parameter, problem } => (parameter, problem),
                 other => ("id", other.to_string()),
             };
             let problem = fault.map(|fault| fault.problem(key, message.clone()));
@@ -151,7 +151,7 @@ impl Faulting {
 }
 
 /// Builds a fault's specification: its wires, and its values in their unit.
-fn spec(fault: &ConnectionFault, system: &System) -> Result<Spec, Problem> {
+fn spec(fault: &ConnectionFault, system: &System) -> Result<ConnectionFaultSpec, Problem> {
     let wires =
         wires(&fault.connection, system).map_err(|message| fault.problem("connection", message))?;
     let mut elements = Vec::with_capacity(wires.len());
@@ -177,7 +177,7 @@ fn spec(fault: &ConnectionFault, system: &System) -> Result<Spec, Problem> {
             set.map_err(|message| fault.problem(parameter.name, message))?;
         }
     }
-    Ok(Spec {
+    Ok(ConnectionFaultSpec {
         id: fault.id.clone(),
         kind: fault.kind,
         values,
@@ -187,12 +187,12 @@ fn spec(fault: &ConnectionFault, system: &System) -> Result<Spec, Problem> {
 }
 
 /// Returns the type of an input as a fault's target; `None` if no fault can alter it.
-fn target(kind: Kind) -> Option<Target> {
+fn target(kind: VariableType) -> Option<Target> {
     Some(match kind {
-        Kind::Float64 => Target::Float64,
-        Kind::Float32 => Target::Float32,
-        Kind::Boolean => Target::Boolean,
-        Kind::Enumeration => Target::Enumeration,
+        VariableType::Float64 => Target::Float64,
+        VariableType::Float32 => Target::Float32,
+        VariableType::Boolean => Target::Boolean,
+        VariableType::Enumeration => Target::Enumeration,
         other => {
             let (from, to) = limits(other)?;
             Target::Integer(from, to)
@@ -245,9 +245,9 @@ fn wires(name: &str, system: &System) -> Result<Vec<usize>, String> {
 
 fn given_value(
     values: &mut Values,
-    parameter: &'static Parameter,
+    parameter: &'static FaultParameter,
     given: &Given,
-    wire: &Wire,
+    wire: &NumberPath,
 ) -> Result<(), String> {
     if let (Takes::Value, Given::Text(text)) = (parameter.takes, given)
         && text == "last"
@@ -268,10 +268,10 @@ fn given_value(
         ))
     };
     let number = match (kind, given) {
-        (Kind::Boolean, Given::Flag(flag)) => f64::from(u8::from(*flag)),
-        (Kind::Boolean, _) => return wrong("true or false"),
+        (VariableType::Boolean, Given::Flag(flag)) => f64::from(u8::from(*flag)),
+        (VariableType::Boolean, _) => return wrong("true or false"),
         (_, Given::Flag(_)) => return wrong("a number"),
-        (Kind::Enumeration, Given::Text(text)) => {
+        (VariableType::Enumeration, Given::Text(text)) => {
             let item = wire.items.iter().find(|(_, name)| name == text);
             let names: Vec<&str> = wire.items.iter().map(|(_, name)| name.as_str()).collect();
             match item {
@@ -285,8 +285,8 @@ fn given_value(
     };
     if let Takes::Difference(bounds) = parameter.takes {
         let words = match bounds {
-            Bounds::NotZero if number == 0.0 => Some("a value other than 0"),
-            Bounds::Positive if !(number > 0.0) => Some("a value above 0"),
+            ParameterBounds::NotZero if number == 0.0 => Some("a value other than 0"),
+            ParameterBounds::Positive if !(number > 0.0) => Some("a value above 0"),
             _ => None,
         };
         if let Some(words) = words {
@@ -300,7 +300,7 @@ fn given_value(
 }
 
 /// Converts a quantity into a unit.
-fn in_unit_of(text: &str, unit: Option<&Unit>, takes: Takes) -> Result<f64, String> {
+fn in_unit_of(text: &str, unit: Option<&WireUnit>, takes: Takes) -> Result<f64, String> {
     let Some(unit) = unit else {
         return Err("and the input has no unit: expected a plain number".to_owned());
     };
@@ -323,7 +323,7 @@ fn condition(
     names: &[&str],
     system: &System,
     descriptions: &[&Description],
-) -> Result<Condition, String> {
+) -> Result<OutputCondition, String> {
     let written = written(when, names)?;
     let description = descriptions[written.node];
     let found = system.output(written.node, written.variable, description).ok_or_else(|| {
@@ -333,10 +333,10 @@ fn condition(
     let value = match written.value.parse::<f64>() {
         Ok(number) if number.is_finite() => number,
         _ => {
-            let unit = Unit::of_variable(description, variable);
+            let unit = WireUnit::of_variable(description, variable);
             in_unit_of(written.value, unit.as_ref(), Takes::Value)
                 .map_err(|message| format!("found {when:?}: {:?}, {message}", written.value))?
         }
     };
-    Ok(Condition { spot, above: written.above, value })
+    Ok(OutputCondition { spot, above: written.above, value })
 }

@@ -3,8 +3,8 @@
 use super::ssp::SspError;
 use super::ssp::parameters::{Literal, Transformation};
 use super::ssp::structure::{
-    Binding, Component, Connection, Connector, ConnectorKind, End, Implementation, Part, Structure,
-    System,
+    Binding, SystemComponent, Connection, Connector, ConnectorKind, ConnectionEnd, Implementation, SystemElement, SystemStructure,
+    SspSystem,
 };
 use octant_base::names::suggestion;
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ pub struct FlatParameter {
 
 /// A connector of an FMU.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Port {
+pub struct FmuConnector {
     /// Number of the FMU.
     pub component: usize,
     /// The connector.
@@ -68,11 +68,11 @@ pub struct Port {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatWire {
     /// Source of the values.
-    pub from: Port,
+    pub from: FmuConnector,
     /// Kind of that connector.
     pub from_kind: ConnectorKind,
     /// Destination of the values.
-    pub to: Port,
+    pub to: FmuConnector,
     /// Kind of that connector.
     pub to_kind: ConnectorKind,
     /// Operations on values on their way, one for each connection.
@@ -127,7 +127,7 @@ impl Flat {
     ///
     /// # Errors
     /// If a connection names a missing connector, or joins connectors that can't be connected.
-    pub fn of(structure: &Structure) -> Result<Self, SspError> {
+    pub fn of(structure: &SystemStructure) -> Result<Self, SspError> {
         let mut flattener = Flattener {
             file: &structure.file,
             elements: Vec::new(),
@@ -156,7 +156,7 @@ impl<'a> Flattener<'a> {
     }
 
     /// Adds a system and its contents; returns its number.
-    fn system(&mut self, system: &'a System, path: &str) -> Result<usize, SspError> {
+    fn system(&mut self, system: &'a SspSystem, path: &str) -> Result<usize, SspError> {
         let number = self.elements.len();
         let connectors = &system.connectors;
         self.elements.push(Element { path: path.to_owned(), connectors, component: None });
@@ -164,8 +164,8 @@ impl<'a> Flattener<'a> {
         for part in &system.elements {
             let inner = join(path, part.name());
             let element = match part {
-                Part::System(system) => self.system(system, &inner)?,
-                Part::Component(component) => self.component(component, inner),
+                SystemElement::System(system) => self.system(system, &inner)?,
+                SystemElement::Component(component) => self.component(component, inner),
             };
             parts.push((part.name(), element));
         }
@@ -181,7 +181,7 @@ impl<'a> Flattener<'a> {
         Ok(number)
     }
 
-    fn component(&mut self, component: &'a Component, path: String) -> usize {
+    fn component(&mut self, component: &'a SystemComponent, path: String) -> usize {
         let parameters =
             component.bindings.iter().flat_map(|binding| self.bound(binding)).collect();
         self.elements.push(Element {
@@ -347,7 +347,7 @@ impl<'a> Flattener<'a> {
     fn end(
         &self,
         connection: &Connection,
-        end: &End,
+        end: &ConnectionEnd,
         system: usize,
         parts: &[(&str, usize)],
     ) -> Result<(Place, bool), SspError> {
@@ -435,9 +435,9 @@ impl<'a> Flattener<'a> {
                 return Err(self.error(last.line, "Connection", message));
             }
             let wire = FlatWire {
-                from: Port { component: source, connector: at.1.clone() },
+                from: FmuConnector { component: source, connector: at.1.clone() },
                 from_kind: from.kind,
-                to: Port { component, connector: sink.1.clone() },
+                to: FmuConnector { component, connector: sink.1.clone() },
                 to_kind: to.kind,
                 hops,
                 line: last.line,

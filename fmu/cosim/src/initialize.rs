@@ -3,11 +3,11 @@
 
 use super::error::MasterError;
 use super::graph;
-use super::solve::{Limits, SolveError, Solved, solve};
-use super::system::{Side, System, Wire};
+use super::solve::{IterationLimits, SolveError, Solved, solve};
+use super::system::{ExchangeSide, System, NumberPath};
 use super::values::is_float;
 use octant_fmu_host::description::{Causality, Description, Initial};
-use octant_fmu_host::instance::{Group, Instance, InstanceError};
+use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError};
 use std::collections::BTreeMap;
 
 /// Loop that was found.
@@ -48,14 +48,14 @@ pub(super) struct Initializer<'a> {
 
 /// Wire with its ends in the graph.
 struct Link<'a> {
-    wire: &'a Wire,
+    wire: &'a NumberPath,
     from: Vertex,
     to: Vertex,
 }
 
 impl Initializer<'_> {
     /// Gives every connected input its first value. All FMUs are in initialization mode.
-    pub(super) fn run(mut self, limits: &Limits) -> Result<Vec<Loop>, MasterError> {
+    pub(super) fn run(mut self, limits: &IterationLimits) -> Result<Vec<Loop>, MasterError> {
         let system = self.system;
         let vertices = vertices(system);
         let number: BTreeMap<Vertex, usize> =
@@ -117,7 +117,7 @@ impl Initializer<'_> {
         needed.copied().collect()
     }
 
-    fn side(&self, vertex: Vertex) -> &Side {
+    fn side(&self, vertex: Vertex) -> &ExchangeSide {
         side(self.system, vertex)
     }
 
@@ -164,7 +164,7 @@ impl Initializer<'_> {
         let instance = &mut self.instances[vertex.node];
         let description = instance.description();
         let variable = &description.variables[side.variables[vertex.at]];
-        let group = Group::of(description, variable);
+        let group = VariableGroup::of(description, variable);
         let result = group.and_then(|group| match vertex.of {
             Of::Output => instance.get(&group, &mut self.outputs[vertex.node][range]),
             Of::Input => instance.set(&group, &self.inputs[vertex.node][range]),
@@ -179,7 +179,7 @@ impl Initializer<'_> {
         members: &[Vertex],
         links: &[Link<'_>],
         fixed: &mut [Vec<f64>],
-        limits: &Limits,
+        limits: &IterationLimits,
     ) -> Result<Loop, MasterError> {
         // Values from outside the loop are known already.
         let mut inside: Vec<&Link<'_>> = Vec::new();
@@ -247,7 +247,7 @@ impl Initializer<'_> {
     }
 }
 
-impl Wire {
+impl NumberPath {
     /// Returns the value at the end of the wire.
     #[inline]
     pub(super) fn convert(&self, value: f64, time_s: f64) -> Result<f64, MasterError> {
@@ -267,7 +267,7 @@ impl Wire {
     }
 }
 
-fn side(system: &System, vertex: Vertex) -> &Side {
+fn side(system: &System, vertex: Vertex) -> &ExchangeSide {
     let node = &system.nodes[vertex.node];
     match vertex.of {
         Of::Input => &node.inputs,
@@ -290,11 +290,11 @@ fn vertices(system: &System) -> Vec<Vertex> {
 
 /// Lists all wires with their ends in the graph.
 fn links<'a>(system: &'a System) -> Vec<Link<'a>> {
-    let holds = |side: &Side, place: usize| {
+    let holds = |side: &ExchangeSide, place: usize| {
         side.plan.places.iter().position(|range| range.contains(&place)).unwrap_or(0)
     };
-    let link = |wire: &'a Wire, of| {
-        let Wire { from, to, .. } = wire;
+    let link = |wire: &'a NumberPath, of| {
+        let NumberPath { from, to, .. } = wire;
         let at = holds(&system.nodes[from.node].outputs, from.place);
         let from = Vertex { node: from.node, of: Of::Output, at };
         let into = side(system, Vertex { node: to.node, of, at: 0 });
@@ -308,7 +308,7 @@ fn links<'a>(system: &'a System) -> Vec<Link<'a>> {
 /// description doesn't say, so it depends on all.
 fn dependencies(description: &Description, number: usize) -> Option<Vec<u32>> {
     let variable = &description.variables[number];
-    let of = |list: &[octant_fmu_host::description::Unknown]| {
+    let of = |list: &[octant_fmu_host::description::ModelUnknown]| {
         list.iter().find(|unknown| unknown.reference == variable.reference).cloned()
     };
     if let Some(unknown) = of(&description.structure.initial_unknowns) {

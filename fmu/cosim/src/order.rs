@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// Stepping order of a master.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Order {
+pub enum SteppingOrder {
     /// All FMUs step from the same values: those at the beginning of the step. Each connection of a
     /// loop delays by one step.
     #[default]
@@ -50,7 +50,7 @@ pub enum OrderError {
     },
 }
 
-impl FromStr for Order {
+impl FromStr for SteppingOrder {
     type Err = OrderError;
 
     fn from_str(text: &str) -> Result<Self, OrderError> {
@@ -69,7 +69,7 @@ impl FromStr for Order {
     }
 }
 
-impl fmt::Display for Order {
+impl fmt::Display for SteppingOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Jacobi => f.write_str("jacobi"),
@@ -78,7 +78,7 @@ impl fmt::Display for Order {
     }
 }
 
-impl Order {
+impl SteppingOrder {
     /// Returns the indices of the FMUs in their order; each must be named once.
     ///
     /// # Errors
@@ -114,20 +114,20 @@ mod tests {
     #[test]
     fn an_order_is_written_and_read() {
         let names = ["plant", "ship", "calibrator"];
-        assert_eq!("jacobi".parse::<Order>().unwrap().of(&names).unwrap(), [0, 1, 2]);
-        let order: Order = "gauss-seidel=calibrator, plant,ship".parse().unwrap();
+        assert_eq!("jacobi".parse::<SteppingOrder>().unwrap().of(&names).unwrap(), [0, 1, 2]);
+        let order: SteppingOrder = "gauss-seidel=calibrator, plant,ship".parse().unwrap();
         assert_eq!(order.of(&names).unwrap(), [2, 0, 1]);
-        assert_eq!(order.to_string().parse::<Order>().unwrap(), order);
+        assert_eq!(order.to_string().parse::<SteppingOrder>().unwrap(), order);
         for (text, expected) in [
             ("gauss-seidel=plant,ship", "leaves out calibrator"),
             ("gauss-seidel=plant,ship,ship,calibrator", "twice"),
             ("gauss-seidel=plant,ship,calibrater", "did you mean \"calibrator\"?"),
         ] {
-            let error = text.parse::<Order>().unwrap().of(&names).unwrap_err();
+            let error = text.parse::<SteppingOrder>().unwrap().of(&names).unwrap_err();
             assert!(error.to_string().contains(expected), "{error}");
         }
         for text in ["", "gauss", "gauss-seidel=", "gauss-seidel=a,,b", "Jacobi"] {
-            assert!(text.parse::<Order>().is_err(), "{text}");
+            assert!(text.parse::<SteppingOrder>().is_err(), "{text}");
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Parameters and start values of the FMUs of a system: from the files of the structure, and from the
 //! command line.
 
-use super::convert::{Conversion, Terminal, Unit};
+use super::convert::{WireConversion, Terminal, WireUnit};
 use super::flat::{Flat, FlatComponent, FlatParameter};
 use super::ssp::SspError;
-use super::ssp::structure::Structure;
+use super::ssp::structure::SystemStructure;
 use octant_base::names::suggestion;
-use octant_fmu_host::description::{Description, Kind, Variable};
-use octant_mapping::settings::{Settings, Starts};
+use octant_fmu_host::description::{Description, VariableType, Variable};
+use octant_mapping::settings::{ValueSettings, Starts};
 use octant_scenario::Set;
 
 /// Collects the values that are set in the FMUs of a system before they start, in the order of the
@@ -18,14 +18,14 @@ use octant_scenario::Set;
 /// If a value doesn't fit its variable; for `set`, arguments `FMU.VARIABLE=VALUE`, also if there is
 /// no such variable.
 pub fn starts(
-    structure: &Structure,
+    structure: &SystemStructure,
     flat: &Flat,
     descriptions: &[&Description],
     set: &[String],
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Starts>, SspError> {
-    let mut all: Vec<Settings<'_>> =
-        descriptions.iter().map(|description| Settings::new(description)).collect();
+    let mut all: Vec<ValueSettings<'_>> =
+        descriptions.iter().map(|description| ValueSettings::new(description)).collect();
     for (number, component) in flat.components.iter().enumerate() {
         let mut arrays: Vec<Array<'_>> = Vec::new();
         for parameter in &component.parameters {
@@ -142,7 +142,7 @@ fn put<'a>(
 /// Returns the values of a parameter in the unit and type of its variable; `None` if there is no
 /// such variable.
 fn values(
-    structure: &Structure,
+    structure: &SystemStructure,
     description: &Description,
     parameter: &FlatParameter,
 ) -> Result<Option<Vec<Set>>, String> {
@@ -152,7 +152,7 @@ fn values(
     let items = items.unwrap_or_default();
     let to = Terminal {
         kind: variable.kind,
-        unit: Unit::of_variable(description, variable),
+        unit: WireUnit::of_variable(description, variable),
         items,
         enumeration: None,
     };
@@ -165,14 +165,14 @@ fn values(
     let unit = literal.unit.as_ref();
     let from = Terminal {
         kind: literal.kind,
-        unit: unit.map(|(name, base)| Unit::named(name, &[(name.clone(), *base)])),
+        unit: unit.map(|(name, base)| WireUnit::named(name, &[(name.clone(), *base)])),
         items: &[],
         enumeration: None,
     };
     let direct = [super::flat::Hop::default()];
     let hops = if parameter.hops.is_empty() { &direct[..] } else { &parameter.hops };
     let conversion =
-        Conversion::of(&from, &to, hops, &structure.units).map_err(|error| error.to_string())?;
+        WireConversion::of(&from, &to, hops, &structure.units).map_err(|error| error.to_string())?;
     let values = literal.numbers.iter().map(|number| {
         let value = conversion.apply(*number).ok_or_else(|| {
             format!(
@@ -181,7 +181,7 @@ fn values(
                 variable.kind.name()
             )
         })?;
-        Ok(if variable.kind == Kind::Boolean {
+        Ok(if variable.kind == VariableType::Boolean {
             Set::Flag(value != 0.0)
         } else {
             Set::Number(value)

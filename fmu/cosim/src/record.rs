@@ -5,15 +5,15 @@
 
 use super::error::MasterError;
 use super::simulation::Simulation;
-use super::system::{Side, System, element_names};
-use crate::single::output::{Column, Outputs, Sink, SinkError};
+use super::system::{ExchangeSide, System, element_names};
+use crate::single::output::{OutputColumn, Outputs, Sink, SinkError};
 use octant_fmu_host::description::Description;
 use std::io;
 use std::path::Path;
 
 /// Reasons why a row can't be recorded.
 #[derive(Debug, thiserror::Error)]
-pub enum RecordError {
+pub enum RowError {
     /// An FMU failed when its outputs were read.
     #[error(transparent)]
     Master(#[from] MasterError),
@@ -23,7 +23,7 @@ pub enum RecordError {
 }
 
 /// Writes rows into files.
-pub struct Recorder {
+pub struct RowRecorder {
     outputs: Outputs,
     numbers: Vec<f64>,
     sinks: Vec<Sink>,
@@ -32,7 +32,7 @@ pub struct Recorder {
     rows: u64,
 }
 
-impl Recorder {
+impl RowRecorder {
     /// Creates the files of these paths, `.mcap` or `.csv`.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Recorder {
         }
         let numbers = vec![0.0; place];
         let outputs = Outputs {
-            plan: octant_fmu_host::instance::Plan::default(),
+            plan: octant_fmu_host::instance::AccessPlan::default(),
             columns,
             left_out: Vec::new(),
         };
@@ -82,7 +82,7 @@ impl Recorder {
         simulation: &mut Simulation<'_>,
         system: &System,
         last: bool,
-    ) -> Result<(), RecordError> {
+    ) -> Result<(), RowError> {
         if !simulation.steps().is_multiple_of(self.every) && !last {
             return Ok(());
         }
@@ -124,12 +124,12 @@ impl Recorder {
     }
 }
 
-fn of_side(node: &str, side: &Side, description: &Description, first: usize) -> Vec<Column> {
+fn of_side(node: &str, side: &ExchangeSide, description: &Description, first: usize) -> Vec<OutputColumn> {
     let mut columns = Vec::new();
     for (number, range) in side.variables.iter().zip(&side.plan.places) {
         let variable = &description.variables[*number];
         for (name, place) in element_names(description, variable).into_iter().zip(range.clone()) {
-            columns.push(Column {
+            columns.push(OutputColumn {
                 name: format!("{node}.{name}"),
                 kind: variable.kind,
                 place: first + place,

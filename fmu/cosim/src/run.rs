@@ -1,23 +1,23 @@
 //! Runs a system from its file to its results: `octant run FILE.ssp`.
 
 use super::error::MasterError;
-use super::experiment::{Experiment, Said};
+use super::experiment::{RunExperiment, GivenSettings};
 use super::faults::{Faulting, looked_at};
 use super::flat::Flat;
-use super::order::Order;
+use super::order::SteppingOrder;
 use super::parameters;
-use super::record::{ConnectionHash, RecordError, Recorder};
-use super::simulation::{Abilities, Settings, Simulation};
-use super::solve::Limits;
+use super::record::{ConnectionHash, RowError, RowRecorder};
+use super::simulation::{Abilities, SteppingSettings, Simulation};
+use super::solve::IterationLimits;
 use super::ssp::SspError;
 use super::ssp::annotation::FaultsText;
 use super::ssp::package::Package;
-use super::ssp::structure::{Implementation, Structure};
-use super::summary::{Ended, FmuResult, LoopResult, SCHEMA, Summary};
+use super::ssp::structure::{Implementation, SystemStructure};
+use super::summary::{SystemEnded, FmuResult, LoopResult, SCHEMA, SystemSummary};
 use super::system::System;
 use octant_base::control::Control;
 use octant_fmu_host::description::Description;
-use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
+use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace, open};
 use octant_mapping::settings::Starts;
 use octant_recorder::Event;
 use octant_requirements::Verdict;
@@ -39,9 +39,9 @@ pub struct Request {
     /// The system: an `.ssp`, an `.ssd`, or a folder with one.
     pub path: PathBuf,
     /// Start, end and step, where the command line gives them.
-    pub said: Said,
+    pub said: GivenSettings,
     /// Order, where the command line gives it.
-    pub order: Option<Order>,
+    pub order: Option<SteppingOrder>,
     /// Seed, where the command line gives it.
     pub seed: Option<u64>,
     /// File of faults, instead of those of the structure.
@@ -51,7 +51,7 @@ pub struct Request {
     /// Arguments `FMU.VARIABLE=VALUE` that set parameters and start values.
     pub set: Vec<String>,
     /// Process in which the FMUs run.
-    pub place: Place,
+    pub place: ProcessPlace,
     /// Number of steps between recorded rows.
     pub every: Option<u64>,
 }
@@ -82,14 +82,14 @@ impl PrepareError {
 }
 
 /// System that can be run.
-pub struct Prepared {
+pub struct PreparedSystem {
     request: Request,
     package: Package,
-    structure: Structure,
+    structure: SystemStructure,
     flat: Flat,
     system: System,
-    settings: Settings,
-    order: Order,
+    settings: SteppingSettings,
+    order: SteppingOrder,
     seed: u64,
     instances: Vec<Box<dyn Instance>>,
     descriptions: Vec<Description>,
@@ -100,20 +100,20 @@ pub struct Prepared {
     warnings: Vec<String>,
 }
 
-impl Prepared {
+impl PreparedSystem {
     /// Reads a system, opens its FMUs, and resolves every name in them.
     ///
     /// # Errors
     /// If anything doesn't fit; no step was made then.
     pub fn new(request: Request) -> Result<Self, PrepareError> {
         let package = Package::open(&request.path)?;
-        let structure = Structure::read(&package)?;
+        let structure = SystemStructure::read(&package)?;
         let flat = Flat::of(&structure)?;
         let instances = open_all(&structure, &flat, request.place)?;
         let descriptions: Vec<Description> =
             instances.iter().map(|instance| instance.description().clone()).collect();
         let described: Vec<&Description> = descriptions.iter().collect();
-        let experiment = Experiment::of(&request.said, &structure, &flat, &described)
+        let experiment = RunExperiment::of(&request.said, &structure, &flat, &described)
             .map_err(|error| SspError::of_file(&structure.file, error.to_string()))?;
         let names: Vec<&str> = flat.components.iter().map(|c| c.name.as_str()).collect();
         let ours = &structure.co_simulation;
@@ -152,14 +152,14 @@ impl Prepared {
                 interface.as_ref().map_or_else(Abilities::default, |i| Abilities::of(i, exchange))
             })
             .collect();
-        let settings = Settings {
+        let settings = SteppingSettings {
             order: numbers,
-            jacobi: order == Order::Jacobi,
+            jacobi: order == SteppingOrder::Jacobi,
             start_s: experiment.start_s,
             step_s,
             steps,
             tolerance: None,
-            loops: Limits::default(),
+            loops: IterationLimits::default(),
             halvings: HALVINGS,
         };
         Ok(Self {
@@ -257,7 +257,7 @@ impl Prepared {
         }
         let ended_by = simulation.initialize()?;
         let name = if self.structure.name.is_empty() { "system" } else { &self.structure.name };
-        let mut recorder = Recorder::new(&system, &described, name, paths, every)
+        let mut recorder = RowRecorder::new(&system, &described, name, paths, every)
             .map_err(|error| PrepareError::Usage(error.to_string()))?;
         let mut hash = ConnectionHash::default();
         let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch };
@@ -265,12 +265,12 @@ impl Prepared {
         let mut messages: Vec<(String, String)> = Vec::new();
         let mut fmus = Vec::with_capacity(system.nodes.len());
         let ended = match (ended, simulation.terminate()) {
-            (Ok(_), Err(error)) => Ended::Failed {
+            (Ok(_), Err(error)) => SystemEnded::Failed {
                 at_s: simulation.time_s(simulation.steps()),
                 reason: format!("failed to end the FMUs: {error}"),
             },
             (Ok(ended), Ok(())) => ended,
-            (Err(error), _) => Ended::Failed {
+            (Err(error), _) => SystemEnded::Failed {
                 at_s: simulation.time_s(simulation.steps().saturating_sub(1)),
                 reason: error.to_string(),
             },
@@ -307,7 +307,7 @@ impl Prepared {
             Err(error) => (Verdict::Error, vec![format!("failed to write the recording: {error}")]),
         };
         Ok(Results {
-            summary: Summary {
+            summary: SystemSummary {
                 schema: SCHEMA,
                 octant: env!("CARGO_PKG_VERSION").to_owned(),
                 system: name.to_owned(),
@@ -338,14 +338,14 @@ impl Prepared {
 #[derive(Clone, Debug)]
 pub struct Results {
     /// The summary.
-    pub summary: Summary,
+    pub summary: SystemSummary,
     /// Messages that FMUs logged: the name of the FMU, and its text.
     pub messages: Vec<(String, String)>,
 }
 
 /// Receivers of every communication point.
 struct Kept<'a, W> {
-    recorder: &'a mut Recorder,
+    recorder: &'a mut RowRecorder,
     hash: &'a mut ConnectionHash,
     watch: &'a mut W,
 }
@@ -354,11 +354,11 @@ struct Kept<'a, W> {
 fn drive<W>(
     simulation: &mut Simulation<'_>,
     system: &System,
-    settings: &Settings,
+    settings: &SteppingSettings,
     kept: Kept<'_, W>,
     mut ended_by: Option<usize>,
     control: &Control,
-) -> Result<Ended, RecordError>
+) -> Result<SystemEnded, RowError>
 where
     W: FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
 {
@@ -370,13 +370,13 @@ where
         watch(simulation, system)?;
         recorder.row(simulation, system, last)?;
         if let Some(node) = ended_by {
-            return Ok(Ended::AskedByFmu { fmu: system.nodes[node].name.clone(), at_s });
+            return Ok(SystemEnded::AskedByFmu { fmu: system.nodes[node].name.clone(), at_s });
         }
         if last {
-            return Ok(Ended::AtStop);
+            return Ok(SystemEnded::AtStop);
         }
         if control.look(simulation.steps()) {
-            return Ok(Ended::Interrupted { at_s });
+            return Ok(SystemEnded::Interrupted { at_s });
         }
         ended_by = simulation.advance()?;
         tell_faults(simulation, recorder, at_s)?;
@@ -386,7 +386,7 @@ where
 /// Writes onsets and ends of faults into the recording.
 fn tell_faults(
     simulation: &mut Simulation<'_>,
-    recorder: &mut Recorder,
+    recorder: &mut RowRecorder,
     at_s: f64,
 ) -> std::io::Result<()> {
     let Some(station) = simulation.station() else { return Ok(()) };
@@ -405,16 +405,16 @@ fn tell_faults(
 }
 
 /// Determines the verdict of a run, with its reasons.
-fn judge(ended: &Ended, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
+fn judge(ended: &SystemEnded, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
     let mut reasons = Vec::new();
     let mut verdict = Verdict::None;
     match ended {
-        Ended::AtStop | Ended::AskedByFmu { .. } => {}
-        Ended::Interrupted { at_s } => {
+        SystemEnded::AtStop | SystemEnded::AskedByFmu { .. } => {}
+        SystemEnded::Interrupted { at_s } => {
             verdict = Verdict::Inconclusive;
             reasons.push(format!("interrupted at {at_s} s"));
         }
-        Ended::Failed { reason, .. } => {
+        SystemEnded::Failed { reason, .. } => {
             verdict = Verdict::Error;
             reasons.push(reason.clone());
         }
@@ -439,13 +439,13 @@ fn is_exchange(description: &Description, implementation: Implementation) -> boo
 }
 
 fn open_all(
-    structure: &Structure,
+    structure: &SystemStructure,
     flat: &Flat,
-    place: Place,
+    place: ProcessPlace,
 ) -> Result<Vec<Box<dyn Instance>>, SspError> {
     let mut instances = Vec::with_capacity(flat.components.len());
     for component in &flat.components {
-        let options = Options {
+        let options = OpenOptions {
             interface: match component.implementation {
                 Implementation::Any => InterfaceKind::Any,
                 Implementation::CoSimulation => InterfaceKind::CoSimulation,
@@ -453,7 +453,7 @@ fn open_all(
             },
             place,
             instance_name: Some(component.name.clone()),
-            ..Options::default()
+            ..OpenOptions::default()
         };
         let opened = open::open(&component.file, &options).map_err(|error| SspError {
             file: structure.file.clone(),
@@ -467,7 +467,7 @@ fn open_all(
         let others = &flat.components[..instances.len()];
         if let Some(other) = others.iter().find(|other| other.file == component.file)
             && once
-            && place == Place::ThisProcess
+            && place == ProcessPlace::ThisProcess
         {
             return Err(SspError {
                 file: structure.file.clone(),

@@ -13,19 +13,19 @@
 mod saved;
 mod settings;
 
-pub use settings::{Abilities, Counts, Settings};
+pub use settings::{Abilities, EventCounts, SteppingSettings};
 
 use super::error::MasterError;
 use super::faults::Faulting;
 use super::initialize::{Initializer, Loop};
-use super::system::{Side, System};
-use octant_faults::connection::Station;
-use octant_fmu_host::instance::{Instance, InstanceError, Outcome, Stepped};
+use super::system::{ExchangeSide, System};
+use octant_faults::connection::ConnectionStation;
+use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome, Stepped};
 
 /// FMUs that run together.
 pub struct Simulation<'a> {
     system: &'a System,
-    settings: &'a Settings,
+    settings: &'a SteppingSettings,
     instances: Vec<Box<dyn Instance>>,
     abilities: Vec<Abilities>,
     /// Faults on wires; elements are the numbers of the wires.
@@ -51,7 +51,7 @@ pub struct Simulation<'a> {
     step: u64,
     /// Number of faults that were triggered by hand so far.
     fired: usize,
-    counts: Vec<Counts>,
+    counts: Vec<EventCounts>,
     /// Number of parts of steps that were repeated.
     rejected: u64,
     loops: Vec<Loop>,
@@ -69,13 +69,13 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub fn new(
         system: &'a System,
-        settings: &'a Settings,
+        settings: &'a SteppingSettings,
         instances: Vec<Box<dyn Instance>>,
         abilities: Vec<Abilities>,
         faulting: Option<Faulting>,
     ) -> Self {
         let nodes = &system.nodes;
-        let numbers = |side: fn(&super::system::Node) -> &Side| -> Vec<Vec<f64>> {
+        let numbers = |side: fn(&super::system::SystemNode) -> &ExchangeSide| -> Vec<Vec<f64>> {
             nodes.iter().map(|node| vec![0.0; side(node).plan.elements]).collect()
         };
         let mut into = vec![Vec::new(); nodes.len()];
@@ -99,7 +99,7 @@ impl<'a> Simulation<'a> {
             rolls_back: able(|one| one.state) && able(|one| one.variable_step),
             step: 0,
             fired: 0,
-            counts: vec![Counts::default(); nodes.len()],
+            counts: vec![EventCounts::default(); nodes.len()],
             rejected: 0,
             loops: Vec::new(),
             system,
@@ -155,7 +155,7 @@ impl<'a> Simulation<'a> {
 
     /// Returns the counts of each FMU.
     #[must_use]
-    pub fn counts(&self) -> &[Counts] {
+    pub fn counts(&self) -> &[EventCounts] {
         &self.counts
     }
 
@@ -166,7 +166,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Returns the faults.
-    pub fn station(&mut self) -> Option<&mut Station> {
+    pub fn station(&mut self) -> Option<&mut ConnectionStation> {
         self.faulting.as_mut().map(|faulting| &mut faulting.station)
     }
 
@@ -300,7 +300,7 @@ impl<'a> Simulation<'a> {
             }
             let stepped = self.exchange(*node, time_s, length_s)?;
             match stepped.outcome {
-                Outcome::Discarded if !stepped.terminate => {
+                StepOutcome::Discarded if !stepped.terminate => {
                     return Ok(Attempt::Discarded { node: *node, reached_s: stepped.time_s });
                 }
                 _ if stepped.terminate => ended_by = ended_by.or(Some(*node)),
@@ -385,7 +385,7 @@ impl<'a> Simulation<'a> {
             let instance = &mut self.instances[node];
             let description = instance.description();
             let group =
-                octant_fmu_host::instance::Group::of(description, &description.variables[*number]);
+                octant_fmu_host::instance::VariableGroup::of(description, &description.variables[*number]);
             let set =
                 group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
             let error = match set {

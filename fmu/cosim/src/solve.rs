@@ -8,14 +8,14 @@
 
 /// Limits at which an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct IterationLimits {
     /// Largest |g(u) − u| of a value over its size (or its nominal, where that is larger).
     pub tolerance: f64,
     /// Maximum number of iterations.
     pub iterations: u32,
 }
 
-impl Default for Limits {
+impl Default for IterationLimits {
     fn default() -> Self {
         Self { tolerance: 1e-10, iterations: 100 }
     }
@@ -60,7 +60,7 @@ pub fn solve<E>(
     u: &mut [f64],
     nominal: &[f64],
     continuous: bool,
-    limits: &Limits,
+    limits: &IterationLimits,
     mut g: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
 ) -> Result<Solved, SolveError<E>> {
     let n = u.len();
@@ -187,7 +187,7 @@ mod tests {
         g: impl Fn(&[f64]) -> Vec<f64>,
     ) -> Result<Solved, SolveError<Infallible>> {
         let nominal = vec![1.0; u.len()];
-        solve(u, &nominal, continuous, &Limits::default(), |u, back| {
+        solve(u, &nominal, continuous, &IterationLimits::default(), |u, back| {
             back.copy_from_slice(&g(u));
             Ok(())
         })

@@ -12,7 +12,7 @@ pub const SCHEMA: u32 = 1;
 
 /// The summary.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct SystemSummary {
     /// Version of this form: [`SCHEMA`].
     pub schema: u32,
     /// Version of the program that made the run.
@@ -38,7 +38,7 @@ pub struct Summary {
     /// Steps, or parts of steps, that were repeated because an FMU discarded them.
     pub rejected: u64,
     /// End of the run.
-    pub ended: Ended,
+    pub ended: SystemEnded,
     /// Variables that depend on themselves at initialization, and their solution.
     pub loops: Vec<LoopResult>,
     /// Faults that were injected; samples are steps.
@@ -58,7 +58,7 @@ pub struct Summary {
 /// Ways in which a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "how", rename_all = "kebab-case")]
-pub enum Ended {
+pub enum SystemEnded {
     /// The run reached its end.
     AtStop,
     /// An FMU requested the end.
@@ -135,7 +135,7 @@ pub struct FmuResult {
     pub messages: usize,
 }
 
-impl Summary {
+impl SystemSummary {
     /// Returns the bytes of `summary.json`: pretty JSON with a final newline.
     ///
     /// # Errors
@@ -160,7 +160,7 @@ impl Summary {
             self.steps,
             self.step_s
         );
-        if let Ended::AskedByFmu { fmu, at_s } = &self.ended {
+        if let SystemEnded::AskedByFmu { fmu, at_s } = &self.ended {
             text += &format!("  {fmu} wanted it to end at {at_s} s\n");
         }
         if self.rejected > 0 {

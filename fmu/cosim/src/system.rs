@@ -3,50 +3,50 @@
 
 pub use super::elements::{element_names, index_of};
 
-use super::convert::{Conversion, Terminal, Unit};
+use super::convert::{WireConversion, Terminal, WireUnit};
 use super::elements::{Found, element_name, find};
-use super::flat::{Flat, FlatComponent, FlatWire, Port};
+use super::flat::{Flat, FlatComponent, FlatWire, FmuConnector};
 use super::ssp::SspError;
-use super::ssp::structure::{Connector, ConnectorKind, Structure};
+use super::ssp::structure::{Connector, ConnectorKind, SystemStructure};
 use super::values::{is_numeric, kind_name};
-use octant_fmu_host::description::{Causality, Description, Kind, Variability, Variable};
-use octant_fmu_host::instance::{Group, InstanceError, Plan};
+use octant_fmu_host::description::{Causality, Description, VariableType, Variability, Variable};
+use octant_fmu_host::instance::{VariableGroup, InstanceError, AccessPlan};
 
 /// System of FMUs, ready to be initialized.
 #[derive(Clone, Debug)]
 pub struct System {
     /// The FMUs.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<SystemNode>,
     /// Every number that is passed between FMUs at each communication point.
-    pub wires: Vec<Wire>,
+    pub wires: Vec<NumberPath>,
     /// Numbers passed from calculated parameters to parameters, during initialization only.
-    pub fixed: Vec<Wire>,
+    pub fixed: Vec<NumberPath>,
     /// Texts and bytes that are passed.
     pub texts: Vec<TextWire>,
 }
 
 /// An FMU of a system.
 #[derive(Clone, Debug)]
-pub struct Node {
+pub struct SystemNode {
     /// Name in the system.
     pub name: String,
     /// Variables that get values at every communication point.
-    pub inputs: Side,
+    pub inputs: ExchangeSide,
     /// Variables that get values only during initialization.
-    pub fixed: Side,
+    pub fixed: ExchangeSide,
     /// Variables whose values go to other FMUs.
-    pub outputs: Side,
+    pub outputs: ExchangeSide,
     /// Unconnected outputs that are only recorded.
-    pub watched: Side,
+    pub watched: ExchangeSide,
 }
 
 /// Variables of an FMU that are exchanged together, and the places of their numbers.
 #[derive(Clone, Debug, Default)]
-pub struct Side {
+pub struct ExchangeSide {
     /// Indices of the variables in the description.
     pub variables: Vec<usize>,
     /// Groups and places.
-    pub plan: Plan,
+    pub plan: AccessPlan,
 }
 
 /// Place of a number: FMU, and index on that side.
@@ -60,19 +60,19 @@ pub struct Spot {
 
 /// Number on its way from an output to an input.
 #[derive(Clone, Debug)]
-pub struct Wire {
+pub struct NumberPath {
     /// Place of the output.
     pub from: Spot,
     /// Place of the input.
     pub to: Spot,
     /// Conversion on the way.
-    pub conversion: Conversion,
+    pub conversion: WireConversion,
     /// Name of the output: `plant.imu.valid`, with the element of an array: `plant.x[2]`.
     pub source: String,
     /// Name of the input.
     pub target: String,
     /// Unit of the input.
-    pub unit: Option<Unit>,
+    pub unit: Option<WireUnit>,
     /// Values and names of the input's enumeration.
     pub items: Vec<(i64, String)>,
 }
@@ -81,9 +81,9 @@ pub struct Wire {
 #[derive(Clone, Debug)]
 pub struct TextWire {
     /// FMU and variable of the output.
-    pub from: (usize, Group),
+    pub from: (usize, VariableGroup),
     /// FMU and variable of the input.
-    pub to: (usize, Group),
+    pub to: (usize, VariableGroup),
     /// True for the bytes of a Binary.
     pub binary: bool,
     /// Name of the output.
@@ -100,7 +100,7 @@ impl System {
     /// If a connector isn't there, or differs from the structure, or values can't pass along a
     /// connection.
     pub fn new(
-        structure: &Structure,
+        structure: &SystemStructure,
         flat: &Flat,
         descriptions: &[&Description],
         also: &[(usize, String)],
@@ -113,7 +113,7 @@ impl System {
         }
         // Variables on each side of each FMU.
         let mut sides = vec![[const { Vec::new() }; 3]; descriptions.len()];
-        let mut add = |port: &Port, side: usize| -> Result<(), SspError> {
+        let mut add = |port: &FmuConnector, side: usize| -> Result<(), SspError> {
             let found = builder.find(port)?;
             let list: &mut Vec<usize> = &mut sides[port.component][side];
             if is_numeric(found.variable.kind) && !list.contains(&found.number) {
@@ -126,7 +126,7 @@ impl System {
             add(&wire.to, if is_fixed(wire) { 1 } else { 0 })?;
         }
         for (component, connector) in also {
-            add(&Port { component: *component, connector: connector.clone() }, 2)?;
+            add(&FmuConnector { component: *component, connector: connector.clone() }, 2)?;
         }
         let mut nodes = Vec::with_capacity(descriptions.len());
         for ((component, description), [inputs, fixed, outputs]) in
@@ -139,10 +139,10 @@ impl System {
             });
             let watched = watched.map(|(number, _)| number).collect();
             let side = |variables: Vec<usize>| {
-                Side::new(description, variables)
+                ExchangeSide::new(description, variables)
                     .map_err(|error| builder.of_component(component, error.to_string()))
             };
-            nodes.push(Node {
+            nodes.push(SystemNode {
                 name: component.name.clone(),
                 inputs: side(inputs)?,
                 fixed: side(fixed)?,
@@ -178,7 +178,7 @@ fn is_fixed(wire: &FlatWire) -> bool {
     wire.to_kind == ConnectorKind::Parameter
 }
 
-impl Side {
+impl ExchangeSide {
     /// Groups the variables of these indices.
     ///
     /// # Errors
@@ -186,7 +186,7 @@ impl Side {
     pub fn new(description: &Description, variables: Vec<usize>) -> Result<Self, InstanceError> {
         let list: Vec<&Variable> =
             variables.iter().map(|number| &description.variables[*number]).collect();
-        let plan = Plan::new(description, &list)?;
+        let plan = AccessPlan::new(description, &list)?;
         Ok(Self { variables, plan })
     }
 
@@ -198,7 +198,7 @@ impl Side {
 }
 
 struct Builder<'a> {
-    structure: &'a Structure,
+    structure: &'a SystemStructure,
     flat: &'a Flat,
     descriptions: &'a [&'a Description],
 }
@@ -220,7 +220,7 @@ impl<'a> Builder<'a> {
         component: &FlatComponent,
         connector: &Connector,
     ) -> Result<(), SspError> {
-        let port = Port { component: number, connector: connector.name.clone() };
+        let port = FmuConnector { component: number, connector: connector.name.clone() };
         let element = format!("Connector {:?} of {}", connector.name, component.name);
         let error = |message: String| self.error(connector.line, element.clone(), message);
         let found = self.find(&port)?;
@@ -257,10 +257,10 @@ impl<'a> Builder<'a> {
         }
         let Some(of_type) = &connector.of_type else { return Ok(()) };
         let whole = is_numeric(variable.kind)
-            && !matches!(variable.kind, Kind::Boolean | Kind::Float64 | Kind::Float32);
+            && !matches!(variable.kind, VariableType::Boolean | VariableType::Float64 | VariableType::Float32);
         let fits = match of_type.name.as_str() {
             // SSP 1.0 has one name for all types of a sort.
-            "Real" => matches!(variable.kind, Kind::Float64 | Kind::Float32),
+            "Real" => matches!(variable.kind, VariableType::Float64 | VariableType::Float32),
             "Integer" => whole,
             _ => variable.kind == of_type.kind,
         };
@@ -272,9 +272,9 @@ impl<'a> Builder<'a> {
                 kind_name(variable.kind)
             )));
         }
-        let own = Unit::of_variable(self.descriptions[number], variable);
+        let own = WireUnit::of_variable(self.descriptions[number], variable);
         if let (Some(said), Some(own)) = (&of_type.unit, own) {
-            let said = Unit::named(said, &self.structure.units);
+            let said = WireUnit::named(said, &self.structure.units);
             let same = said.to(&own).map_err(|reason| error(reason.to_string()))?;
             if !same.is_identity() && (same.factor - 1.0).abs() + same.offset.abs() > 1e-9 {
                 return Err(error(format!(
@@ -286,14 +286,14 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn connector(&self, port: &Port) -> Option<&'a Connector> {
+    fn connector(&self, port: &FmuConnector) -> Option<&'a Connector> {
         let connectors = &self.flat.components[port.component].connectors;
         connectors.iter().find(|connector| connector.name == port.connector)
     }
 
     /// Finds the variable behind a connector: by its name, or as an element of an array, `x[2]`,
     /// `m[1,3]`.
-    fn find(&self, port: &Port) -> Result<Found<'a>, SspError> {
+    fn find(&self, port: &FmuConnector) -> Result<Found<'a>, SspError> {
         let component = &self.flat.components[port.component];
         let line = self.connector(port).map_or(component.line, |connector| connector.line);
         let element = format!("Connector {:?} of {}", port.connector, component.name);
@@ -302,12 +302,12 @@ impl<'a> Builder<'a> {
         })
     }
 
-    fn terminal(&self, port: &Port, found: &Found<'a>) -> Terminal<'a> {
+    fn terminal(&self, port: &FmuConnector, found: &Found<'a>) -> Terminal<'a> {
         let description = self.descriptions[port.component];
         let of_type = self.connector(port).and_then(|connector| connector.of_type.as_ref());
         let said = of_type.and_then(|of_type| of_type.unit.as_ref());
-        let unit = Unit::of_variable(description, found.variable)
-            .or_else(|| said.map(|name| Unit::named(name, &self.structure.units)));
+        let unit = WireUnit::of_variable(description, found.variable)
+            .or_else(|| said.map(|name| WireUnit::named(name, &self.structure.units)));
         let items = found.variable.enumeration.as_ref();
         let enumeration = of_type.and_then(|of_type| of_type.enumeration.as_ref());
         let all = &self.structure.enumerations;
@@ -322,7 +322,7 @@ impl<'a> Builder<'a> {
     /// Adds the numbers, or the text, of a wire.
     fn wire(&self, wire: &FlatWire, system: &mut System) -> Result<(), SspError> {
         let (from, to) = (self.find(&wire.from)?, self.find(&wire.to)?);
-        let names = |port: &Port| {
+        let names = |port: &FmuConnector| {
             format!("{}.{}", self.flat.components[port.component].name, port.connector)
         };
         let (source, target) = (names(&wire.from), names(&wire.to));
@@ -336,17 +336,17 @@ impl<'a> Builder<'a> {
             )));
         }
         let (a, b) = (self.terminal(&wire.from, &from), self.terminal(&wire.to, &to));
-        let conversion = Conversion::of(&a, &b, &wire.hops, &self.structure.units)
+        let conversion = WireConversion::of(&a, &b, &wire.hops, &self.structure.units)
             .map_err(|reason| error(reason.to_string()))?;
         let (a_node, b_node) = (wire.from.component, wire.to.component);
         if !is_numeric(to.variable.kind) {
             let group = |node: usize, variable: &Variable| {
-                Group::of(self.descriptions[node], variable).map_err(|e| error(e.to_string()))
+                VariableGroup::of(self.descriptions[node], variable).map_err(|e| error(e.to_string()))
             };
             system.texts.push(TextWire {
                 from: (a_node, group(a_node, from.variable)?),
                 to: (b_node, group(b_node, to.variable)?),
-                binary: to.variable.kind == Kind::Binary,
+                binary: to.variable.kind == VariableType::Binary,
                 source: source.clone(),
                 target: target.clone(),
             });
@@ -359,15 +359,15 @@ impl<'a> Builder<'a> {
         else {
             return Err(error("its variables are not exchanged".to_owned()));
         };
-        let description = |port: &Port| self.descriptions[port.component];
+        let description = |port: &FmuConnector| self.descriptions[port.component];
         let list = if fixed { &mut system.fixed } else { &mut system.wires };
         for element in 0..from.count {
-            let name = |port: &Port, found: &Found<'_>| {
+            let name = |port: &FmuConnector, found: &Found<'_>| {
                 let of = &self.flat.components[port.component].name;
                 let element = element_name(description(port), found, element, &port.connector);
                 format!("{of}.{element}")
             };
-            list.push(Wire {
+            list.push(NumberPath {
                 from: Spot { node: a_node, place: out + from.first + element },
                 to: Spot { node: b_node, place: into + to.first + element },
                 conversion: conversion.clone(),

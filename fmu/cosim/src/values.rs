@@ -1,39 +1,39 @@
 //! Values passed between variables of different types.
 
-use octant_fmu_host::description::Kind;
+use octant_fmu_host::description::VariableType;
 
 /// Returns the name of a type.
 #[must_use]
-pub const fn kind_name(kind: Kind) -> &'static str {
+pub const fn kind_name(kind: VariableType) -> &'static str {
     match kind {
-        Kind::Float64 => "Float64",
-        Kind::Float32 => "Float32",
-        Kind::Int8 => "Int8",
-        Kind::UInt8 => "UInt8",
-        Kind::Int16 => "Int16",
-        Kind::UInt16 => "UInt16",
-        Kind::Int32 => "Int32",
-        Kind::UInt32 => "UInt32",
-        Kind::Int64 => "Int64",
-        Kind::UInt64 => "UInt64",
-        Kind::Boolean => "Boolean",
-        Kind::String => "String",
-        Kind::Binary => "Binary",
-        Kind::Enumeration => "Enumeration",
-        Kind::Clock => "Clock",
+        VariableType::Float64 => "Float64",
+        VariableType::Float32 => "Float32",
+        VariableType::Int8 => "Int8",
+        VariableType::UInt8 => "UInt8",
+        VariableType::Int16 => "Int16",
+        VariableType::UInt16 => "UInt16",
+        VariableType::Int32 => "Int32",
+        VariableType::UInt32 => "UInt32",
+        VariableType::Int64 => "Int64",
+        VariableType::UInt64 => "UInt64",
+        VariableType::Boolean => "Boolean",
+        VariableType::String => "String",
+        VariableType::Binary => "Binary",
+        VariableType::Enumeration => "Enumeration",
+        VariableType::Clock => "Clock",
     }
 }
 
 /// Returns whether a type is floating-point.
 #[must_use]
-pub const fn is_float(kind: Kind) -> bool {
-    matches!(kind, Kind::Float64 | Kind::Float32)
+pub const fn is_float(kind: VariableType) -> bool {
+    matches!(kind, VariableType::Float64 | VariableType::Float32)
 }
 
 /// Returns whether a type is passed as a number: all except texts, bytes and clocks.
 #[must_use]
-pub const fn is_numeric(kind: Kind) -> bool {
-    !matches!(kind, Kind::String | Kind::Binary | Kind::Clock)
+pub const fn is_numeric(kind: VariableType) -> bool {
+    !matches!(kind, VariableType::String | VariableType::Binary | VariableType::Clock)
 }
 
 /// Bound up to which whole numbers are exact in f64, the type in which they are passed.
@@ -42,24 +42,24 @@ const EXACT: f64 = (1u64 << 53) as f64;
 /// Returns the smallest and the largest value of a whole-number type (as far as they are exact);
 /// `None` for other types.
 #[must_use]
-pub const fn limits(kind: Kind) -> Option<(f64, f64)> {
+pub const fn limits(kind: VariableType) -> Option<(f64, f64)> {
     Some(match kind {
-        Kind::Int8 => (i8::MIN as f64, i8::MAX as f64),
-        Kind::UInt8 => (0.0, u8::MAX as f64),
-        Kind::Int16 => (i16::MIN as f64, i16::MAX as f64),
-        Kind::UInt16 => (0.0, u16::MAX as f64),
-        Kind::Int32 => (i32::MIN as f64, i32::MAX as f64),
-        Kind::UInt32 => (0.0, u32::MAX as f64),
-        Kind::Int64 | Kind::Enumeration => (-EXACT, EXACT),
-        Kind::UInt64 => (0.0, EXACT),
-        Kind::Boolean => (0.0, 1.0),
+        VariableType::Int8 => (i8::MIN as f64, i8::MAX as f64),
+        VariableType::UInt8 => (0.0, u8::MAX as f64),
+        VariableType::Int16 => (i16::MIN as f64, i16::MAX as f64),
+        VariableType::UInt16 => (0.0, u16::MAX as f64),
+        VariableType::Int32 => (i32::MIN as f64, i32::MAX as f64),
+        VariableType::UInt32 => (0.0, u32::MAX as f64),
+        VariableType::Int64 | VariableType::Enumeration => (-EXACT, EXACT),
+        VariableType::UInt64 => (0.0, EXACT),
+        VariableType::Boolean => (0.0, 1.0),
         _ => return None,
     })
 }
 
 /// Returns whether a type has a value without rounding. Every f64 fits Float32, by rounding.
 #[must_use]
-pub fn fits(value: f64, kind: Kind) -> bool {
+pub fn fits(value: f64, kind: VariableType) -> bool {
     match limits(kind) {
         Some((from, to)) => value >= from && value <= to && value == value.trunc(),
         None => is_float(kind),
@@ -69,8 +69,8 @@ pub fn fits(value: f64, kind: Kind) -> bool {
 /// Rounds a value to its type: only Float32 changes.
 #[inline]
 #[must_use]
-pub fn rounded(value: f64, kind: Kind) -> f64 {
-    if matches!(kind, Kind::Float32) { f64::from(value as f32) } else { value }
+pub fn rounded(value: f64, kind: VariableType) -> f64 {
+    if matches!(kind, VariableType::Float32) { f64::from(value as f32) } else { value }
 }
 
 #[cfg(test)]
@@ -80,20 +80,20 @@ mod tests {
     #[test]
     fn a_value_fits_a_type_or_does_not() {
         for (value, kind, expected) in [
-            (127.0, Kind::Int8, true),
-            (128.0, Kind::Int8, false),
-            (0.5, Kind::Int32, false),
-            (-1.0, Kind::UInt64, false),
-            (9007199254740992.0, Kind::UInt64, true),
-            (f64::NAN, Kind::Int32, false),
-            (f64::NAN, Kind::Float64, true),
-            (1.0, Kind::Boolean, true),
-            (2.0, Kind::Boolean, false),
-            (1.0, Kind::String, false),
+            (127.0, VariableType::Int8, true),
+            (128.0, VariableType::Int8, false),
+            (0.5, VariableType::Int32, false),
+            (-1.0, VariableType::UInt64, false),
+            (9007199254740992.0, VariableType::UInt64, true),
+            (f64::NAN, VariableType::Int32, false),
+            (f64::NAN, VariableType::Float64, true),
+            (1.0, VariableType::Boolean, true),
+            (2.0, VariableType::Boolean, false),
+            (1.0, VariableType::String, false),
         ] {
             assert_eq!(fits(value, kind), expected, "{value} {kind:?}");
         }
-        assert_eq!(rounded(0.1, Kind::Float32), f64::from(0.1f32));
-        assert_eq!(rounded(0.1, Kind::Float64), 0.1);
+        assert_eq!(rounded(0.1, VariableType::Float32), f64::from(0.1f32));
+        assert_eq!(rounded(0.1, VariableType::Float64), 0.1);
     }
 }

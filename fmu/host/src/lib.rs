@@ -16,4 +16,4 @@ pub mod instance;
 pub mod library;
 pub mod process;
 
-pub use instance::open::{OpenError, open, open_archive};
+pub use instance::open::{FmuOpenError, open, open_archive};

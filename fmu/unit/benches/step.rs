@@ -16,11 +16,11 @@ use octant_earth::units::DEG;
 use octant_fmi::fmi2::{CO_SIMULATION, OK};
 use octant_fmu::c::fmi2::*;
 use octant_fmu::c::fmi3::*;
-use octant_fmu::c::{Standard, token};
+use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::config;
 use octant_fmu::calibrator::table::MODEL;
-use octant_fmu::table::{Causality, Kind, Variable};
-use octant_fmu::values::Values;
+use octant_fmu::table::{DeclaredCausality, ElementType, DeclaredVariable};
+use octant_fmu::values::CellValues;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Aiding, DeviceTime, Output, Reference, Sample, Status};
 use std::ffi::{CString, c_void};
@@ -64,7 +64,7 @@ struct Ports {
 }
 
 impl Ports {
-    fn of(causality: Causality, wanted: impl Fn(&Variable) -> bool) -> Self {
+    fn of(causality: DeclaredCausality, wanted: impl Fn(&DeclaredVariable) -> bool) -> Self {
         let (mut elements, mut variables) = (Vec::new(), Vec::new());
         for (slot, variable) in MODEL.with_slots() {
             if variable.causality == causality && wanted(variable) {
@@ -76,17 +76,17 @@ impl Ports {
     }
 }
 
-fn is(kind: Kind) -> impl Fn(&Variable) -> bool {
+fn is(kind: ElementType) -> impl Fn(&DeclaredVariable) -> bool {
     move |variable| core::mem::discriminant(&variable.kind) == core::mem::discriminant(&kind)
 }
 
-fn is_enumeration(variable: &Variable) -> bool {
-    matches!(variable.kind, Kind::Enumeration(_))
+fn is_enumeration(variable: &DeclaredVariable) -> bool {
+    matches!(variable.kind, ElementType::Enumeration(_))
 }
 
 /// All inputs with their values, and room for all outputs.
 struct Exchange {
-    standard: Standard,
+    standard: ServedStandard,
     handle: *mut c_void,
     reals_in: Ports,
     counts_in: Ports,
@@ -113,17 +113,17 @@ struct Exchange {
 }
 
 impl Exchange {
-    fn new(standard: Standard) -> Self {
-        use Causality::{Input, Output};
+    fn new(standard: ServedStandard) -> Self {
+        use DeclaredCausality::{Input, Output};
         let join = |a: &Ports, b: &Ports| [&a.elements[..], &b.elements[..]].concat();
         let (reals_in, counts_in) =
-            (Ports::of(Input, is(Kind::Real)), Ports::of(Input, is(Kind::Count)));
+            (Ports::of(Input, is(ElementType::Real)), Ports::of(Input, is(ElementType::Count)));
         let (reals_out, counts_out) =
-            (Ports::of(Output, is(Kind::Real)), Ports::of(Output, is(Kind::Count)));
+            (Ports::of(Output, is(ElementType::Real)), Ports::of(Output, is(ElementType::Count)));
         let (integers_in, enumerations_in) =
-            (Ports::of(Input, is(Kind::Integer)), Ports::of(Input, is_enumeration));
+            (Ports::of(Input, is(ElementType::Integer)), Ports::of(Input, is_enumeration));
         let (integers_out, enumerations_out) =
-            (Ports::of(Output, is(Kind::Integer)), Ports::of(Output, is_enumeration));
+            (Ports::of(Output, is(ElementType::Integer)), Ports::of(Output, is_enumeration));
         let this = Self {
             standard,
             handle: instance(standard),
@@ -138,8 +138,8 @@ impl Exchange {
             wide: vec![0; 4],
             booleans: vec![1; 4],
             booleans2: vec![1; 4],
-            booleans_in: Ports::of(Input, is(Kind::Boolean)),
-            booleans_out: Ports::of(Output, is(Kind::Boolean)),
+            booleans_in: Ports::of(Input, is(ElementType::Boolean)),
+            booleans_out: Ports::of(Output, is(ElementType::Boolean)),
             reals_in,
             counts_in,
             integers_in,
@@ -169,7 +169,7 @@ impl Exchange {
         let c = self.handle;
         // SAFETY: a handle, and arrays as long as is said.
         unsafe {
-            if self.standard == Standard::Fmi2 {
+            if self.standard == ServedStandard::Fmi2 {
                 let (to, n) = (self.both_in.as_ptr(), self.both_in.len());
                 assert_eq!(fmi2SetReal(c, to, n, self.reals.as_ptr()), OK);
                 let (to, n) = (self.whole_in.as_ptr(), self.whole_in.len());
@@ -201,7 +201,7 @@ impl Exchange {
         let c = self.handle;
         // SAFETY: a handle, and arrays as long as is said.
         unsafe {
-            if self.standard == Standard::Fmi2 {
+            if self.standard == ServedStandard::Fmi2 {
                 let (of, n) = (self.both_out.as_ptr(), self.both_out.len());
                 assert_eq!(fmi2GetReal(c, of, n, self.got.as_mut_ptr()), OK);
                 let (of, n) = (self.whole_out.as_ptr(), self.whole_out.len());
@@ -235,7 +235,7 @@ impl Exchange {
     fn step(&self, k: u64) {
         // SAFETY: a handle, and places.
         unsafe {
-            if self.standard == Standard::Fmi2 {
+            if self.standard == ServedStandard::Fmi2 {
                 assert_eq!(fmi2DoStep(self.handle, k as f64 * PERIOD_S, PERIOD_S, 1), OK);
                 return;
             }
@@ -254,21 +254,21 @@ impl Drop for Exchange {
         // SAFETY: a handle.
         unsafe {
             match self.standard {
-                Standard::Fmi2 => fmi2FreeInstance(self.handle),
-                Standard::Fmi3 => fmi3FreeInstance(self.handle),
+                ServedStandard::Fmi2 => fmi2FreeInstance(self.handle),
+                ServedStandard::Fmi3 => fmi3FreeInstance(self.handle),
             }
         }
     }
 }
 
 /// An instance before its first step, with a given alignment, so that it calibrates at once.
-fn instance(standard: Standard) -> *mut c_void {
+fn instance(standard: ServedStandard) -> *mut c_void {
     let token = CString::new(token(&MODEL, standard)).unwrap();
     let (name, token, none) = (c"bench".as_ptr(), token.as_ptr(), null());
     let method = MODEL.slot("procedure.alignment.method") as u32;
     // SAFETY: strings, a handle, one reference with one value.
     unsafe {
-        if standard == Standard::Fmi2 {
+        if standard == ServedStandard::Fmi2 {
             let c = fmi2Instantiate(name, CO_SIMULATION, token, none, null(), 0, 0);
             assert_eq!(fmi2SetInteger(c, &method, 1, &0), OK);
             assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), OK);
@@ -286,7 +286,7 @@ fn instance(standard: Standard) -> *mut c_void {
 }
 
 fn core() -> Core {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     values.set_integer(MODEL.slot("procedure.alignment.method"), 0);
     Core::new(&config(&values).unwrap()).unwrap()
 }
@@ -322,7 +322,7 @@ fn bench(criterion: &mut Criterion) {
             })
         });
     });
-    for (name, standard) in [("fmi2", Standard::Fmi2), ("fmi3", Standard::Fmi3)] {
+    for (name, standard) in [("fmi2", ServedStandard::Fmi2), ("fmi3", ServedStandard::Fmi3)] {
         // The cost of setting is subtracted: the same without the step.
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|runs| {
@@ -343,7 +343,7 @@ fn bench(criterion: &mut Criterion) {
     group.finish();
 
     let mut group = criterion.benchmark_group("exchange");
-    for (name, standard) in [("fmi2", Standard::Fmi2), ("fmi3", Standard::Fmi3)] {
+    for (name, standard) in [("fmi2", ServedStandard::Fmi2), ("fmi3", ServedStandard::Fmi3)] {
         let mut exchange = Exchange::new(standard);
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -356,7 +356,7 @@ fn bench(criterion: &mut Criterion) {
 
     let mut group = criterion.benchmark_group("sample");
     group.throughput(Throughput::Elements(samples));
-    for (name, standard) in [("fmi2", Standard::Fmi2), ("fmi3", Standard::Fmi3)] {
+    for (name, standard) in [("fmi2", ServedStandard::Fmi2), ("fmi3", ServedStandard::Fmi3)] {
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|runs| {
                 let mut exchange = Exchange::new(standard);

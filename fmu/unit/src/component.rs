@@ -1,12 +1,12 @@
 //! Interface of a model. The C interface does the rest, the same for all models.
 
 use crate::table::Model;
-use crate::values::Values;
+use crate::values::CellValues;
 
 /// A model in an instance, from the end of initialization on.
 ///
 /// A clone continues exactly as the original: FMU states are stored as clones.
-pub trait Component: Clone + Send + Sized + 'static {
+pub trait ModelComponent: Clone + Send + Sized + 'static {
     /// Table of the model's variables.
     const MODEL: &'static Model;
 
@@ -18,7 +18,7 @@ pub trait Component: Clone + Send + Sized + 'static {
     ///
     /// # Errors
     /// If parameters contradict each other: the variables, the value found and the values expected.
-    fn initialize(values: &mut Values) -> Result<Self, Self::Error>;
+    fn initialize(values: &mut CellValues) -> Result<Self, Self::Error>;
 
     /// Sample period, ns; time is an integer number of periods.
     fn period_ns(&self) -> u64;
@@ -28,10 +28,10 @@ pub trait Component: Clone + Send + Sized + 'static {
     ///
     /// # Errors
     /// If an input can't be used; the component and its outputs are as before.
-    fn step(&mut self, values: &mut Values) -> Result<(), Self::Error>;
+    fn step(&mut self, values: &mut CellValues) -> Result<(), Self::Error>;
 
     /// Ends the simulation: updates the outputs that change only at the end.
-    fn terminate(&mut self, values: &mut Values) {
+    fn terminate(&mut self, values: &mut CellValues) {
         let _ = values;
     }
 
@@ -53,17 +53,17 @@ pub trait Component: Clone + Send + Sized + 'static {
     ///
     /// # Errors
     /// If the bytes are not those of such a component.
-    fn load(bytes: &[u8], values: &Values) -> Result<Self, Self::Error>;
+    fn load(bytes: &[u8], values: &CellValues) -> Result<Self, Self::Error>;
 }
 
 /// A component on a bus: it is told of data with its time, and reports when it wants to send.
 /// Between events only time advances.
 pub trait Network {
     /// Receives bytes.
-    fn receive(&mut self, bytes: &[u8], time_s: f64, values: &mut Values);
+    fn receive(&mut self, bytes: &[u8], time_s: f64, values: &mut CellValues);
 
     /// Returns the bytes to send now, at most `max_bytes`; the rest is sent the next time.
-    fn send(&mut self, time_s: f64, max_bytes: usize, values: &mut Values) -> Vec<u8>;
+    fn send(&mut self, time_s: f64, max_bytes: usize, values: &mut CellValues) -> Vec<u8>;
 
     /// Time at which the component wants to send, now or later; `None`: not known yet.
     fn due_s(&self, time_s: f64) -> Option<f64>;

@@ -3,7 +3,7 @@
 /// One group: true values, estimates, their σ or start values.
 macro_rules! group {
     ($make:ident, $prefix:literal, $group:literal, $elements:literal, $quantity:expr, $nominal:expr, $text:expr) => {
-        $crate::table::Variable::$make(concat!($prefix, ".", $group), $crate::table::Kind::Real)
+        $crate::table::DeclaredVariable::$make(concat!($prefix, ".", $group), $crate::table::ElementType::Real)
             .elements($elements)
             .of($quantity)
             .nominal($nominal)

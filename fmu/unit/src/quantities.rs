@@ -3,7 +3,7 @@
 //!
 //! Names of units are those that tools recognise: `rad/s`, `m/s2`, `deg`, `deg/h`.
 
-use crate::table::{Quantity, Unit};
+use crate::table::{DeclaredQuantity, DeclaredUnit};
 use octant_earth::units::{
     ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR, MICRO_G, PPM,
     STANDARD_GRAVITY_MPS2,
@@ -22,7 +22,7 @@ const fn thermal(m: i8, s: i8, k: i8, rad: i8) -> Option<[i8; 8]> {
 macro_rules! units {
     ($($(#[$doc:meta])* $unit:ident = $name:literal $exponents:expr, $factor:expr, [$($display:literal $si:expr),*];)*) => {$(
         $(#[$doc])*
-        pub static $unit: Unit = Unit {
+        pub static $unit: DeclaredUnit = DeclaredUnit {
             name: $name,
             exponents: $exponents,
             factor: $factor,
@@ -77,7 +77,7 @@ units! {
 macro_rules! quantities {
     ($($(#[$doc:meta])* $quantity:ident = $name:literal $unit:ident $display:expr;)*) => {$(
         $(#[$doc])*
-        pub static $quantity: Quantity = Quantity { name: $name, unit: &$unit, display: $display };
+        pub static $quantity: DeclaredQuantity = DeclaredQuantity { name: $name, unit: &$unit, display: $display };
     )*};
 }
 
@@ -138,18 +138,18 @@ quantities! {
     SCALE_ERROR = "ScaleFactorError" ONE Some("ppm");
 }
 
-/// Quantities of the parameter groups, in the order of [`octant_sample::parameters::Group::ALL`].
-pub static OF_GROUP: [&Quantity; 7] =
+/// Quantities of the parameter groups, in the order of [`octant_sample::parameters::ParameterGroup::ALL`].
+pub static OF_GROUP: [&DeclaredQuantity; 7] =
     [&GYRO_BIAS, &SCALE_ERROR, &SMALL_ANGLE, &G_DEPENDENT, &ACCEL_BIAS, &SCALE_ERROR, &SMALL_ANGLE];
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_sample::parameters::Group;
+    use octant_sample::parameters::ParameterGroup;
 
     #[test]
     fn display_units_are_those_of_the_groups() {
-        for (group, quantity) in Group::ALL.into_iter().zip(OF_GROUP) {
+        for (group, quantity) in ParameterGroup::ALL.into_iter().zip(OF_GROUP) {
             let shown = quantity.display.unwrap();
             assert_eq!(shown, group.unit());
             let (_, per_unit) =

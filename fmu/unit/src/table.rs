@@ -7,7 +7,7 @@
 
 /// Type of a variable's elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum ElementType {
     /// Float64; Real in FMI 2.0.
     Real,
     /// Int32; Integer in FMI 2.0.
@@ -17,16 +17,16 @@ pub enum Kind {
     /// Boolean.
     Boolean,
     /// One of some named values: Enumeration in both.
-    Enumeration(&'static Enumeration),
+    Enumeration(&'static DeclaredEnumeration),
     /// Bytes that belong to a clock; FMI 3.0 only.
-    Binary(&'static Binary),
+    Binary(&'static ClockedBinary),
     /// A clock; FMI 3.0 only.
     Clock(Ticks),
 }
 
 /// Bytes that belong to a clock.
 #[derive(Debug, PartialEq)]
-pub struct Binary {
+pub struct ClockedBinary {
     /// MIME type of the bytes.
     pub mime_type: &'static str,
     /// Largest number of bytes at a tick.
@@ -46,7 +46,7 @@ pub enum Ticks {
 
 /// A type with named values.
 #[derive(Debug, PartialEq)]
-pub struct Enumeration {
+pub struct DeclaredEnumeration {
     /// Name of the type.
     pub name: &'static str,
     /// Description of the type.
@@ -57,7 +57,7 @@ pub struct Enumeration {
 
 /// Role of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Causality {
+pub enum DeclaredCausality {
     /// Set before the start.
     Parameter,
     /// Computed from parameters.
@@ -72,7 +72,7 @@ pub enum Causality {
 
 /// Times at which a variable changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variability {
+pub enum DeclaredVariability {
     /// Never after initialization.
     Fixed,
     /// Between steps, by the importer.
@@ -83,7 +83,7 @@ pub enum Variability {
 
 /// A unit with its factors: value in SI base units = factor · value.
 #[derive(Debug, PartialEq)]
-pub struct Unit {
+pub struct DeclaredUnit {
     /// Name, as written in descriptions: `rad/s`.
     pub name: &'static str,
     /// Exponents of kg, m, s, A, K, mol, cd, rad; `None` if they aren't whole numbers, as for a
@@ -97,32 +97,32 @@ pub struct Unit {
 
 /// A quantity: a unit, and the display unit among those of the unit.
 #[derive(Debug, PartialEq)]
-pub struct Quantity {
+pub struct DeclaredQuantity {
     /// Name of the type in descriptions: `AngularRate`.
     pub name: &'static str,
     /// Unit.
-    pub unit: &'static Unit,
+    pub unit: &'static DeclaredUnit,
     /// Display unit, if it isn't the unit itself.
     pub display: Option<&'static str>,
 }
 
 /// One variable of a model.
 #[derive(Clone, Copy, Debug)]
-pub struct Variable {
+pub struct DeclaredVariable {
     /// Structured name: `gyro.delta_theta`.
     pub name: &'static str,
     /// Description, with frame, sign and order of elements.
     pub description: &'static str,
     /// Type of its elements.
-    pub kind: Kind,
+    pub kind: ElementType,
     /// Number of elements; 0: a scalar.
     pub elements: usize,
     /// Role.
-    pub causality: Causality,
+    pub causality: DeclaredCausality,
     /// Times of change.
-    pub variability: Variability,
+    pub variability: DeclaredVariability,
     /// Unit; `None`: a number.
-    pub quantity: Option<&'static Quantity>,
+    pub quantity: Option<&'static DeclaredQuantity>,
     /// Smallest legal value of an element.
     pub min: Option<f64>,
     /// Largest legal value of an element.
@@ -140,8 +140,8 @@ pub struct Variable {
     pub depends_on: &'static [&'static str],
 }
 
-impl Variable {
-    const fn new(name: &'static str, kind: Kind, causality: Causality) -> Self {
+impl DeclaredVariable {
+    const fn new(name: &'static str, kind: ElementType, causality: DeclaredCausality) -> Self {
         Self {
             name,
             description: "",
@@ -149,8 +149,8 @@ impl Variable {
             elements: 0,
             causality,
             variability: match causality {
-                Causality::Parameter | Causality::CalculatedParameter => Variability::Fixed,
-                Causality::Input | Causality::Output | Causality::Local => Variability::Discrete,
+                DeclaredCausality::Parameter | DeclaredCausality::CalculatedParameter => DeclaredVariability::Fixed,
+                DeclaredCausality::Input | DeclaredCausality::Output | DeclaredCausality::Local => DeclaredVariability::Discrete,
             },
             quantity: None,
             min: None,
@@ -158,7 +158,7 @@ impl Variable {
             nominal: None,
             start: match causality {
                 // Inputs and parameters need a start value.
-                Causality::Parameter | Causality::Input => &[0.0],
+                DeclaredCausality::Parameter | DeclaredCausality::Input => &[0.0],
                 _ => &[],
             },
             non_finite: false,
@@ -168,20 +168,20 @@ impl Variable {
 
     /// Makes a discrete scalar input that starts at zero.
     #[must_use]
-    pub const fn input(name: &'static str, kind: Kind) -> Self {
-        Self::new(name, kind, Causality::Input)
+    pub const fn input(name: &'static str, kind: ElementType) -> Self {
+        Self::new(name, kind, DeclaredCausality::Input)
     }
 
     /// Makes a discrete scalar output.
     #[must_use]
-    pub const fn output(name: &'static str, kind: Kind) -> Self {
-        Self::new(name, kind, Causality::Output)
+    pub const fn output(name: &'static str, kind: ElementType) -> Self {
+        Self::new(name, kind, DeclaredCausality::Output)
     }
 
     /// Makes a fixed scalar parameter that starts at zero.
     #[must_use]
-    pub const fn parameter(name: &'static str, kind: Kind) -> Self {
-        Self::new(name, kind, Causality::Parameter)
+    pub const fn parameter(name: &'static str, kind: ElementType) -> Self {
+        Self::new(name, kind, DeclaredCausality::Parameter)
     }
 
     /// Sets the description.
@@ -200,7 +200,7 @@ impl Variable {
 
     /// Sets the quantity.
     #[must_use]
-    pub const fn of(mut self, quantity: &'static Quantity) -> Self {
+    pub const fn of(mut self, quantity: &'static DeclaredQuantity) -> Self {
         self.quantity = Some(quantity);
         self
     }
@@ -244,14 +244,14 @@ impl Variable {
     /// Lets the importer change the variable between steps.
     #[must_use]
     pub const fn tunable(mut self) -> Self {
-        self.variability = Variability::Tunable;
+        self.variability = DeclaredVariability::Tunable;
         self
     }
 
     /// Returns whether the variable has a value only at the ticks of a clock, or is a clock.
     #[must_use]
     pub const fn is_clocked(&self) -> bool {
-        matches!(self.kind, Kind::Binary(_) | Kind::Clock(_))
+        matches!(self.kind, ElementType::Binary(_) | ElementType::Clock(_))
     }
 
     /// Number of its slots.
@@ -277,7 +277,7 @@ pub struct Model {
     /// Description.
     pub description: &'static str,
     /// Variables, in the order of their slots, from slot 1 on.
-    pub variables: &'static [Variable],
+    pub variables: &'static [DeclaredVariable],
     /// Smallest and largest number of sample periods in a communication step; or
     /// [`Model::ANY_STEP`].
     pub periods_per_step: (u64, u64),
@@ -296,7 +296,7 @@ impl Model {
     /// Returns whether the model needs clocks, which FMI 2.0 doesn't have.
     #[must_use]
     pub fn needs_clocks(&self) -> bool {
-        self.variables.iter().any(Variable::is_clocked)
+        self.variables.iter().any(DeclaredVariable::is_clocked)
     }
 
     /// Number of slots, time included.
@@ -328,7 +328,7 @@ impl Model {
     }
 
     /// Iterates over the variables with their first slots.
-    pub fn with_slots(&self) -> impl Iterator<Item = (usize, &'static Variable)> + use<> {
+    pub fn with_slots(&self) -> impl Iterator<Item = (usize, &'static DeclaredVariable)> + use<> {
         self.variables.iter().scan(1, |next, variable| {
             let slot = *next;
             *next += variable.slots();
@@ -347,7 +347,7 @@ impl Model {
 
     /// Finds a variable and its first slot by name.
     #[must_use]
-    pub fn find(&self, name: &str) -> Option<(usize, &'static Variable)> {
+    pub fn find(&self, name: &str) -> Option<(usize, &'static DeclaredVariable)> {
         self.with_slots().find(|(_, variable)| variable.name == name)
     }
 }
@@ -357,8 +357,8 @@ impl Model {
 /// # Panics
 /// If `N` isn't their number of variables.
 #[must_use]
-pub const fn concatenated<const N: usize>(parts: &[&[Variable]]) -> [Variable; N] {
-    let mut all = [Variable::parameter("", Kind::Real); N];
+pub const fn concatenated<const N: usize>(parts: &[&[DeclaredVariable]]) -> [DeclaredVariable; N] {
+    let mut all = [DeclaredVariable::parameter("", ElementType::Real); N];
     let (mut n, mut part) = (0, 0);
     while part < parts.len() {
         let mut i = 0;
@@ -374,7 +374,7 @@ pub const fn concatenated<const N: usize>(parts: &[&[Variable]]) -> [Variable; N
 }
 
 /// Number of variables of parts of a table.
-pub(crate) const fn count(parts: &[&[Variable]]) -> usize {
+pub(crate) const fn count(parts: &[&[DeclaredVariable]]) -> usize {
     let (mut count, mut part) = (0, 0);
     while part < parts.len() {
         count += parts[part].len();

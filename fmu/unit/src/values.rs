@@ -1,14 +1,14 @@
 //! The values of all variables of an instance.
 
-use crate::table::{Causality, Kind, Model};
+use crate::table::{DeclaredCausality, ElementType, Model};
 
 /// Values with one cell per slot; the model's table defines the content of a cell.
 #[derive(Clone, Debug)]
-pub struct Values {
+pub struct CellValues {
     cells: Box<[u64]>,
 }
 
-impl Values {
+impl CellValues {
     /// Makes all variables with their start values; those without one are zero.
     #[must_use]
     pub fn new(model: &Model) -> Self {
@@ -17,12 +17,12 @@ impl Values {
             for element in 0..variable.slots() {
                 let start = variable.start_of(element).unwrap_or(0.0);
                 cells.push(match variable.kind {
-                    Kind::Real => start.to_bits(),
-                    Kind::Count => start as u64,
-                    Kind::Integer | Kind::Enumeration(_) => i64::from(start as i32) as u64,
-                    Kind::Boolean => u64::from(start != 0.0),
+                    ElementType::Real => start.to_bits(),
+                    ElementType::Count => start as u64,
+                    ElementType::Integer | ElementType::Enumeration(_) => i64::from(start as i32) as u64,
+                    ElementType::Boolean => u64::from(start != 0.0),
                     // The values of these kinds are not stored in cells.
-                    Kind::Binary(_) | Kind::Clock(_) => 0,
+                    ElementType::Binary(_) | ElementType::Clock(_) => 0,
                 });
             }
         }
@@ -34,17 +34,17 @@ impl Values {
     /// as 0 and 1.
     #[must_use]
     pub fn parameters(&self, model: &'static Model) -> Vec<(&'static str, Vec<f64>)> {
-        let of = |slot: usize, kind: Kind| match kind {
-            Kind::Real => self.real(slot),
-            Kind::Count => self.count(slot) as f64,
-            Kind::Integer | Kind::Enumeration(_) => f64::from(self.integer(slot)),
-            Kind::Boolean => f64::from(u8::from(self.boolean(slot))),
+        let of = |slot: usize, kind: ElementType| match kind {
+            ElementType::Real => self.real(slot),
+            ElementType::Count => self.count(slot) as f64,
+            ElementType::Integer | ElementType::Enumeration(_) => f64::from(self.integer(slot)),
+            ElementType::Boolean => f64::from(u8::from(self.boolean(slot))),
             // No parameter is of these kinds.
-            Kind::Binary(_) | Kind::Clock(_) => 0.0,
+            ElementType::Binary(_) | ElementType::Clock(_) => 0.0,
         };
         model
             .with_slots()
-            .filter(|(_, variable)| variable.causality == Causality::Parameter)
+            .filter(|(_, variable)| variable.causality == DeclaredCausality::Parameter)
             .map(|(slot, variable)| {
                 let elements = slot..slot + variable.slots();
                 (variable.name, elements.map(|slot| of(slot, variable.kind)).collect())

@@ -1,7 +1,7 @@
 //! The C interface as a hostile or careless importer calls it: a C program that loads the library
 //! and checks every answer. It is in `tests/abuse`.
 
-use octant_fmu::c::{Standard, token};
+use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::calibrator_can;
 use std::fmt::Write as _;
@@ -68,13 +68,13 @@ fn header() -> String {
     for (constant, name) in BUS_NAMES {
         let _ = writeln!(text, "#define {constant} {}u", calibrator_can::table::MODEL.slot(name));
     }
-    let bus = token(&calibrator_can::table::MODEL, Standard::Fmi3);
+    let bus = token(&calibrator_can::table::MODEL, ServedStandard::Fmi3);
     let _ = writeln!(text, "#define TOKEN_BUS \"{bus}\"");
-    let of_fmi2 = token(&calibrator_can::table::MODEL, Standard::Fmi2);
+    let of_fmi2 = token(&calibrator_can::table::MODEL, ServedStandard::Fmi2);
     let _ = writeln!(text, "#define TOKEN_BUS2 \"{of_fmi2}\"");
     let _ = writeln!(text, "#define SLOTS {}u", MODEL.slots());
-    let _ = writeln!(text, "#define TOKEN2 \"{}\"", token(&MODEL, Standard::Fmi2));
-    let _ = writeln!(text, "#define TOKEN3 \"{}\"", token(&MODEL, Standard::Fmi3));
+    let _ = writeln!(text, "#define TOKEN2 \"{}\"", token(&MODEL, ServedStandard::Fmi2));
+    let _ = writeln!(text, "#define TOKEN3 \"{}\"", token(&MODEL, ServedStandard::Fmi3));
     text
 }
 

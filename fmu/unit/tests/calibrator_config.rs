@@ -3,13 +3,13 @@
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIXTEEN, from_degrees, named};
 use octant_calibration::sequence::{STOPS_MAX, Sequence, Stop};
-use octant_calibration::{Config, Core};
+use octant_calibration::{CoreConfig, Core};
 use octant_earth::units::*;
 use octant_earth::{Vector3, rotation};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::calibrator::{Calibrator, config, put};
-use octant_fmu::component::Component;
-use octant_fmu::values::Values;
+use octant_fmu::component::ModelComponent;
+use octant_fmu::values::CellValues;
 use octant_sample::Parameters;
 
 /// Numbers with all digits, none twice.
@@ -119,7 +119,7 @@ fn everything_that_a_core_is_configured_with_survives() {
     for (i, estimator) in estimators.iter().enumerate() {
         for (j, sequence) in sequences.iter().enumerate() {
             for (k, screening) in screenings.iter().enumerate() {
-                let original = Config {
+                let original = CoreConfig {
                     sample_period_ns: 1 + u64::MAX / 3,
                     site: Site {
                         latitude_rad: n.next(),
@@ -152,7 +152,7 @@ fn everything_that_a_core_is_configured_with_survives() {
                     initial_parameters: Parameters::from_array(&n.array()),
                     screening: *screening,
                 };
-                let mut values = Values::new(&MODEL);
+                let mut values = CellValues::new(&MODEL);
                 put(&original, &mut values);
                 // Debug prints every field, and floats so that they read back to the same bits.
                 let found = format!("{:?}", config(&values).unwrap());
@@ -166,7 +166,7 @@ fn everything_that_a_core_is_configured_with_survives() {
 
 #[test]
 fn the_start_values_are_the_reference_instrument_in_eight_positions() {
-    let values = Values::new(&MODEL);
+    let values = CellValues::new(&MODEL);
     let found = config(&values).unwrap();
     Core::new(&found).unwrap();
     let calibration = found.calibration.unwrap();
@@ -183,7 +183,7 @@ fn the_start_values_are_the_reference_instrument_in_eight_positions() {
     for (name, stops) in
         [("procedure.calibration.positions", EIGHT), ("procedure.navigation.rotation", SIXTEEN)]
     {
-        let mut values = Values::new(&MODEL);
+        let mut values = CellValues::new(&MODEL);
         values.set_integer(MODEL.slot(name), 0);
         let found = config(&values).unwrap();
         let sequence = match name {
@@ -196,8 +196,8 @@ fn the_start_values_are_the_reference_instrument_in_eight_positions() {
 
 #[test]
 fn what_contradicts_itself_is_refused_with_the_variable_and_what_is_expected() {
-    let refused = |change: &dyn Fn(&mut Values)| {
-        let mut values = Values::new(&MODEL);
+    let refused = |change: &dyn Fn(&mut CellValues)| {
+        let mut values = CellValues::new(&MODEL);
         change(&mut values);
         Calibrator::initialize(&mut values).err().unwrap().to_string()
     };

@@ -7,15 +7,15 @@
 
 mod comparison;
 
-pub use comparison::{Comparison, Detects, Row};
+pub use comparison::{EnsembleComparison, Detects, ErrorRow};
 
 use crate::case::{self, CaseResult, ResultError};
 use crate::plan::{Case, Plan, PlanError};
 use octant_observe::ensemble::{Ensemble, EnsembleError, ensemble};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
-use octant_score::summary::{Calibration, Navigation, Summary};
-use octant_statistics::sample::{Interval, mean};
+use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
+use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -36,7 +36,7 @@ pub struct Against {
     /// Version of this form: [`SCHEMA`].
     pub schema: u32,
     /// Every ensemble that could be compared.
-    pub compared: Vec<Comparison>,
+    pub compared: Vec<EnsembleComparison>,
     /// Ensembles that couldn't be compared, with the reason.
     pub left_out: Vec<String>,
 }
@@ -192,8 +192,8 @@ impl Sample {
     }
 
     /// Lists the published calibrations, with the navigation after them.
-    fn of(&self, method: Method) -> Vec<(&Calibration, Option<&Navigation>)> {
-        fn one(summary: &Summary, method: Method) -> Option<(&Calibration, Option<&Navigation>)> {
+    fn of(&self, method: Method) -> Vec<(&CalibrationScore, Option<&NavigationScore>)> {
+        fn one(summary: &Summary, method: Method) -> Option<(&CalibrationScore, Option<&NavigationScore>)> {
             let (calibration, navigation) = match method {
                 Method::Primary => (&summary.calibration, &summary.navigation),
                 Method::Baseline => {
@@ -209,7 +209,7 @@ impl Sample {
 }
 
 /// Interpolates latitude and longitude error at a time between two points of a series.
-fn at(navigation: &Navigation, hours: f64) -> Option<[f64; 2]> {
+fn at(navigation: &NavigationScore, hours: f64) -> Option<[f64; 2]> {
     let series = &navigation.series_hours;
     let after = series.partition_point(|point| point[0] < hours);
     let [to_h, to @ ..] = *series.get(after).or(series.last().filter(|p| p[0] >= hours - 1e-3))?;
@@ -223,7 +223,7 @@ fn compare(
     ensemble: &Ensemble,
     sample: &Sample,
     method: Method,
-) -> Result<Comparison, String> {
+) -> Result<EnsembleComparison, String> {
     let runs = sample.of(method);
     let count = runs.len();
     if count < 2 {
@@ -288,7 +288,7 @@ fn compare(
         }
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
-    let mut comparison = Comparison {
+    let mut comparison = EnsembleComparison {
         scenario: first.scenario.clone(),
         set: first.set.clone(),
         method: ensemble.method.clone(),
@@ -318,18 +318,18 @@ fn row(
     values: &[f64],
     (low, high): (f64, f64),
     student: f64,
-) -> Row {
+) -> ErrorRow {
     let value = octant_statistics::sample::deviation(values).unwrap_or(f64::NAN);
-    let simulated_sigma = Interval { value, low: value * low, high: value * high };
+    let simulated_sigma = ConfidenceInterval { value, low: value * low, high: value * high };
     let middle = mean(values).unwrap_or(f64::NAN);
     let error = student * value / libm::sqrt(values.len() as f64);
-    let simulated_mean = Interval { value: middle, low: middle - error, high: middle + error };
+    let simulated_mean = ConfidenceInterval { value: middle, low: middle - error, high: middle + error };
     // Without random parts, both are exact to rounding.
     let rounding = 1e-9 * (predicted_mean.abs() + predicted_sigma);
-    let within = |predicted: f64, interval: &Interval| {
+    let within = |predicted: f64, interval: &ConfidenceInterval| {
         interval.low - rounding <= predicted && predicted <= interval.high + rounding
     };
-    Row {
+    ErrorRow {
         agrees: within(predicted_sigma, &simulated_sigma)
             && within(predicted_mean, &simulated_mean),
         ratio: (value > 0.0).then(|| predicted_sigma / value),
@@ -350,9 +350,9 @@ fn detects(runs: u64, each: f64) -> Option<Detects> {
 }
 
 /// Concludes whether the prediction holds, and writes the reasons.
-fn conclude(comparison: &mut Comparison) {
+fn conclude(comparison: &mut EnsembleComparison) {
     let rows = || comparison.states.iter().chain(&comparison.drift);
-    let differing: Vec<&Row> = rows().filter(|row| !row.agrees).collect();
+    let differing: Vec<&ErrorRow> = rows().filter(|row| !row.agrees).collect();
     let error = format!("{:.0} %", 100.0 * comparison.known_to);
     let mut words = Vec::new();
     let stands = if !differing.is_empty() {
@@ -419,12 +419,12 @@ fn conclude(comparison: &mut Comparison) {
     comparison.words = words;
 }
 
-fn in_words(row: &Row) -> String {
-    let Row {
+fn in_words(row: &ErrorRow) -> String {
+    let ErrorRow {
         name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, ..
     } = row;
     let outside =
-        |value: f64, interval: &Interval| !(interval.low..=interval.high).contains(&value);
+        |value: f64, interval: &ConfidenceInterval| !(interval.low..=interval.high).contains(&value);
     if outside(*predicted_sigma, simulated_sigma) {
         format!(
             "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",

@@ -5,7 +5,7 @@ use super::plan::{Case, Plan, PlanError, PlannedScenario};
 use octant_base::control::Control;
 use octant_requirements::{Comparison, Verdict};
 use octant_run::method::MethodError;
-use octant_run::{Recording, assemble, run_method};
+use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::Method;
 use octant_score::rederive;
 use octant_score::summary::Summary;
@@ -58,7 +58,7 @@ pub enum CaseError {
 
 /// Input of a case's process, on its standard input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Job {
+pub struct CaseJob {
     /// The case.
     pub case: Case,
     /// Scenario.
@@ -79,7 +79,7 @@ pub fn run(
     control: &Control,
 ) -> Result<CaseResult, CaseError> {
     let scenario = planned.scenario(case)?;
-    let one = |method| run_method(&scenario, method, case.seed, Recording::HashAlone, control);
+    let one = |method| run_method(&scenario, method, case.seed, StreamKeeping::HashAlone, control);
     let primary = one(Method::Primary)?;
     let baseline = match &scenario.baseline {
         Some(_) => Some(one(Method::Baseline)?),
@@ -381,7 +381,7 @@ struct Version {
 
 /// Outcome of storing a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum StoreOutcome {
     /// The result was written.
     New,
     /// The same bytes were there already.
@@ -400,7 +400,7 @@ pub fn file(folder: &Path, id: &str) -> PathBuf {
 ///
 /// # Errors
 /// If the operating system refuses.
-pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<Kept> {
+pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<StoreOutcome> {
     let path = file(folder, id);
     let parent = path.parent().unwrap_or(folder);
     std::fs::create_dir_all(parent)?;
@@ -408,15 +408,15 @@ pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<Kept> {
     std::fs::write(new.path(), bytes)?;
     new.as_file().sync_data()?;
     match new.persist_noclobber(&path) {
-        Ok(_) => Ok(Kept::New),
+        Ok(_) => Ok(StoreOutcome::New),
         Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
             if std::fs::read(&path)? == bytes {
-                return Ok(Kept::Same);
+                return Ok(StoreOutcome::Same);
             }
             let hash = blake3::hash(bytes).to_hex();
             let other = path.with_file_name(format!("{id}.differs-{}.json", &hash.as_str()[..8]));
             refused.file.persist(&other).map_err(|error| error.error)?;
-            Ok(Kept::Differs(other))
+            Ok(StoreOutcome::Differs(other))
         }
         Err(refused) => Err(refused.error),
     }

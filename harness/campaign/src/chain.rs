@@ -7,7 +7,7 @@
 use super::case;
 use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
-use super::table::{Table, TableError, Value, Values};
+use super::table::{ExistingTable, TableError, ColumnValue, ColumnValues};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
 use std::collections::{BTreeMap, HashMap};
@@ -16,19 +16,19 @@ use std::path::{Path, PathBuf};
 /// Table with the rows of each case.
 struct Read {
     path: PathBuf,
-    columns: BTreeMap<String, Values>,
+    columns: BTreeMap<String, ColumnValues>,
     cases: BTreeMap<usize, Vec<usize>>,
 }
 
 impl Read {
     fn of(path: PathBuf, place: &HashMap<&str, usize>) -> Result<Self, TableError> {
         let form = |reason: String| TableError::Form { path: path.clone(), reason };
-        let table = Table::open(&path)?;
+        let table = ExistingTable::open(&path)?;
         let mut columns = BTreeMap::new();
         for (name, _) in &table.columns {
             columns.extend(table.column(name)?.map(|values| (name.clone(), values)));
         }
-        let Some(Values::Text(ids)) = columns.get("case") else {
+        let Some(ColumnValues::Text(ids)) = columns.get("case") else {
             return Err(form("it has no column case".to_owned()));
         };
         let mut cases: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -47,14 +47,14 @@ impl Read {
 
     fn text(&self, column: &str, row: usize) -> Option<String> {
         match self.columns.get(column)?.at(row)? {
-            Value::Text(text) => Some(text.to_string()),
+            ColumnValue::Text(text) => Some(text.to_string()),
             _ => None,
         }
     }
 
     fn number(&self, column: &str, row: usize) -> Option<f64> {
         match self.columns.get(column)?.at(row)? {
-            Value::Number(number) => Some(number),
+            ColumnValue::Number(number) => Some(number),
             _ => None,
         }
     }
@@ -125,18 +125,18 @@ fn same(
         for (row, at) in found.iter().enumerate() {
             let now = expected.columns.get(name).and_then(|values| values.at(row));
             // Converted as for a column of this kind.
-            let mut cell = Values::new(values.kind());
+            let mut cell = ColumnValues::new(values.kind());
             cell.push(now.clone());
             let said = values.at(*at);
             if cell.at(0) == said {
                 continue;
             }
-            let text = |value: &Option<Value>| match value {
+            let text = |value: &Option<ColumnValue>| match value {
                 None => "nothing".to_owned(),
-                Some(Value::Text(text)) => text.to_string(),
-                Some(Value::Number(number)) => number.to_string(),
-                Some(Value::Integer(number)) => number.to_string(),
-                Some(Value::Boolean(value)) => value.to_string(),
+                Some(ColumnValue::Text(text)) => text.to_string(),
+                Some(ColumnValue::Number(number)) => number.to_string(),
+                Some(ColumnValue::Integer(number)) => number.to_string(),
+                Some(ColumnValue::Boolean(value)) => value.to_string(),
             };
             return Err(table.wrong(format!(
                 "case {id} has {} in column {name}, its result {} has {}: it isn't what this result gives",

@@ -1,8 +1,8 @@
 //! Draws of a campaign's replicates.
 
-use super::file::{Campaign, Design, Distribution, Levels};
+use super::file::{Campaign, Design, DistributionSpec, Levels};
 use octant_statistics::draw::{
-    Correlation, Distribution as Drawn, Factor, Value, latin_hypercube, monte_carlo,
+    FactorCorrelation, Distribution as Drawn, Factor, DrawnFactor, latin_hypercube, monte_carlo,
 };
 
 /// Value of a factor in a case: one of its levels, or a number.
@@ -39,8 +39,8 @@ pub(super) fn draws(campaign: &Campaign) -> Result<Draws, String> {
         .collect();
     let factors: Vec<Factor> = drawn.iter().map(|(_, factor)| factor.clone()).collect();
     let name = |index: usize| campaign.factors[index].name.clone();
-    let correlations: Vec<Correlation> = (campaign.correlations.iter())
-        .map(|c| Correlation { first: name(c.first), second: name(c.second), value: c.value })
+    let correlations: Vec<FactorCorrelation> = (campaign.correlations.iter())
+        .map(|c| FactorCorrelation { first: name(c.first), second: name(c.second), value: c.value })
         .collect();
     let rows = match campaign.design {
         Design::MonteCarlo => (0..campaign.replicates)
@@ -51,13 +51,13 @@ pub(super) fn draws(campaign: &Campaign) -> Result<Draws, String> {
             latin_hypercube(&factors, &correlations, campaign.seed, runs)
         }
     };
-    let rows: Vec<Vec<Value>> = rows.map_err(|error| error.to_string())?;
+    let rows: Vec<Vec<DrawnFactor>> = rows.map_err(|error| error.to_string())?;
     let mut by_factor = vec![Vec::new(); campaign.factors.len()];
     for row in &rows {
         for ((index, _), value) in drawn.iter().zip(row) {
             by_factor[*index].push(match value {
-                Value::Number(number) => At::Number(*number),
-                Value::Choice(level) => At::Level(*level),
+                DrawnFactor::Number(number) => At::Number(*number),
+                DrawnFactor::Choice(level) => At::Level(*level),
             });
         }
     }
@@ -71,11 +71,11 @@ fn drawn(name: &str, levels: &Levels) -> Option<Factor> {
         Levels::Values { drawn: false, .. } | Levels::Faults { drawn: false, .. } => return None,
         Levels::Values { values, .. } => one_of(values.len()),
         Levels::Faults { lists, .. } => one_of(lists.len()),
-        Levels::Distributed { distribution: Distribution::Uniform { low, high }, .. } => {
+        Levels::Distributed { distribution: DistributionSpec::Uniform { low, high }, .. } => {
             Drawn::Uniform { low: *low, high: *high }
         }
         Levels::Distributed {
-            distribution: Distribution::Normal { mean, sigma, low, high },
+            distribution: DistributionSpec::Normal { mean, sigma, low, high },
             ..
         } => {
             let factor = Factor::new(name, Drawn::Normal { mean: *mean, sigma: *sigma });

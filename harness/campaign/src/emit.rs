@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Campaign for a scheduler.
 #[derive(Clone, Copy, Debug)]
-pub struct Job<'a> {
+pub struct SchedulerJob<'a> {
     /// Plan.
     pub plan: &'a Plan,
     /// Folder, as the nodes see it.
@@ -17,7 +17,7 @@ pub struct Job<'a> {
     pub jobs: u16,
 }
 
-impl Job<'_> {
+impl SchedulerJob<'_> {
     /// Returns the memory for the cases that run at a time and the program that starts them, MiB.
     fn memory_mib(&self) -> u64 {
         self.plan.limits.memory_mib * u64::from(self.jobs) + 256
@@ -32,8 +32,8 @@ impl Job<'_> {
 /// Renders a script for `sbatch`: an array of one task per part. Killed tasks are submitted again
 /// with the same script, all of them or selected by `--array`.
 #[must_use]
-pub fn slurm(job: &Job<'_>) -> String {
-    let Job { shards, jobs, folder, .. } = job;
+pub fn slurm(job: &SchedulerJob<'_>) -> String {
+    let SchedulerJob { shards, jobs, folder, .. } = job;
     let folder = shell(&folder.display().to_string());
     format!(
         "#!/bin/sh\n\
@@ -56,9 +56,9 @@ pub fn slurm(job: &Job<'_>) -> String {
 /// Renders a job for `kubectl apply`: indexed, one completion per part, the folder on a volume
 /// shared by all pods.
 #[must_use]
-pub fn kubernetes(job: &Job<'_>, image: &str, claim: &str) -> String {
+pub fn kubernetes(job: &SchedulerJob<'_>, image: &str, claim: &str) -> String {
     let text = |text: &str| serde_json::Value::from(text).to_string();
-    let Job { shards, jobs, folder, .. } = job;
+    let SchedulerJob { shards, jobs, folder, .. } = job;
     let folder = folder.display().to_string();
     format!(
         "# {} cases of {} in {shards} parts. After the last: octant campaign merge\n\

@@ -3,7 +3,7 @@
 
 pub use super::shard::{Shard, ShardError};
 
-use super::case::{self, CaseResult, Job, Kept, differing};
+use super::case::{self, CaseResult, CaseJob, StoreOutcome, differing};
 use super::plan::{Case, Plan, PlanError};
 use super::process::{TRIES, command};
 use super::status::StatusError;
@@ -25,7 +25,7 @@ const WORDS: u64 = 4096;
 
 /// Settings of an execution.
 #[derive(Debug)]
-pub struct Options<'a> {
+pub struct ExecuteOptions<'a> {
     /// Folder.
     pub folder: &'a Path,
     /// Program that runs a case.
@@ -44,16 +44,16 @@ pub struct Options<'a> {
 
 /// Event of an execution.
 #[derive(Clone, Debug)]
-pub enum Event {
+pub enum ExecutionEvent {
     /// Number of cases that have results already.
     There(usize),
     /// A case has ended.
-    Done(Done),
+    Done(CaseDone),
 }
 
 /// Outcome of a case.
 #[derive(Clone, Debug)]
-pub struct Done {
+pub struct CaseDone {
     /// Place in the plan.
     pub index: usize,
     /// Verdict.
@@ -66,7 +66,7 @@ pub struct Done {
 
 /// Summary of an execution.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Outcome {
+pub struct ExecutionSummary {
     /// Cases that were run.
     pub run: usize,
     /// Cases that had results already.
@@ -130,9 +130,9 @@ pub enum ExecuteError {
 /// If the folder isn't of this plan, or the operating system refuses; stored results stay.
 pub fn execute(
     plan: &Plan,
-    options: &Options<'_>,
-    tell: &(dyn Fn(&Event) + Sync),
-) -> Result<Outcome, ExecuteError> {
+    options: &ExecuteOptions<'_>,
+    tell: &(dyn Fn(&ExecutionEvent) + Sync),
+) -> Result<ExecutionSummary, ExecuteError> {
     plan.check_files()?;
     refuse_foreign(plan, options.folder)?;
     clean(options.folder);
@@ -144,13 +144,13 @@ pub fn execute(
     let open: Vec<(usize, &Case)> =
         mine().filter(|(_, case)| !case::file(options.folder, &case.id).exists()).collect();
     let skipped = mine().count() - open.len();
-    tell(&Event::There(skipped));
+    tell(&ExecutionEvent::There(skipped));
     let work = |task: usize| {
         let (index, case) = open[task];
-        let done = one(plan, case, options)?.map(|done| Done { index, ..done });
+        let done = one(plan, case, options)?.map(|done| CaseDone { index, ..done });
         Ok::<_, ExecuteError>(done.map(|done| {
             let differs = done.differs.clone();
-            tell(&Event::Done(done));
+            tell(&ExecutionEvent::Done(done));
             differs
         }))
     };
@@ -162,7 +162,7 @@ pub fn execute(
     let run = done.len();
     let mut differing: Vec<PathBuf> = done.into_iter().flatten().collect();
     differing.sort();
-    Ok(Outcome { run, skipped, left: open.len() - run, differing })
+    Ok(ExecutionSummary { run, skipped, left: open.len() - run, differing })
 }
 
 /// Removes incomplete results that killed processes left.
@@ -173,7 +173,7 @@ fn clean(folder: &Path) {
 }
 
 /// Removes the results of cases without a summary.
-fn forget_errors(plan: &Plan, options: &Options<'_>) -> Result<(), ExecuteError> {
+fn forget_errors(plan: &Plan, options: &ExecuteOptions<'_>) -> Result<(), ExecuteError> {
     for (index, case) in plan.cases.iter().enumerate() {
         let path = case::file(options.folder, &case.id);
         if options.shard.has(index)
@@ -191,7 +191,7 @@ fn forget_errors(plan: &Plan, options: &Options<'_>) -> Result<(), ExecuteError>
 }
 
 /// Runs one case, again if its process is ended from outside; `None` if it was ended by a request.
-fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, ExecuteError> {
+fn one(plan: &Plan, case: &Case, options: &ExecuteOptions<'_>) -> Result<Option<CaseDone>, ExecuteError> {
     let mut by = String::new();
     for _ in 0..TRIES {
         match try_one(plan, case, options)? {
@@ -204,20 +204,20 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
 }
 
 enum Tried {
-    Done(Done),
+    Done(CaseDone),
     Cancelled,
     /// The process was ended from outside.
     Outside(String),
 }
 
 /// Runs one case in a process of its own.
-fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, ExecuteError> {
+fn try_one(plan: &Plan, case: &Case, options: &ExecuteOptions<'_>) -> Result<Tried, ExecuteError> {
     let system = |action, path: &Path, source| ExecuteError::System {
         action,
         path: path.to_owned(),
         source,
     };
-    let job = Job {
+    let job = CaseJob {
         case: case.clone(),
         scenario: plan.planned(case)?.clone(),
         memory_mib: plan.limits.memory_mib,
@@ -260,12 +260,12 @@ fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, Exe
     let path = case::file(options.folder, &case.id);
     let kept = case::keep(options.folder, &case.id, bytes.as_bytes())
         .map_err(|error| system("write", &path, error))?;
-    let differs = if let Kept::Differs(other) = kept { Some(other) } else { None };
-    Ok(Tried::Done(Done { index: 0, verdict: result.verdict, reason: result.error, differs }))
+    let differs = if let StoreOutcome::Differs(other) = kept { Some(other) } else { None };
+    Ok(Tried::Done(CaseDone { index: 0, verdict: result.verdict, reason: result.error, differs }))
 }
 
 /// Returns the outcome from the stored result.
-fn kept(case: &Case, options: &Options<'_>) -> Result<Done, ExecuteError> {
+fn kept(case: &Case, options: &ExecuteOptions<'_>) -> Result<CaseDone, ExecuteError> {
     let path = case::file(options.folder, &case.id);
     let result = CaseResult::read(&path).map_err(|reason| ExecuteError::System {
         action: "read",
@@ -275,7 +275,7 @@ fn kept(case: &Case, options: &Options<'_>) -> Result<Done, ExecuteError> {
     let reasons = result.summary.as_ref().map(|summary| summary.reasons.as_slice());
     let reason = reasons.and_then(|reasons| reasons.first().cloned());
     let reason = reason.filter(|_| result.verdict != Verdict::Pass);
-    Ok(Done { index: 0, verdict: result.verdict, reason, differs: differing(&path, &case.id) })
+    Ok(CaseDone { index: 0, verdict: result.verdict, reason, differs: differing(&path, &case.id) })
 }
 
 /// Returns the message of a process, without the name of the program.

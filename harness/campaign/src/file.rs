@@ -22,10 +22,10 @@
 
 use octant_base::names::suggestion;
 use octant_scenario::complete::complete;
-use octant_scenario::document::{self, Node, Table, Value};
+use octant_scenario::document::{self, DocumentNode, DocumentTable, DocumentValue};
 use octant_scenario::error::{Place, Problem, ScenarioError};
 use octant_scenario::keys::CAMPAIGN;
-use octant_scenario::read::Reader;
+use octant_scenario::read::TableReader;
 use octant_statistics::proportion::Demand;
 use std::path::{Path, PathBuf};
 
@@ -45,13 +45,13 @@ pub struct Campaign {
     /// Scenarios to run.
     pub scenarios: Vec<Member>,
     /// Factors; the last one of the grid runs fastest.
-    pub factors: Vec<Factor>,
+    pub factors: Vec<FactorSpec>,
     /// Correlated draws.
-    pub correlations: Vec<Correlation>,
+    pub correlations: Vec<CorrelationSpec>,
     /// Limits of a case.
-    pub limits: Limits,
+    pub limits: LimitsSpec,
     /// Early stopping.
-    pub stop: Option<Stop>,
+    pub stop: Option<StopSpec>,
 }
 
 /// Design of the draws over the replicates.
@@ -80,7 +80,7 @@ pub struct Member {
 
 /// Varied quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Factor {
+pub struct FactorSpec {
     /// Name: a column of the results.
     pub name: String,
     /// Levels of the factor.
@@ -113,13 +113,13 @@ pub enum Levels {
         /// Unit of the numbers; `None`: plain numbers.
         unit: Option<String>,
         /// The distribution.
-        distribution: Distribution,
+        distribution: DistributionSpec,
     },
 }
 
 /// Distribution of drawn numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Distribution {
+pub enum DistributionSpec {
     /// Uniform between two limits.
     Uniform {
         /// Lower limit.
@@ -142,7 +142,7 @@ pub enum Distribution {
 
 /// Correlation of two draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Correlation {
+pub struct CorrelationSpec {
     /// Index of a factor.
     pub first: usize,
     /// Index of the other factor.
@@ -153,7 +153,7 @@ pub struct Correlation {
 
 /// Limits of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct LimitsSpec {
     /// Time, s.
     pub time_s: f64,
     /// Address space, MiB.
@@ -162,7 +162,7 @@ pub struct Limits {
 
 /// Early stopping.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stop {
+pub struct StopSpec {
     /// Requirement that decides.
     pub requirement: String,
     /// Evidence required.
@@ -211,8 +211,8 @@ impl Campaign {
     }
 }
 
-fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
-    let root = Reader::root(document);
+fn read(document: &DocumentTable, folder: &Path) -> Result<Campaign, Problem> {
+    let root = TableReader::root(document);
     let mut scenarios: Vec<Member> = Vec::new();
     for table in root.tables("scenarios") {
         let id = unique(&table, "id", scenarios.iter().map(|member| member.id.as_str()))?;
@@ -220,7 +220,7 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
         let verifies = table.node("verifies").map(names);
         scenarios.push(Member { id, file: folder.join(table.text("file")?), set, verifies });
     }
-    let mut factors: Vec<Factor> = Vec::new();
+    let mut factors: Vec<FactorSpec> = Vec::new();
     for table in root.tables("factors") {
         let name = unique(&table, "name", factors.iter().map(|factor| factor.name.as_str()))?;
         let levels = levels(&table, &name)?;
@@ -231,17 +231,17 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
                 format!("{name:?} and {:?} set the same: expected one factor for it", other.name),
             ));
         }
-        factors.push(Factor { name, levels });
+        factors.push(FactorSpec { name, levels });
     }
-    let mut correlations: Vec<Correlation> = Vec::new();
+    let mut correlations: Vec<CorrelationSpec> = Vec::new();
     for table in root.tables("correlations") {
         let [first, second] = ["first", "second"].map(|key| drawn(&table, key, &factors));
         let (first, second) = (first?, second?);
         if first == second {
             return Err(table.problem("second", "expected another factor than the first"));
         }
-        let pair = |c: &Correlation| [c.first.min(c.second), c.first.max(c.second)];
-        let correlation = Correlation { first, second, value: table.number("value")? };
+        let pair = |c: &CorrelationSpec| [c.first.min(c.second), c.first.max(c.second)];
+        let correlation = CorrelationSpec { first, second, value: table.number("value")? };
         if correlations.iter().any(|other| pair(other) == pair(&correlation)) {
             return Err(table.problem("second", "these two have a correlation already"));
         }
@@ -250,7 +250,7 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
     let limits = root.table("limits")?;
     let stop = match root.optional_table("stop") {
         None => None,
-        Some(stop) => Some(Stop {
+        Some(stop) => Some(StopSpec {
             requirement: stop.text("requirement")?.to_owned(),
             demand: Demand { pass: stop.number("pass")?, confidence: stop.number("confidence")? },
             every: stop.integer("every")?,
@@ -268,14 +268,14 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
         scenarios,
         factors,
         correlations,
-        limits: Limits { time_s: limits.si("time")?, memory_mib: limits.integer("memory_mib")? },
+        limits: LimitsSpec { time_s: limits.si("time")?, memory_mib: limits.integer("memory_mib")? },
         stop,
     })
 }
 
 /// Reads a name that isn't taken yet.
 fn unique<'a>(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     key: &str,
     mut taken: impl Iterator<Item = &'a str>,
 ) -> Result<String, Problem> {
@@ -292,10 +292,10 @@ fn unique<'a>(
 }
 
 /// Lists the settings of a table as `KEY=VALUE`; nested tables are parts of keys.
-fn settings(node: &Node) -> Vec<String> {
-    fn walk(prefix: &str, node: &Node, all: &mut Vec<String>) {
+fn settings(node: &DocumentNode) -> Vec<String> {
+    fn walk(prefix: &str, node: &DocumentNode, all: &mut Vec<String>) {
         match &node.value {
-            Value::Table(table) => {
+            DocumentValue::Table(table) => {
                 for entry in &table.entries {
                     let path = octant_scenario::complete::join(prefix, &entry.key);
                     walk(&path, &entry.node, all);
@@ -309,24 +309,24 @@ fn settings(node: &Node) -> Vec<String> {
     all
 }
 
-fn toml(value: &Value) -> String {
+fn toml(value: &DocumentValue) -> String {
     let mut text = String::new();
     document::write_value(value, &mut text);
     text
 }
 
-fn levels(table: &Reader<'_>, name: &str) -> Result<Levels, Problem> {
+fn levels(table: &TableReader<'_>, name: &str) -> Result<Levels, Problem> {
     let key = || table.optional_text("key").unwrap_or(name).to_owned();
     let unit = || table.optional_text("unit").map(str::to_owned);
     let distributed = |distribution| Levels::Distributed { key: key(), unit: unit(), distribution };
     for (list, drawn) in [("values", false), ("choose", true)] {
-        if let Some(Node { value: Value::Array(entries), .. }) = table.node(list) {
+        if let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) = table.node(list) {
             let values: Vec<String> = entries.iter().map(|entry| toml(&entry.value)).collect();
             once(table, list, &values)?;
             return Ok(Levels::Values { key: key(), values, drawn });
         }
     }
-    if let Some(Node { value: Value::Array(entries), .. }) = table.node("faults") {
+    if let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) = table.node("faults") {
         let lists: Vec<Vec<String>> = entries.iter().map(names).collect();
         once(table, "faults", &lists)?;
         return Ok(Levels::Faults { lists, drawn: table.boolean("draw")? });
@@ -334,7 +334,7 @@ fn levels(table: &Reader<'_>, name: &str) -> Result<Levels, Problem> {
     if table.node("uniform").is_some() {
         let [low, high] = table.numbers("uniform")?;
         ascending(table, "uniform", low, high)?;
-        return Ok(distributed(Distribution::Uniform { low, high }));
+        return Ok(distributed(DistributionSpec::Uniform { low, high }));
     }
     let [mean, sigma] = table.numbers("normal")?;
     if sigma <= 0.0 {
@@ -352,19 +352,19 @@ fn levels(table: &Reader<'_>, name: &str) -> Result<Levels, Problem> {
         }
     }
     let [low, high] = within;
-    Ok(distributed(Distribution::Normal { mean, sigma, low, high }))
+    Ok(distributed(DistributionSpec::Normal { mean, sigma, low, high }))
 }
 
-fn names(node: &Node) -> Vec<String> {
-    let Value::Array(entries) = &node.value else { return Vec::new() };
-    let text = |entry: &Node| match &entry.value {
-        Value::Text(text) => Some(text.clone()),
+fn names(node: &DocumentNode) -> Vec<String> {
+    let DocumentValue::Array(entries) = &node.value else { return Vec::new() };
+    let text = |entry: &DocumentNode| match &entry.value {
+        DocumentValue::Text(text) => Some(text.clone()),
         _ => None,
     };
     entries.iter().filter_map(text).collect()
 }
 
-fn ascending(table: &Reader<'_>, key: &str, low: f64, high: f64) -> Result<(), Problem> {
+fn ascending(table: &TableReader<'_>, key: &str, low: f64, high: f64) -> Result<(), Problem> {
     if low < high {
         return Ok(());
     }
@@ -373,7 +373,7 @@ fn ascending(table: &Reader<'_>, key: &str, low: f64, high: f64) -> Result<(), P
 
 /// Refuses a grid that contains a value twice, because it would run the same case twice.
 fn once<T: PartialEq + std::fmt::Debug>(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     key: &str,
     values: &[T],
 ) -> Result<(), Problem> {
@@ -398,9 +398,9 @@ fn same_key(a: &Levels, b: &Levels) -> bool {
 }
 
 /// Returns the index of a factor that is drawn from a distribution.
-fn drawn(table: &Reader<'_>, key: &str, factors: &[Factor]) -> Result<usize, Problem> {
+fn drawn(table: &TableReader<'_>, key: &str, factors: &[FactorSpec]) -> Result<usize, Problem> {
     let name = table.text(key)?;
-    let of = |factor: &Factor| matches!(factor.levels, Levels::Distributed { .. });
+    let of = |factor: &FactorSpec| matches!(factor.levels, Levels::Distributed { .. });
     let Some(index) = factors.iter().position(|factor| factor.name == name) else {
         let known = suggestion(name, factors.iter().map(|factor| factor.name.as_str()), "factors");
         return Err(table.problem(key, format!("found {name:?}, {known}")));

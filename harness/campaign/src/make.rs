@@ -1,7 +1,7 @@
 //! Builds the plan of a campaign file: every combination of scenarios, factors and replicates.
 
 use super::draw::At;
-use super::file::{Campaign, Factor, Levels, Member};
+use super::file::{Campaign, FactorSpec, Levels, Member};
 use super::plan::{
     CASES_MAX, Case, FactorValue, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system,
 };
@@ -11,8 +11,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 /// Returns the level of a factor in a cell of the grid; the last factor runs fastest.
-fn level_of(factors: &[Factor], cell: u64, index: usize) -> usize {
-    let levels = |factor: &Factor| factor.levels.grid().map_or(1, |levels| levels as u64);
+fn level_of(factors: &[FactorSpec], cell: u64, index: usize) -> usize {
+    let levels = |factor: &FactorSpec| factor.levels.grid().map_or(1, |levels| levels as u64);
     let faster: u64 = factors.iter().skip(index + 1).map(levels).product();
     factors.get(index).map_or(0, |factor| (cell / faster % levels(factor)) as usize)
 }
@@ -115,7 +115,7 @@ impl Plan {
 
 /// Finds two values of a grid that are equal in another spelling: they would be the same runs under
 /// two names.
-fn equal_values(factor: &Factor) -> Option<String> {
+fn equal_values(factor: &FactorSpec) -> Option<String> {
     let spelled: Vec<(String, String)> = match &factor.levels {
         Levels::Values { values, drawn: false, .. } => {
             values.iter().map(|value| (value.clone(), meaning(value))).collect()
@@ -233,7 +233,7 @@ fn planned(
 }
 
 /// Sets a factor in a case.
-fn give(case: &mut Case, factor: &Factor, at: At) {
+fn give(case: &mut Case, factor: &FactorSpec, at: At) {
     let value = match (&factor.levels, at) {
         (Levels::Values { key, values, .. }, At::Level(level)) => {
             case.set.push(format!("{key}={}", values[level]));

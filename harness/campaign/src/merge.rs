@@ -6,7 +6,7 @@ use super::plan::{Plan, short};
 use super::results::{Columns, NUMERICS, TABLES, ordered};
 use super::shard::Shard;
 use super::stop;
-use super::table::{Kind, Table, TableError, Values, write};
+use super::table::{ColumnKind, ExistingTable, TableError, ColumnValues, write};
 use octant_requirements::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -119,7 +119,7 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     let pass = Some(Verdict::Pass.name());
     // A case without a summary checked nothing, so it isn't passed.
     for path in parts(folders, "cases") {
-        let table = Table::open(&path)?;
+        let table = ExistingTable::open(&path)?;
         let [cases, streams] = ["case", "stream_hash"].map(|name| texts(&table, &path, name));
         // Parts of older versions have only the verdict of the whole case.
         let besides =
@@ -132,7 +132,7 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     }
     let mut checked: HashSet<Arc<str>> = HashSet::new();
     for path in parts(folders, "checks") {
-        let table = Table::open(&path)?;
+        let table = ExistingTable::open(&path)?;
         let [cases, ids, verdicts] =
             ["case", "requirement", "verdict"].map(|name| texts(&table, &path, name));
         for ((case, id), verdict) in cases?.into_iter().zip(ids?).zip(verdicts?) {
@@ -155,9 +155,9 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
 }
 
 /// Reads a text column of a part.
-fn texts(table: &Table, path: &Path, name: &str) -> Result<Vec<Option<Arc<str>>>, TableError> {
+fn texts(table: &ExistingTable, path: &Path, name: &str) -> Result<Vec<Option<Arc<str>>>, TableError> {
     match table.column(name)? {
-        Some(Values::Text(texts)) => Ok(texts),
+        Some(ColumnValues::Text(texts)) => Ok(texts),
         _ => Err(TableError::Form {
             path: path.to_owned(),
             reason: format!("it has no texts in a column {name}"),
@@ -186,7 +186,7 @@ pub fn merge(
             let folder = folders.first().cloned().unwrap_or_default();
             return Err(MergeError::Nothing { folder });
         }
-        let tables = paths.iter().map(|path| Table::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let tables = paths.iter().map(|path| ExistingTable::open(path)).collect::<Result<Vec<_>, _>>()?;
         for (table, path) in tables.iter().zip(&paths) {
             if table.plan != plan.id {
                 return Err(MergeError::Foreign {
@@ -198,7 +198,7 @@ pub fn merge(
         }
         let mut rows: BTreeMap<usize, Vec<Row>> = BTreeMap::new();
         for (at, table) in tables.iter().enumerate() {
-            let Some(Values::Text(cases)) = table.column("case")? else {
+            let Some(ColumnValues::Text(cases)) = table.column("case")? else {
                 let reason = "it has no column case".to_owned();
                 return Err(TableError::Form { path: paths[at].clone(), reason }.into());
             };
@@ -254,7 +254,7 @@ pub fn merge(
             let (column, kind) = &columns[index];
             let of_parts =
                 tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
-            let mut values = Values::new(*kind);
+            let mut values = ColumnValues::new(*kind);
             for Row { part, row } in &kept {
                 values.push(of_parts[*part].as_ref().and_then(|values| values.at(*row)));
             }
@@ -270,7 +270,7 @@ fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
     for folder in folders {
         for path in parts(std::slice::from_ref(folder), TABLES[0].0) {
             // A part of another plan is reported as such elsewhere.
-            if Table::open(&path)?.plan != plan.id {
+            if ExistingTable::open(&path)?.plan != plan.id {
                 continue;
             }
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -284,12 +284,12 @@ fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
 }
 
 /// Lists every column of any part; a column of different kinds becomes text.
-fn columns(first: Columns, tables: &[Table]) -> Vec<(String, Kind)> {
-    let mut kinds: BTreeMap<&str, Kind> = BTreeMap::new();
+fn columns(first: Columns, tables: &[ExistingTable]) -> Vec<(String, ColumnKind)> {
+    let mut kinds: BTreeMap<&str, ColumnKind> = BTreeMap::new();
     for (name, kind) in tables.iter().flat_map(|table| &table.columns) {
         let all = kinds.entry(name).or_insert(*kind);
         if *all != *kind {
-            *all = Kind::Text;
+            *all = ColumnKind::Text;
         }
     }
     ordered(first, &kinds)
@@ -299,9 +299,9 @@ fn columns(first: Columns, tables: &[Table]) -> Vec<(String, Kind)> {
 fn refuse_differing(
     plan: &Plan,
     rows: &BTreeMap<usize, Vec<Row>>,
-    tables: &[Table],
+    tables: &[ExistingTable],
     paths: &[PathBuf],
-    columns: &[(String, Kind)],
+    columns: &[(String, ColumnKind)],
 ) -> Result<(), MergeError> {
     let several = |rows: &&Vec<Row>| {
         rows.first().is_some_and(|first| rows.iter().any(|r| r.part != first.part))

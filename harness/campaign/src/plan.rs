@@ -3,10 +3,10 @@
 //! A plan never changes after it is made. A campaign that grows makes another plan, in which every
 //! earlier case keeps its id.
 
-use super::file::{Limits, Stop};
+use super::file::{LimitsSpec, StopSpec};
 use super::requirements::Planned;
 use octant_requirements::RequirementsError;
-use octant_requirements::requirement::Ensemble;
+use octant_requirements::requirement::EnsembleRequirement;
 use octant_requirements::verdict::LimitCheck;
 use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
@@ -59,8 +59,8 @@ pub struct CaseLimits {
     pub memory_mib: u64,
 }
 
-impl From<Limits> for CaseLimits {
-    fn from(limits: Limits) -> Self {
+impl From<LimitsSpec> for CaseLimits {
+    fn from(limits: LimitsSpec) -> Self {
         Self { time_s: limits.time_s, memory_mib: limits.memory_mib }
     }
 }
@@ -76,8 +76,8 @@ pub struct StopRule {
     pub every: u64,
 }
 
-impl From<Stop> for StopRule {
-    fn from(stop: Stop) -> Self {
+impl From<StopSpec> for StopRule {
+    fn from(stop: StopSpec) -> Self {
         Self { requirement: stop.requirement, demand: stop.demand, every: stop.every }
     }
 }
@@ -201,13 +201,13 @@ impl Plan {
     ///
     /// # Errors
     /// If there is another plan, or the operating system refuses.
-    pub fn write(&self, folder: &Path, extend: bool) -> Result<Written, PlanError> {
+    pub fn write(&self, folder: &Path, extend: bool) -> Result<PlanWritten, PlanError> {
         let path = folder.join(FILE_NAME);
-        let mut written = Written::New;
+        let mut written = PlanWritten::New;
         if path.exists() {
             let there = Self::read(&path)?;
             if there.id == self.id {
-                return Ok(Written::There);
+                return Ok(PlanWritten::There);
             }
             let ids: std::collections::HashSet<&str> = self.ids().collect();
             let gone = there.ids().filter(|id| !ids.contains(id)).count();
@@ -227,7 +227,7 @@ impl Plan {
                     self.cases.len()
                 )));
             }
-            written = Written::Extended(self.cases.len() - there.cases.len());
+            written = PlanWritten::Extended(self.cases.len() - there.cases.len());
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
         super::clean(folder);
@@ -284,7 +284,7 @@ impl Plan {
     }
 
     /// Returns the requirement on all cases together, for a requirement of the plan.
-    pub(super) fn ensemble(&self, id: &str) -> Option<Ensemble> {
+    pub(super) fn ensemble(&self, id: &str) -> Option<EnsembleRequirement> {
         self.requirements.iter().find(|planned| planned.check.id == id)?.ensemble
     }
 
@@ -348,7 +348,7 @@ impl PlannedScenario {
     fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
         let mut scenario = Scenario::load(&self.file, &case.set)?;
         scenario.requirements.extend(self.checks.iter().map(|check| {
-            octant_scenario::Requirement {
+            octant_scenario::RequirementSpec {
                 check: check.clone(),
                 text: String::new(),
                 limit_text: check.limit.to_string(),
@@ -364,7 +364,7 @@ impl PlannedScenario {
 
 /// Outcome of writing a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
+pub enum PlanWritten {
     /// Plan written where none was.
     New,
     /// The same plan was there already.

@@ -1,11 +1,11 @@
 //! Requirements of a campaign: read from their file and put into its cases.
 
 use octant_requirements::file::{Checker, read};
-use octant_requirements::requirement::{Check, Ensemble, Limit, Requirement, Requirements};
+use octant_requirements::requirement::{Check, EnsembleRequirement, Limit, Requirement, Requirements};
 use octant_requirements::signed;
 use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Problem, RequirementsError};
-use octant_scenario::read::requirement::{MeasureError, limit_of, path_of};
+use octant_requirements::{RequirementsProblem, RequirementsError};
+use octant_scenario::read::requirement::{MeasureTextError, limit_of, path_of};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -16,7 +16,7 @@ pub struct Planned {
     pub check: LimitCheck,
     /// Requirement on all cases together; without it every case must pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ensemble: Option<Ensemble>,
+    pub ensemble: Option<EnsembleRequirement>,
 }
 
 /// Provides the measures of a summary, and their units.
@@ -33,7 +33,7 @@ impl Checker for Measures {
     }
 }
 
-fn number(measure: &str, limit: &Limit) -> Result<f64, MeasureError> {
+fn number(measure: &str, limit: &Limit) -> Result<f64, MeasureTextError> {
     match limit {
         Limit::Number(number) => Ok(*number),
         Limit::Quantity(text) => limit_of(path_of(measure)?, text),
@@ -48,7 +48,7 @@ pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| RequirementsError {
         file: file.clone(),
-        problems: vec![Problem {
+        problems: vec![RequirementsProblem {
             line: 1,
             column: 1,
             path: String::new(),
@@ -61,7 +61,7 @@ pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
 }
 
 /// Finds limits on only one side of a signed measure.
-fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
+fn one_sided(requirements: &Requirements, text: &str) -> Vec<RequirementsProblem> {
     let checks = || requirements.requirements.iter().filter_map(|r| Some((&r.id, r.check()?)));
     let both = || checks().map(|(_, check)| (check.measure.as_str(), check.comparison));
     let problem = |(id, check): (&String, &Check)| {
@@ -71,7 +71,7 @@ fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
         let (line, column) = (text.lines().enumerate())
             .find_map(|(line, text)| Some((line + 1, at(text)?)))
             .unwrap_or((1, 1));
-        Some(Problem { line, column, path: format!("requirements.{id}.measure"), message })
+        Some(RequirementsProblem { line, column, path: format!("requirements.{id}.measure"), message })
     };
     checks().filter_map(problem).collect()
 }

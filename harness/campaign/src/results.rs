@@ -3,7 +3,7 @@
 use super::besides::besides;
 use super::case::{self, CaseResult};
 use super::plan::{Case, FactorValue, Plan};
-use super::table::{Kind, TableError, Value, Values, write};
+use super::table::{ColumnKind, TableError, ColumnValue, ColumnValues, write};
 use octant_score::summary::Summary;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) const NUMERICS: &str = "numerics";
 
 /// Columns with their kinds.
-pub(crate) type Columns = &'static [(&'static str, Kind)];
+pub(crate) type Columns = &'static [(&'static str, ColumnKind)];
 
 /// Column with the BLAKE3 of a case's result file.
 pub(super) const RESULT: &str = "result_blake3";
@@ -24,41 +24,41 @@ pub const TABLES: [(&str, Columns); 3] = [
     (
         "cases",
         &[
-            ("case", Kind::Text),
-            ("scenario", Kind::Text),
-            ("seed", Kind::Integer),
-            ("replicate", Kind::Integer),
-            ("verdict", Kind::Text),
-            ("besides", Kind::Text),
-            ("reasons", Kind::Text),
-            ("error", Kind::Text),
-            ("stream_hash", Kind::Text),
-            (NUMERICS, Kind::Integer),
-            (RESULT, Kind::Text),
-            ("set", Kind::Text),
+            ("case", ColumnKind::Text),
+            ("scenario", ColumnKind::Text),
+            ("seed", ColumnKind::Integer),
+            ("replicate", ColumnKind::Integer),
+            ("verdict", ColumnKind::Text),
+            ("besides", ColumnKind::Text),
+            ("reasons", ColumnKind::Text),
+            ("error", ColumnKind::Text),
+            ("stream_hash", ColumnKind::Text),
+            (NUMERICS, ColumnKind::Integer),
+            (RESULT, ColumnKind::Text),
+            ("set", ColumnKind::Text),
         ],
     ),
     (
         "checks",
         &[
-            ("case", Kind::Text),
-            ("requirement", Kind::Text),
-            ("measure", Kind::Text),
-            ("comparison", Kind::Text),
-            ("limit", Kind::Number),
-            ("value", Kind::Number),
-            ("margin", Kind::Number),
-            ("verdict", Kind::Text),
-            ("reason", Kind::Text),
+            ("case", ColumnKind::Text),
+            ("requirement", ColumnKind::Text),
+            ("measure", ColumnKind::Text),
+            ("comparison", ColumnKind::Text),
+            ("limit", ColumnKind::Number),
+            ("value", ColumnKind::Number),
+            ("margin", ColumnKind::Number),
+            ("verdict", ColumnKind::Text),
+            ("reason", ColumnKind::Text),
         ],
     ),
     (
         "drift",
         &[
-            ("case", Kind::Text),
-            ("hours", Kind::Number),
-            ("latitude_error_arcmin", Kind::Number),
-            ("longitude_error_arcmin", Kind::Number),
+            ("case", ColumnKind::Text),
+            ("hours", ColumnKind::Number),
+            ("latitude_error_arcmin", ColumnKind::Number),
+            ("longitude_error_arcmin", ColumnKind::Number),
         ],
     ),
 ];
@@ -66,20 +66,20 @@ pub const TABLES: [(&str, Columns); 3] = [
 /// Rows, with the columns that they need.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    pub(super) columns: BTreeMap<String, Values>,
+    pub(super) columns: BTreeMap<String, ColumnValues>,
     pub(super) rows: usize,
 }
 
 impl Rows {
     fn new(first: Columns) -> Self {
-        let empty = |(name, kind): &(&str, Kind)| ((*name).to_owned(), Values::new(*kind));
+        let empty = |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), ColumnValues::new(*kind));
         Self { columns: first.iter().map(empty).collect(), rows: 0 }
     }
 
-    fn push(&mut self, row: BTreeMap<String, Value>) {
+    fn push(&mut self, row: BTreeMap<String, ColumnValue>) {
         for (name, value) in row {
             let column = self.columns.entry(name).or_insert_with(|| {
-                let mut column = Values::new(value.kind());
+                let mut column = ColumnValues::new(value.kind());
                 (0..self.rows).for_each(|_| column.push(None));
                 column
             });
@@ -99,7 +99,7 @@ impl Rows {
 }
 
 /// Lists columns in the order in which they are written.
-pub(super) fn ordered(first: Columns, kinds: &BTreeMap<&str, Kind>) -> Vec<(String, Kind)> {
+pub(super) fn ordered(first: Columns, kinds: &BTreeMap<&str, ColumnKind>) -> Vec<(String, ColumnKind)> {
     let others = kinds.keys().copied().filter(|name| !first.iter().any(|(other, _)| other == name));
     let names = first.iter().map(|(name, _)| *name).chain(others);
     names.filter_map(|name| Some((name.to_owned(), *kinds.get(name)?))).collect()
@@ -159,12 +159,12 @@ pub(super) fn rows(
     Ok([all_cases, checks, drift])
 }
 
-fn text(value: impl Into<Arc<str>>) -> Value {
-    Value::Text(value.into())
+fn text(value: impl Into<Arc<str>>) -> ColumnValue {
+    ColumnValue::Text(value.into())
 }
 
-fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMap<String, Value> {
-    let there = |(name, value): (&str, Option<Value>)| Some((name.to_owned(), value?));
+fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<ColumnValue>)>) -> BTreeMap<String, ColumnValue> {
+    let there = |(name, value): (&str, Option<ColumnValue>)| Some((name.to_owned(), value?));
     pairs.into_iter().filter_map(there).collect()
 }
 
@@ -173,19 +173,19 @@ fn case_row(
     result: &CaseResult,
     hash: &str,
     texts: &BTreeSet<&str>,
-) -> BTreeMap<String, Value> {
+) -> BTreeMap<String, ColumnValue> {
     let summary = result.summary.as_ref();
     let mut all = row([
         ("case", Some(text(case.id.as_str()))),
         ("scenario", Some(text(case.scenario.as_str()))),
-        ("seed", i64::try_from(case.seed).ok().map(Value::Integer)),
-        ("replicate", Some(Value::Integer(i64::from(case.replicate)))),
+        ("seed", i64::try_from(case.seed).ok().map(ColumnValue::Integer)),
+        ("replicate", Some(ColumnValue::Integer(i64::from(case.replicate)))),
         ("verdict", Some(text(result.verdict.name()))),
         ("besides", Some(text(besides(result).name()))),
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
         ("error", result.error.as_deref().map(text)),
         ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
-        (NUMERICS, summary.and_then(|summary| Some(Value::Integer(i64::from(summary.numerics?))))),
+        (NUMERICS, summary.and_then(|summary| Some(ColumnValue::Integer(i64::from(summary.numerics?))))),
         (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
@@ -194,8 +194,8 @@ fn case_row(
             FactorValue::Number(number) if texts.contains(name.as_str()) => {
                 text(number.to_string())
             }
-            FactorValue::Number(number) => Value::Number(*number),
-            FactorValue::Text(text) => Value::Text(text.as_str().into()),
+            FactorValue::Number(number) => ColumnValue::Number(*number),
+            FactorValue::Text(text) => ColumnValue::Text(text.as_str().into()),
         };
         all.insert(format!("factor.{name}"), value);
     }
@@ -219,7 +219,7 @@ const NOT_MEASURES: [&str; 9] = [
 ];
 
 /// Collects every value of a summary under its dotted path; values of a fault under its id.
-fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, Value>) {
+fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, ColumnValue>) {
     let serde_json::Value::Object(parts) = document else { return };
     for (name, part) in parts.iter().filter(|(name, _)| !NOT_MEASURES.contains(&name.as_str())) {
         if name == "faults" {
@@ -233,7 +233,7 @@ fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, Value>) {
     }
 }
 
-fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Value>) {
+fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, ColumnValue>) {
     match value {
         serde_json::Value::Object(parts) => {
             for (name, part) in parts {
@@ -241,11 +241,11 @@ fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Value>
             }
         }
         serde_json::Value::Number(number) => {
-            all.extend(number.as_f64().map(|number| (path.to_owned(), Value::Number(number))));
+            all.extend(number.as_f64().map(|number| (path.to_owned(), ColumnValue::Number(number))));
         }
-        serde_json::Value::Bool(value) => _ = all.insert(path.to_owned(), Value::Boolean(*value)),
+        serde_json::Value::Bool(value) => _ = all.insert(path.to_owned(), ColumnValue::Boolean(*value)),
         serde_json::Value::String(text) => {
-            _ = all.insert(path.to_owned(), Value::Text(text.as_str().into()));
+            _ = all.insert(path.to_owned(), ColumnValue::Text(text.as_str().into()));
         }
         // Series have a table of their own.
         serde_json::Value::Array(_) | serde_json::Value::Null => {}
@@ -255,16 +255,16 @@ fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Value>
 fn check_rows<'a>(
     case: &'a Case,
     summary: &'a Summary,
-) -> impl Iterator<Item = BTreeMap<String, Value>> + 'a {
+) -> impl Iterator<Item = BTreeMap<String, ColumnValue>> + 'a {
     summary.requirements.iter().map(|result| {
         row([
             ("case", Some(text(case.id.as_str()))),
             ("requirement", Some(text(result.id.as_str()))),
             ("measure", Some(text(result.measure.as_str()))),
             ("comparison", Some(text(result.comparison.sign()))),
-            ("limit", Some(Value::Number(result.limit))),
-            ("value", result.value.map(Value::Number)),
-            ("margin", result.margin.map(Value::Number)),
+            ("limit", Some(ColumnValue::Number(result.limit))),
+            ("value", result.value.map(ColumnValue::Number)),
+            ("margin", result.margin.map(ColumnValue::Number)),
             ("verdict", Some(text(result.verdict.name()))),
             ("reason", result.reason.as_deref().map(text)),
         ])
@@ -274,14 +274,14 @@ fn check_rows<'a>(
 fn drift_rows<'a>(
     case: &'a Case,
     summary: &'a Summary,
-) -> impl Iterator<Item = BTreeMap<String, Value>> + 'a {
+) -> impl Iterator<Item = BTreeMap<String, ColumnValue>> + 'a {
     let series = summary.navigation.iter().flat_map(|navigation| &navigation.series_hours);
     series.map(|[hours, latitude, longitude]| {
         row([
             ("case", Some(text(case.id.as_str()))),
-            ("hours", Some(Value::Number(*hours))),
-            ("latitude_error_arcmin", Some(Value::Number(*latitude))),
-            ("longitude_error_arcmin", Some(Value::Number(*longitude))),
+            ("hours", Some(ColumnValue::Number(*hours))),
+            ("latitude_error_arcmin", Some(ColumnValue::Number(*latitude))),
+            ("longitude_error_arcmin", Some(ColumnValue::Number(*longitude))),
         ])
     })
 }

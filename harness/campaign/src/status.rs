@@ -5,13 +5,13 @@ use super::case::{self, CaseResult, ResultError, differing};
 use super::independence::{self, Shown};
 use super::plan::{Case, Plan, StopRule};
 use super::shard::Shard;
-use super::stop::{self, Decision};
+use super::stop::{self, StopDecision};
 use octant_base::number::plain;
 use octant_requirements::Verdict;
-use octant_requirements::requirement::Ensemble;
-use octant_requirements::trace::{Counts, judge};
+use octant_requirements::requirement::EnsembleRequirement;
+use octant_requirements::trace::{VerdictCounts, judge};
 use octant_score::numerics::differs;
-use octant_statistics::cluster::Draws;
+use octant_statistics::cluster::DrawCounts;
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
 use serde::Serialize;
 use std::cell::RefCell;
@@ -24,7 +24,7 @@ const NAMED: usize = 10;
 
 /// State of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Status {
+pub struct CampaignStatus {
     /// Name of the campaign.
     pub title: String,
     /// Plan.
@@ -66,11 +66,11 @@ pub struct RequirementStatus {
     /// Reason, in plain words.
     pub reason: String,
     /// Checks.
-    pub counts: Counts,
+    pub counts: VerdictCounts,
     /// Independent draws.
-    pub draws: Draws,
+    pub draws: DrawCounts,
     /// Requirement on all cases together; null if every case must pass.
-    pub ensemble: Option<Ensemble>,
+    pub ensemble: Option<EnsembleRequirement>,
     /// Further draws that suffice if all of them pass; null if nothing is required of them
     /// together.
     pub needed: Option<Needed>,
@@ -96,9 +96,9 @@ pub struct StatusError(#[from] pub ResultError);
 ///
 /// # Errors
 /// If an existing result can't be read.
-pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, StatusError> {
+pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, StatusError> {
     let mine = || plan.cases.iter().enumerate().filter(|(index, _)| shard.has(*index));
-    let mut status = Status {
+    let mut status = CampaignStatus {
         title: plan.title.clone(),
         plan: plan.id.clone(),
         cases: 0,
@@ -123,7 +123,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, StatusErro
             decision.end(plan.cases.len())
         }
     };
-    let mut counts: BTreeMap<&str, Counts> = BTreeMap::new();
+    let mut counts: BTreeMap<&str, VerdictCounts> = BTreeMap::new();
     // Includes requirements that no case checks.
     let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
     let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
@@ -192,11 +192,11 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, StatusErro
             rows.entry(id).or_default().push((*draw, *passed));
         }
     }
-    let of = |(id, counts): (&str, Counts)| {
+    let of = |(id, counts): (&str, VerdictCounts)| {
         let ensemble = plan.ensemble(id);
-        let draws = Draws::of(rows.remove(id).unwrap_or_default());
+        let draws = DrawCounts::of(rows.remove(id).unwrap_or_default());
         let (verdict, reason) = judge(ensemble, counts, draws);
-        let needed = ensemble.map(|Ensemble { pass, confidence }| {
+        let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
             further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
         });
         (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
@@ -216,7 +216,7 @@ struct Looked<'a> {
 ///
 /// # Errors
 /// If an existing result can't be read, or contradicts itself.
-pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<Decision, StatusError> {
+pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<StopDecision, StatusError> {
     let wrong = RefCell::new(None);
     let decision = stop::decide(plan, rule, |case| {
         let read = CaseResult::of_plan(plan, folder, case).unwrap_or_else(|error| {
@@ -228,7 +228,7 @@ pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<Decision, S
     wrong.into_inner().map_or(Ok(decision), |error| Err(error.into()))
 }
 
-fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {
+fn in_words(rule: &StopRule, decision: StopDecision) -> Option<String> {
     let StopRule { requirement, demand, .. } = rule;
     let asked = format!(
         "{} % at a confidence of {} %",
@@ -236,17 +236,17 @@ fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {
         plain(100.0 * demand.confidence, 6)
     );
     match decision {
-        Decision::Shown { end } => Some(format!(
+        StopDecision::Shown { end } => Some(format!(
             "{requirement} is shown to be kept with {asked} after {end} cases: no more are needed"
         )),
-        Decision::Refuted { end } => Some(format!(
+        StopDecision::Refuted { end } => Some(format!(
             "{requirement} is shown not to be kept with {asked} after {end} cases: no more are needed"
         )),
-        Decision::Open { .. } => None,
+        StopDecision::Open { .. } => None,
     }
 }
 
-impl Status {
+impl CampaignStatus {
     /// Returns the verdict: the worst of the requirements and the other findings, an error if a
     /// case has two results, and no pass before all cases have run, or without any case.
     #[must_use]

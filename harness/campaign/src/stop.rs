@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 /// Decision about the rest of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decision {
+pub enum StopDecision {
     /// The requirement is met with the required probability and confidence.
     Shown {
         /// Number of cases of the plan up to the decision.
@@ -31,7 +31,7 @@ pub enum Decision {
     },
 }
 
-impl Decision {
+impl StopDecision {
     /// Returns how many of `cases` cases of the plan count.
     #[must_use]
     pub fn end(self, cases: usize) -> usize {
@@ -47,7 +47,7 @@ impl Decision {
 /// counts neither as passed nor as failed, because counting failures early would make them look
 /// more frequent than they are.
 #[must_use]
-pub fn decide(plan: &Plan, rule: &StopRule, shown: impl Fn(&Case) -> Option<Shown>) -> Decision {
+pub fn decide(plan: &Plan, rule: &StopRule, shown: impl Fn(&Case) -> Option<Shown>) -> StopDecision {
     let every = usize::try_from(rule.every).unwrap_or(usize::MAX).max(1);
     let looks = plan.cases.len().div_ceil(every).max(1);
     let confidence = 1.0 - (1.0 - rule.demand.confidence) / looks as f64;
@@ -67,7 +67,7 @@ pub fn decide(plan: &Plan, rule: &StopRule, shown: impl Fn(&Case) -> Option<Show
         if checks(&case.scenario) {
             let next = end.div_ceil(every).saturating_mul(every).min(plan.cases.len());
             let Some(Shown { passed, stream }) = shown(case) else {
-                return Decision::Open { next };
+                return StopDecision::Open { next };
             };
             begun.entry(case.seed).or_default().push((passed, stream));
             if last.get(&case.seed) == Some(&index) {
@@ -77,12 +77,12 @@ pub fn decide(plan: &Plan, rule: &StopRule, shown: impl Fn(&Case) -> Option<Show
         if end % every == 0 || end == plan.cases.len() {
             let counts = draws.counts();
             if demand.is_shown(counts.not_passed, counts.known()) {
-                return Decision::Shown { end };
+                return StopDecision::Shown { end };
             }
             if demand.is_refuted(counts.not_passed, counts.known()) {
-                return Decision::Refuted { end };
+                return StopDecision::Refuted { end };
             }
         }
     }
-    Decision::Open { next: plan.cases.len() }
+    StopDecision::Open { next: plan.cases.len() }
 }

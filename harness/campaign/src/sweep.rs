@@ -3,7 +3,7 @@
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
 use octant_run::drive::Ended;
-use octant_run::method::{MethodError, MethodRun, Recording, run_method};
+use octant_run::method::{MethodError, MethodRun, StreamKeeping, run_method};
 use octant_run::twin::between;
 use octant_scenario::{Method, Scenario};
 use octant_score::counterfactual::HARMFUL_SHIFT_SIGMA;
@@ -14,7 +14,7 @@ pub const SCHEMA: u32 = 1;
 
 /// One axis of the grid: a key of the fault, and its values as text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Axis {
+pub struct SweepAxis {
     /// The key, such as `amplitude` or `trigger.position`.
     pub key: String,
     /// Values.
@@ -23,7 +23,7 @@ pub struct Axis {
 
 /// Result of one cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct SweepCell {
     /// Index of the value on each axis.
     pub at: Vec<usize>,
     /// True if the fault altered something.
@@ -62,9 +62,9 @@ pub struct Sweep {
     /// Parameter shift, in σ, from which a cell counts as harmful.
     pub harmful_shift_sigma: f64,
     /// Axes; the last one runs fastest.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// Every cell.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<SweepCell>,
 }
 
 /// Reasons why a sweep gave no result.
@@ -83,13 +83,13 @@ pub enum SweepError {
 
 /// Number of cells of a grid.
 #[must_use]
-pub fn cells_of(axes: &[Axis]) -> usize {
+pub fn cells_of(axes: &[SweepAxis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
 /// Returns the indices of a cell on each axis; the last runs fastest.
 #[must_use]
-pub fn indices(axes: &[Axis], mut cell: usize) -> Vec<usize> {
+pub fn indices(axes: &[SweepAxis], mut cell: usize) -> Vec<usize> {
     let mut at = vec![0; axes.len()];
     for (slot, axis) in at.iter_mut().zip(axes).rev() {
         *slot = cell % axis.values.len();
@@ -106,7 +106,7 @@ pub fn indices(axes: &[Axis], mut cell: usize) -> Vec<usize> {
 /// If a run gives no result.
 pub fn sweep(
     scenarios: &[Scenario],
-    axes: &[Axis],
+    axes: &[SweepAxis],
     fault: &str,
     seed: u64,
     jobs: Option<usize>,
@@ -114,14 +114,14 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let Some(first) = scenarios.first() else { return Err(SweepError::Cancelled) };
     let clean = first.without_faults();
-    let run = |scenario: &Scenario, recording: Recording<'_>, task: usize| {
+    let run = |scenario: &Scenario, recording: StreamKeeping<'_>, task: usize| {
         let control = controls.get(task).ok_or(SweepError::Cancelled)?;
         let run = run_method(scenario, Method::Primary, seed, recording, control)?;
         if run.ended == Ended::Cancelled { Err(SweepError::Cancelled) } else { Ok(run) }
     };
     // The twin comes first: a cell is compared with it as soon as it has run, and only the result
     // is kept.
-    let twin = run(&clean, Recording::Hash, 0)?;
+    let twin = run(&clean, StreamKeeping::Hash, 0)?;
     if let Some(reason) = twin.calibration.as_ref().and_then(|c| c.refused.as_ref()) {
         return Err(SweepError::TwinRefused(reason.clone()));
     }
@@ -132,7 +132,7 @@ pub fn sweep(
         || false,
         |i| {
             let scenario = scenarios.get(i).ok_or(SweepError::Cancelled)?;
-            let faulted = run(scenario, Recording::None, i + 1)?;
+            let faulted = run(scenario, StreamKeeping::None, i + 1)?;
             Ok::<_, SweepError>(Some(cell(scenario, &faulted, &twin, fault, indices(axes, i))))
         },
     )?;
@@ -156,10 +156,10 @@ fn cell(
     twin: &MethodRun,
     fault: &str,
     at: Vec<usize>,
-) -> Cell {
+) -> SweepCell {
     let difference = between(scenario, run, twin);
     let noticed = difference.as_ref().and_then(|d| d.faults.iter().find(|f| f.id == fault));
-    Cell {
+    SweepCell {
         at,
         fired: run.receipts.iter().any(|r| r.id == fault && r.fired()),
         worst_parameter: difference.as_ref().and_then(|d| d.worst_parameter.clone()),
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_last_axis_runs_fastest() {
-        let axis = |key: &str, n: usize| Axis {
+        let axis = |key: &str, n: usize| SweepAxis {
             key: key.to_owned(),
             values: (0..n).map(|i| i.to_string()).collect(),
         };

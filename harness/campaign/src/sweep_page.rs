@@ -1,6 +1,6 @@
 //! Renders `sweep.html`, the heat map of a sweep as `sweep.svg`, and its plain text and CSV.
 
-use crate::sweep::{Axis, Cell, Sweep, indices};
+use crate::sweep::{SweepAxis, SweepCell, Sweep, indices};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
 use octant_report::page::page;
@@ -14,7 +14,7 @@ const TOP: f64 = 44.0;
 const FULL_SIGMA: f64 = 100.0;
 
 /// Renders the value of a cell.
-fn value(cell: &Cell) -> String {
+fn value(cell: &SweepCell) -> String {
     match (&cell.refused, cell.worst_shift_sigma, cell.fired) {
         (_, _, false) => "not fired".to_owned(),
         (Some(_), ..) => "refused".to_owned(),
@@ -24,12 +24,12 @@ fn value(cell: &Cell) -> String {
 }
 
 /// Names the first detection, in a word.
-fn notice(cell: &Cell) -> &str {
+fn notice(cell: &SweepCell) -> &str {
     cell.noticed_by.as_deref().unwrap_or(if cell.fired { "unnoticed" } else { "" })
 }
 
 /// Lists the panels: the first two axes span a map, every combination of the others has its own.
-fn panels(sweep: &Sweep) -> Vec<(String, Vec<&Cell>)> {
+fn panels(sweep: &Sweep) -> Vec<(String, Vec<&SweepCell>)> {
     let others = sweep.axes.get(2..).unwrap_or(&[]);
     let count = crate::sweep::cells_of(others);
     (0..count)
@@ -78,7 +78,7 @@ pub fn render(sweep: &Sweep, rerun: &str) -> String {
 
 /// Renders the heat map of one panel as SVG.
 #[must_use]
-pub fn map(sweep: &Sweep, cells: &[&Cell]) -> Markup {
+pub fn map(sweep: &Sweep, cells: &[&SweepCell]) -> Markup {
     let [width, height] = size(sweep);
     html! {
         svg.map viewBox={ "0 0 " (width) " " (height) } width=(width) role="img" aria-label="heat map of the sweep" {
@@ -141,8 +141,8 @@ fn size(sweep: &Sweep) -> [f64; 2] {
     [LEFT + CELL[0] * count(1) + 10.0, TOP + CELL[1] * count(0) + 10.0]
 }
 
-fn drawing(sweep: &Sweep, cells: &[&Cell]) -> Markup {
-    let empty = Axis { key: String::new(), values: vec![String::new()] };
+fn drawing(sweep: &Sweep, cells: &[&SweepCell]) -> Markup {
+    let empty = SweepAxis { key: String::new(), values: vec![String::new()] };
     let down = sweep.axes.first().unwrap_or(&empty);
     let across = sweep.axes.get(1).unwrap_or(&empty);
     let x = |i: usize| LEFT + CELL[0] * i as f64;
@@ -182,7 +182,7 @@ fn short(text: &str) -> String {
 
 /// Returns the strength of the colour: the logarithm of the shift. A refused calibration does no
 /// harm.
-fn heat(cell: &Cell) -> f64 {
+fn heat(cell: &SweepCell) -> f64 {
     if cell.refused.is_some() {
         return 0.0;
     }
@@ -190,7 +190,7 @@ fn heat(cell: &Cell) -> f64 {
     ((sigma / FULL_SIGMA).max(1e-3).log10() / 3.0 + 1.0).clamp(0.0, 1.0) * 0.85
 }
 
-fn frame(cell: &Cell) -> &'static str {
+fn frame(cell: &SweepCell) -> &'static str {
     match (cell.missed, cell.fired && cell.noticed_by.is_none() && cell.refused.is_none()) {
         (true, _) => "frame missed",
         (false, true) => "frame unnoticed",

@@ -25,7 +25,7 @@ const PLAN_KEY: &str = "octant.plan";
 
 /// Values of a column, by row.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum ColumnValues {
     /// Texts; equal neighbours share one allocation.
     Text(Vec<Option<Arc<str>>>),
     /// Numbers.
@@ -38,7 +38,7 @@ pub enum Values {
 
 /// Kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Texts.
     Text,
     /// Numbers.
@@ -51,7 +51,7 @@ pub enum Kind {
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum ColumnValue {
     /// A text.
     Text(Arc<str>),
     /// A number.
@@ -62,39 +62,39 @@ pub enum Value {
     Boolean(bool),
 }
 
-impl Value {
+impl ColumnValue {
     /// Returns the kind of column that holds it.
     #[must_use]
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> ColumnKind {
         match self {
-            Self::Text(_) => Kind::Text,
-            Self::Number(_) => Kind::Number,
-            Self::Integer(_) => Kind::Integer,
-            Self::Boolean(_) => Kind::Boolean,
+            Self::Text(_) => ColumnKind::Text,
+            Self::Number(_) => ColumnKind::Number,
+            Self::Integer(_) => ColumnKind::Integer,
+            Self::Boolean(_) => ColumnKind::Boolean,
         }
     }
 }
 
-impl Values {
+impl ColumnValues {
     /// Creates an empty column of a kind.
     #[must_use]
-    pub const fn new(kind: Kind) -> Self {
+    pub const fn new(kind: ColumnKind) -> Self {
         match kind {
-            Kind::Text => Self::Text(Vec::new()),
-            Kind::Number => Self::Number(Vec::new()),
-            Kind::Integer => Self::Integer(Vec::new()),
-            Kind::Boolean => Self::Boolean(Vec::new()),
+            ColumnKind::Text => Self::Text(Vec::new()),
+            ColumnKind::Number => Self::Number(Vec::new()),
+            ColumnKind::Integer => Self::Integer(Vec::new()),
+            ColumnKind::Boolean => Self::Boolean(Vec::new()),
         }
     }
 
     /// Returns the kind.
     #[must_use]
-    pub const fn kind(&self) -> Kind {
+    pub const fn kind(&self) -> ColumnKind {
         match self {
-            Self::Text(_) => Kind::Text,
-            Self::Number(_) => Kind::Number,
-            Self::Integer(_) => Kind::Integer,
-            Self::Boolean(_) => Kind::Boolean,
+            Self::Text(_) => ColumnKind::Text,
+            Self::Number(_) => ColumnKind::Number,
+            Self::Integer(_) => ColumnKind::Integer,
+            Self::Boolean(_) => ColumnKind::Boolean,
         }
     }
 
@@ -117,21 +117,21 @@ impl Values {
 
     /// Appends a value, or null; a value of another kind becomes text in a text column, and null in
     /// any other.
-    pub fn push(&mut self, value: Option<Value>) {
+    pub fn push(&mut self, value: Option<ColumnValue>) {
         match (self, value) {
             (Self::Text(all), value) => push_text(
                 all,
                 value.map(|value| match value {
-                    Value::Text(text) => text,
-                    Value::Number(number) => number.to_string().into(),
-                    Value::Integer(number) => number.to_string().into(),
-                    Value::Boolean(value) => value.to_string().into(),
+                    ColumnValue::Text(text) => text,
+                    ColumnValue::Number(number) => number.to_string().into(),
+                    ColumnValue::Integer(number) => number.to_string().into(),
+                    ColumnValue::Boolean(value) => value.to_string().into(),
                 }),
             ),
-            (Self::Number(all), Some(Value::Number(number))) => all.push(Some(number)),
-            (Self::Number(all), Some(Value::Integer(number))) => all.push(Some(number as f64)),
-            (Self::Integer(all), Some(Value::Integer(number))) => all.push(Some(number)),
-            (Self::Boolean(all), Some(Value::Boolean(value))) => all.push(Some(value)),
+            (Self::Number(all), Some(ColumnValue::Number(number))) => all.push(Some(number)),
+            (Self::Number(all), Some(ColumnValue::Integer(number))) => all.push(Some(number as f64)),
+            (Self::Integer(all), Some(ColumnValue::Integer(number))) => all.push(Some(number)),
+            (Self::Boolean(all), Some(ColumnValue::Boolean(value))) => all.push(Some(value)),
             (Self::Number(all), _) => all.push(None),
             (Self::Integer(all), _) => all.push(None),
             (Self::Boolean(all), _) => all.push(None),
@@ -140,12 +140,12 @@ impl Values {
 
     /// Returns the value of a row.
     #[must_use]
-    pub fn at(&self, row: usize) -> Option<Value> {
+    pub fn at(&self, row: usize) -> Option<ColumnValue> {
         match self {
-            Self::Text(all) => all.get(row)?.clone().map(Value::Text),
-            Self::Number(all) => (*all.get(row)?).map(Value::Number),
-            Self::Integer(all) => (*all.get(row)?).map(Value::Integer),
-            Self::Boolean(all) => (*all.get(row)?).map(Value::Boolean),
+            Self::Text(all) => all.get(row)?.clone().map(ColumnValue::Text),
+            Self::Number(all) => (*all.get(row)?).map(ColumnValue::Number),
+            Self::Integer(all) => (*all.get(row)?).map(ColumnValue::Integer),
+            Self::Boolean(all) => (*all.get(row)?).map(ColumnValue::Boolean),
         }
     }
 }
@@ -197,8 +197,8 @@ pub enum TableError {
 pub fn write<'a>(
     path: &Path,
     plan: &str,
-    columns: &[(String, Kind)],
-    mut values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, Values>, TableError>,
+    columns: &[(String, ColumnKind)],
+    mut values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, ColumnValues>, TableError>,
 ) -> Result<(), TableError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
@@ -225,13 +225,13 @@ pub fn write<'a>(
     while let Some(mut column) = group.next_column().map_err(wrong)? {
         let values = values(index)?;
         match &*values {
-            Values::Text(all) => {
+            ColumnValues::Text(all) => {
                 let bytes = |text: &Arc<str>| ByteArray::from(&**text);
                 put(&mut column, all, bytes, |c| c.typed::<ByteArrayType>())
             }
-            Values::Number(all) => put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>()),
-            Values::Integer(all) => put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>()),
-            Values::Boolean(all) => put(&mut column, all, |v| *v, |c| c.typed::<BoolType>()),
+            ColumnValues::Number(all) => put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>()),
+            ColumnValues::Integer(all) => put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>()),
+            ColumnValues::Boolean(all) => put(&mut column, all, |v| *v, |c| c.typed::<BoolType>()),
         }
         .map_err(wrong)?;
         column.close().map_err(wrong)?;
@@ -264,39 +264,39 @@ fn put<T, D: DataType>(
     Ok(())
 }
 
-fn field(name: &str, kind: Kind) -> Result<Arc<Type>, ParquetError> {
+fn field(name: &str, kind: ColumnKind) -> Result<Arc<Type>, ParquetError> {
     let physical = match kind {
-        Kind::Text => Physical::BYTE_ARRAY,
-        Kind::Number => Physical::DOUBLE,
-        Kind::Integer => Physical::INT64,
-        Kind::Boolean => Physical::BOOLEAN,
+        ColumnKind::Text => Physical::BYTE_ARRAY,
+        ColumnKind::Number => Physical::DOUBLE,
+        ColumnKind::Integer => Physical::INT64,
+        ColumnKind::Boolean => Physical::BOOLEAN,
     };
     Type::primitive_type_builder(name, physical)
-        .with_logical_type((kind == Kind::Text).then_some(LogicalType::String))
+        .with_logical_type((kind == ColumnKind::Text).then_some(LogicalType::String))
         .with_repetition(Repetition::OPTIONAL)
         .build()
         .map(Arc::new)
 }
 
 /// Existing table.
-pub struct Table {
+pub struct ExistingTable {
     path: PathBuf,
     reader: SerializedFileReader<File>,
     /// Id of its plan.
     pub plan: String,
     /// Names and kinds of the columns.
-    pub columns: Vec<(String, Kind)>,
+    pub columns: Vec<(String, ColumnKind)>,
     /// Number of rows.
     pub rows: usize,
 }
 
-impl std::fmt::Debug for Table {
+impl std::fmt::Debug for ExistingTable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Table").field("path", &self.path).field("rows", &self.rows).finish()
     }
 }
 
-impl Table {
+impl ExistingTable {
     /// Opens a table.
     ///
     /// # Errors
@@ -332,10 +332,10 @@ impl Table {
         let columns = metadata.file_metadata().schema_descr().columns();
         let columns = columns.iter().map(|column| {
             let kind = match column.physical_type() {
-                Physical::DOUBLE => Kind::Number,
-                Physical::INT64 => Kind::Integer,
-                Physical::BOOLEAN => Kind::Boolean,
-                Physical::BYTE_ARRAY => Kind::Text,
+                Physical::DOUBLE => ColumnKind::Number,
+                Physical::INT64 => ColumnKind::Integer,
+                Physical::BOOLEAN => ColumnKind::Boolean,
+                Physical::BYTE_ARRAY => ColumnKind::Text,
                 other => return Err(form(format!("column {} has type {other}", column.name()))),
             };
             Ok((column.name().to_owned(), kind))
@@ -349,7 +349,7 @@ impl Table {
     ///
     /// # Errors
     /// If the file is damaged.
-    pub fn column(&self, name: &str) -> Result<Option<Values>, TableError> {
+    pub fn column(&self, name: &str) -> Result<Option<ColumnValues>, TableError> {
         let Some(index) = self.columns.iter().position(|(other, _)| other == name) else {
             return Ok(None);
         };
@@ -359,19 +359,19 @@ impl Table {
             reason: error.to_string(),
         };
         if self.rows == 0 {
-            return Ok(Some(Values::new(*kind)));
+            return Ok(Some(ColumnValues::new(*kind)));
         }
         let group = self.reader.get_row_group(0).map_err(form)?;
         let values = match group.get_column_reader(index).map_err(form)? {
-            ColumnReader::DoubleColumnReader(reader) => self.all(reader, |v| v).map(Values::Number),
-            ColumnReader::Int64ColumnReader(reader) => self.all(reader, |v| v).map(Values::Integer),
-            ColumnReader::BoolColumnReader(reader) => self.all(reader, |v| v).map(Values::Boolean),
+            ColumnReader::DoubleColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Number),
+            ColumnReader::Int64ColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Integer),
+            ColumnReader::BoolColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Boolean),
             ColumnReader::ByteArrayColumnReader(reader) => {
                 let mut all = Vec::with_capacity(self.rows);
                 self.each(reader, |bytes: Option<ByteArray>| {
                     push_text(&mut all, bytes.map(|b| String::from_utf8_lossy(b.data()).into()));
                 })
-                .map(|()| Values::Text(all))
+                .map(|()| ColumnValues::Text(all))
             }
             _ => Err(ParquetError::General(format!("column {name} has another type"))),
         };
@@ -427,22 +427,22 @@ mod tests {
         let rows = 2 * ROWS_AT_A_TIME + 77;
         let kept = |row: usize| row % 3 != 1;
         let all = [
-            Values::Text(
+            ColumnValues::Text(
                 (0..rows).map(|row| kept(row).then(|| (row / 50).to_string().into())).collect(),
             ),
-            Values::Number((0..rows).map(|row| kept(row).then_some(row as f64)).collect()),
+            ColumnValues::Number((0..rows).map(|row| kept(row).then_some(row as f64)).collect()),
         ];
-        let columns: Vec<(String, Kind)> =
+        let columns: Vec<(String, ColumnKind)> =
             all.iter().zip(["a", "b"]).map(|(v, name)| (name.to_owned(), v.kind())).collect();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.parquet");
         write(&path, "p", &columns, |i| Ok(Cow::Borrowed(&all[i]))).unwrap();
-        let table = Table::open(&path).unwrap();
+        let table = ExistingTable::open(&path).unwrap();
         assert_eq!(table.rows, rows);
         for ((name, _), values) in columns.iter().zip(&all) {
             assert!(table.column(name).unwrap().unwrap() == *values, "{name}");
         }
-        let Some(Values::Text(texts)) = table.column("a").unwrap() else { panic!("texts") };
+        let Some(ColumnValues::Text(texts)) = table.column("a").unwrap() else { panic!("texts") };
         let (first, later) = (texts[2].as_ref().unwrap(), texts[3].as_ref().unwrap());
         assert!(Arc::ptr_eq(first, later), "held once");
     }
@@ -453,16 +453,16 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a/table.parquet");
             let all = [
-                Values::Text(rows.iter().map(|row| row.0.as_deref().map(Arc::from)).collect()),
-                Values::Number(rows.iter().map(|row| row.1.filter(|v| !v.is_nan())).collect()),
-                Values::Integer(rows.iter().map(|row| row.2).collect()),
-                Values::Boolean(rows.iter().map(|row| row.3).collect()),
+                ColumnValues::Text(rows.iter().map(|row| row.0.as_deref().map(Arc::from)).collect()),
+                ColumnValues::Number(rows.iter().map(|row| row.1.filter(|v| !v.is_nan())).collect()),
+                ColumnValues::Integer(rows.iter().map(|row| row.2).collect()),
+                ColumnValues::Boolean(rows.iter().map(|row| row.3).collect()),
             ];
-            let columns: Vec<(String, Kind)> =
+            let columns: Vec<(String, ColumnKind)> =
                 all.iter().zip(["a", "b.c", "d", "e"]).map(|(v, name)| (name.to_owned(), v.kind())).collect();
             let write_it = |path: &Path| write(path, "of this plan", &columns, |i| Ok(Cow::Borrowed(&all[i])));
             write_it(&path).unwrap();
-            let table = Table::open(&path).unwrap();
+            let table = ExistingTable::open(&path).unwrap();
             prop_assert_eq!(&table.columns, &columns);
             prop_assert_eq!(table.plan.as_str(), "of this plan");
             for ((name, _), values) in columns.iter().zip(&all) {

@@ -7,7 +7,7 @@ use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
 use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
-use octant_requirements::trace::{Case, CaseResult as Traced, Trace};
+use octant_requirements::trace::{TracedCase, TracedResult as Traced, CampaignTrace};
 use octant_requirements::{Comparison, Verdict};
 use std::path::Path;
 
@@ -76,10 +76,10 @@ pub fn trace(
     requirements: &Requirements,
     folder: &Path,
     end: usize,
-) -> Result<Trace, ResultError> {
+) -> Result<CampaignTrace, ResultError> {
     let requirements = &with_those_of_scenarios(plan, requirements);
     let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
-    let mut of = |case: &super::plan::Case| -> Result<Case, ResultError> {
+    let mut of = |case: &super::plan::Case| -> Result<TracedCase, ResultError> {
         let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         let of_file = |id: &&String| requirements.get(id).is_some();
         let verifies: Vec<String> = (planned.iter())
@@ -121,14 +121,14 @@ pub fn trace(
             streams.push(None);
             None
         };
-        Ok(Case { id: case.id.clone(), verifies, draw: 0, result })
+        Ok(TracedCase { id: case.id.clone(), verifies, draw: 0, result })
     };
     let mut cases = plan.cases.iter().take(end).map(&mut of).collect::<Result<Vec<_>, _>>()?;
     let rows = plan.cases.iter().zip(streams.iter().map(Option::as_deref));
     for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
         case.draw = draw;
     }
-    Ok(Trace::new(requirements, &cases))
+    Ok(CampaignTrace::new(requirements, &cases))
 }
 
 /// Converts a verdict without requirements into inconclusive.

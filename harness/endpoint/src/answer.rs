@@ -5,7 +5,7 @@
 //! modes only advance until the unit is restarted.
 
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
+use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
 use octant_sample::{Mode, Output, Sample};
 use std::f64::consts::FRAC_PI_2;
 
@@ -163,7 +163,7 @@ impl AnswerCheck {
         for i in 0..PARAMETER_COUNT {
             let (value, sigma) = (values[i], estimate.sigma[i]);
             let wrong = |field: String, found: f64, expected: String| {
-                let unit = Group::of(i);
+                let unit = ParameterGroup::of(i);
                 let found = format!("{} {}", found / unit.si_per_unit(), unit.unit());
                 Err(Misbehaviour { sample, field, found, expected })
             };

@@ -5,7 +5,7 @@ use super::{
     Tells,
 };
 use octant_faults::wire::Wired;
-use octant_realtime::clock::HostTime;
+use octant_realtime::clock::MonotonicTime;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Output, Parameters};
 
@@ -59,7 +59,7 @@ impl Endpoint for AnyEndpoint {
 
     fn answer(
         &mut self,
-        until: HostTime,
+        until: MonotonicTime,
         output: &mut Output,
     ) -> Result<Option<usize>, EndpointError> {
         each!(&mut self.0, endpoint => endpoint.answer(until, output))

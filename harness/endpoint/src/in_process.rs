@@ -1,7 +1,7 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
-use octant_calibration::{Config, Core};
+use octant_calibration::{CoreConfig, Core};
 use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
@@ -12,7 +12,7 @@ pub struct InProcess {
     core: Core,
     revision: u32,
     /// Configuration with which the core starts after each restart.
-    config: Box<Config>,
+    config: Box<CoreConfig>,
 }
 
 impl InProcess {
@@ -20,7 +20,7 @@ impl InProcess {
     ///
     /// # Errors
     /// If the configuration contradicts itself.
-    pub fn new(config: &Config) -> Result<Self, octant_calibration::state_machine::ConfigError> {
+    pub fn new(config: &CoreConfig) -> Result<Self, octant_calibration::state_machine::CoreConfigError> {
         Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
     }
 
@@ -50,7 +50,7 @@ impl Endpoint for InProcess {
     }
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
-        let mut config = Config::clone(&self.config);
+        let mut config = CoreConfig::clone(&self.config);
         if let Some(offset) = offset {
             config.initial_parameters = super::sum(&config.initial_parameters, offset);
         }

@@ -13,13 +13,13 @@ pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 
-use octant_calibration::Config;
-use octant_calibration::state_machine::ConfigError;
+use octant_calibration::CoreConfig;
+use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
 use octant_mapping::stepper::UseError;
-use octant_realtime::clock::HostTime;
+use octant_realtime::clock::MonotonicTime;
 use octant_recorder::Event;
 use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
@@ -60,7 +60,7 @@ pub trait Endpoint {
     /// As [`Self::step`].
     fn answer(
         &mut self,
-        _until: HostTime,
+        _until: MonotonicTime,
         _output: &mut Output,
     ) -> Result<Option<usize>, EndpointError> {
         Ok(None)
@@ -162,10 +162,10 @@ pub struct RemoteClock {
 
 /// Reasons why the endpoint of a scenario can't be opened.
 #[derive(Debug, thiserror::Error)]
-pub enum OpenError {
+pub enum EndpointOpenError {
     /// The core's configuration contradicts itself.
     #[error(transparent)]
-    Core(#[from] ConfigError),
+    Core(#[from] CoreConfigError),
     /// An FMU can't be used.
     #[error(transparent)]
     Use(#[from] UseError),
@@ -191,7 +191,7 @@ pub enum OpenError {
 ///
 /// # Errors
 /// As [`open`].
-pub fn check(scenario: &Scenario, config: &Config) -> Result<(), OpenError> {
+pub fn check(scenario: &Scenario, config: &CoreConfig) -> Result<(), EndpointOpenError> {
     match scenario.endpoint.device() {
         Some(live) => LiveEndpoint::check(scenario, live),
         None => open(scenario, config).map(drop),
@@ -203,11 +203,11 @@ pub fn check(scenario: &Scenario, config: &Config) -> Result<(), OpenError> {
 ///
 /// # Errors
 /// If it can't be opened, or doesn't fit.
-pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<AnyEndpoint>, OpenError> {
+pub fn open(scenario: &Scenario, config: &CoreConfig) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
     match &scenario.endpoint {
-        scenario::Endpoint::InProcess => Ok(None),
-        scenario::Endpoint::Fmu(fmu) => Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into())),
-        scenario::Endpoint::Live(live) => {
+        scenario::EndpointSpec::InProcess => Ok(None),
+        scenario::EndpointSpec::Fmu(fmu) => Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into())),
+        scenario::EndpointSpec::Live(live) => {
             Ok(Some(LiveEndpoint::open(scenario, live, config)?.into()))
         }
     }

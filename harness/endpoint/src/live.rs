@@ -4,21 +4,21 @@
 //! come: the outputs are therefore those of the device's core to the last bit, however bad the line
 //! is. By the clock a sample is sent once, and its answer is taken when it comes.
 
-use super::{Conclusion, Endpoint, EndpointError, OpenError, RemoteClock, Sent};
-use octant_calibration::Config;
+use super::{Conclusion, Endpoint, EndpointError, EndpointOpenError, RemoteClock, Sent};
+use octant_calibration::CoreConfig;
 use octant_faults::catalogue::Acts;
 use octant_faults::wire::Wired;
 use octant_link::clock::ClockEstimator;
-use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
+use octant_link::harness::{ANEW, LinkEvent, Harness, SessionOptions, Patience, Sending, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
-use octant_realtime::clock::{HostTime, now};
-use octant_recorder::event::{self, Link};
+use octant_realtime::clock::{MonotonicTime, now};
+use octant_recorder::event::{self, LinkRecord};
 use octant_sample::Epoch;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Live, Scenario};
-use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};
+use octant_wire::message::{Gathered, OutputMessage, StepPacing, Reason, EndRole, StepNumber};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -37,12 +37,12 @@ pub struct LiveEndpoint {
 /// Samples that were sent by the clock and are not answered yet.
 #[derive(Debug)]
 struct Underway {
-    steps: VecDeque<Step>,
+    steps: VecDeque<StepNumber>,
     /// Answer whose parameters haven't come yet.
     held: Option<Held>,
     clock: ClockEstimator,
     /// Time of the last time exchange.
-    asked: HostTime,
+    asked: MonotonicTime,
     /// Number of hellos without a session since the last answer.
     anew: u32,
 }
@@ -62,9 +62,9 @@ impl LiveEndpoint {
     ///
     /// # Errors
     /// If it can't.
-    pub fn check(scenario: &Scenario, live: &Live) -> Result<(), OpenError> {
+    pub fn check(scenario: &Scenario, live: &Live) -> Result<(), EndpointOpenError> {
         if scenario.baseline.is_some() {
-            return Err(OpenError::OneMethod { uri: live.uri.to_string() });
+            return Err(EndpointOpenError::OneMethod { uri: live.uri.to_string() });
         }
         if scenario.realtime.by_clock {
             let rate_hz = 1e9 / scenario.sample_period_ns as f64;
@@ -77,24 +77,24 @@ impl LiveEndpoint {
     ///
     /// # Errors
     /// If no device answers, or the device doesn't fit.
-    pub fn open(scenario: &Scenario, live: &Live, config: &Config) -> Result<Self, OpenError> {
+    pub fn open(scenario: &Scenario, live: &Live, config: &CoreConfig) -> Result<Self, EndpointOpenError> {
         Self::check(scenario, live)?;
-        let options = Options {
+        let options = SessionOptions {
             configuration: configuration(config),
             patience: Patience {
                 hello: Duration::from_secs_f64(live.hello_s),
                 answer: Duration::from_secs_f64(live.answer_s),
                 repeat: Duration::from_secs_f64(live.repeat_s),
             },
-            ..Options::lock_step(config.sample_period_ns)
+            ..SessionOptions::lock_step(config.sample_period_ns)
         };
-        let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
-        let options = Options { pacing, ..options };
-        let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        let pacing = if scenario.realtime.by_clock { StepPacing::RealTime } else { StepPacing::LockStep };
+        let options = SessionOptions { pacing, ..options };
+        let mut port = port::open(&live.uri, EndRole::Harness).map_err(SessionError::from)?;
         if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
             port = octant_link::fault::around(port);
         }
-        let mut wire = Wire::new(live.uri.to_string(), port, Role::Harness);
+        let mut wire = Wire::new(live.uri.to_string(), port, EndRole::Harness);
         if let Some(bus) = load::bus(&live.uri) {
             wire.set_bus(bus);
         }
@@ -110,7 +110,7 @@ impl LiveEndpoint {
                 steps: VecDeque::with_capacity(1 << 14),
                 held: None,
                 clock: ClockEstimator::new(10.0),
-                asked: HostTime::default(),
+                asked: MonotonicTime::default(),
                 anew: 0,
             },
         })
@@ -212,7 +212,7 @@ impl Endpoint for LiveEndpoint {
 
     fn answer(
         &mut self,
-        until: HostTime,
+        until: MonotonicTime,
         output: &mut Output,
     ) -> Result<Option<usize>, EndpointError> {
         loop {
@@ -230,7 +230,7 @@ impl Endpoint for LiveEndpoint {
                 continue;
             };
             match event {
-                Event::Output(message) => {
+                LinkEvent::Output(message) => {
                     self.underway.anew = 0;
                     // Messages come in order, so the parameters of an answer that is still held
                     // won't come any more.
@@ -242,15 +242,15 @@ impl Endpoint for LiveEndpoint {
                         return Ok(before);
                     }
                 }
-                Event::Parameters(_) => {
+                LinkEvent::Parameters(_) => {
                     self.take_parameters();
                     if let Some(held) = &mut self.underway.held {
                         held.waits &=
                             held.message.output.parameters_revision != self.estimate.revision;
                     }
                 }
-                Event::Time(stamps) => self.underway.clock.add(&stamps),
-                Event::Anew => {
+                LinkEvent::Time(stamps) => self.underway.clock.add(&stamps),
+                LinkEvent::Anew => {
                     self.underway.anew += 1;
                     if self.underway.anew >= ANEW {
                         return Err(self.harness.started_anew().into());
@@ -296,7 +296,7 @@ impl Endpoint for LiveEndpoint {
         let (counts, effort) = (self.harness.counts(), self.harness.effort());
         let theirs = self.harness.theirs();
         let wall_s = self.begun.elapsed().as_secs_f64();
-        let link = Link {
+        let link = LinkRecord {
             arbitration_lost: counts.arbitration_lost,
             away_s: effort.away.as_secs_f64(),
             bus_load: (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
@@ -336,7 +336,7 @@ impl Drop for LiveEndpoint {
 /// Computes the hash that both ends compare in their hello, over the whole configuration of the
 /// core; zeros if it can't be encoded.
 #[must_use]
-pub fn configuration(config: &Config) -> [u8; 32] {
+pub fn configuration(config: &CoreConfig) -> [u8; 32] {
     // The configuration consists of numbers and names, which are encoded bit by bit.
     postcard::to_stdvec(config).map_or([0; 32], |bytes| blake3::hash(&bytes).into())
 }

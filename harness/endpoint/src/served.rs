@@ -1,18 +1,18 @@
 //! The core as a device, as run by `octant serve`.
 
-use octant_calibration::state_machine::ConfigError;
-use octant_calibration::{Config, Core};
+use octant_calibration::state_machine::CoreConfigError;
+use octant_calibration::{CoreConfig, Core};
 use octant_link::device::{Facts, Steps};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::Text;
-use octant_wire::message::{Capabilities, Limits};
+use octant_wire::message::{Capabilities, EndLimits};
 
 /// The calibration core behind a port.
 #[derive(Debug)]
 pub struct ServedCore {
     core: Core,
-    config: Box<Config>,
+    config: Box<CoreConfig>,
 }
 
 impl ServedCore {
@@ -20,7 +20,7 @@ impl ServedCore {
     ///
     /// # Errors
     /// If the configuration contradicts itself.
-    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+    pub fn new(config: &CoreConfig) -> Result<Self, CoreConfigError> {
         Ok(Self { core: Core::new(config)?, config: Box::new(config.clone()) })
     }
 
@@ -34,7 +34,7 @@ impl ServedCore {
             capabilities: Capabilities::all(),
             sample_period_ns: self.config.sample_period_ns,
             configuration: super::live::configuration(&self.config),
-            limits: Limits { window: WINDOW, silence_ms, shortest_period_ns: 0 },
+            limits: EndLimits { window: WINDOW, silence_ms, shortest_period_ns: 0 },
         }
     }
 }
@@ -45,7 +45,7 @@ const WINDOW: u16 = 32;
 
 impl Steps for ServedCore {
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), String> {
-        let mut config = Config::clone(&self.config);
+        let mut config = CoreConfig::clone(&self.config);
         if let Some(offset) = offset {
             config.initial_parameters = super::sum(&config.initial_parameters, offset);
         }

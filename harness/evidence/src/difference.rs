@@ -4,7 +4,7 @@ use super::names::LOCK;
 
 /// A difference between a folder and its manifest.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Difference {
+pub enum FolderDifference {
     /// The manifest names a file that isn't there.
     Missing(String),
     /// A file isn't named in the manifest.
@@ -19,7 +19,7 @@ pub enum Difference {
     Locked,
 }
 
-impl std::fmt::Display for Difference {
+impl std::fmt::Display for FolderDifference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Missing(path) => write!(f, "{path} is missing"),

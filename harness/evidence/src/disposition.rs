@@ -52,13 +52,13 @@ pub struct Dispositions {
     /// Text of the file, unchanged; empty if there is none.
     pub text: String,
     /// Entries, in their order.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<DispositionEntry>,
 }
 
 /// One entry.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct DispositionEntry {
     /// Id of the discrepancy.
     pub id: String,
     /// Description of the discrepancy when the entry was made.
@@ -78,7 +78,7 @@ pub struct Entry {
     pub by: String,
 }
 
-impl Entry {
+impl DispositionEntry {
     /// Returns whether the disposition is still missing.
     #[must_use]
     pub fn is_open(&self) -> bool {
@@ -97,7 +97,7 @@ struct File {
     #[allow(dead_code, reason = "it is looked at before the rest")]
     schema: u32,
     #[serde(default)]
-    discrepancies: Vec<Entry>,
+    discrepancies: Vec<DispositionEntry>,
 }
 
 impl Dispositions {
@@ -120,7 +120,7 @@ impl Dispositions {
 
     /// Returns the entry of a discrepancy.
     #[must_use]
-    pub fn of(&self, id: &str) -> Option<&Entry> {
+    pub fn of(&self, id: &str) -> Option<&DispositionEntry> {
         self.entries.iter().find(|entry| entry.id == id)
     }
 
@@ -129,13 +129,13 @@ impl Dispositions {
         &'a self,
         discrepancies: &'a [Discrepancy],
     ) -> impl Iterator<Item = &'a Discrepancy> {
-        discrepancies.iter().filter(|found| self.of(&found.id).is_none_or(Entry::is_open))
+        discrepancies.iter().filter(|found| self.of(&found.id).is_none_or(DispositionEntry::is_open))
     }
 
     /// Lists the entries whose discrepancy doesn't occur any more.
     #[must_use]
-    pub fn gone(&self, discrepancies: &[Discrepancy]) -> Vec<&Entry> {
-        let occurs = |entry: &&Entry| discrepancies.iter().any(|found| found.id == entry.id);
+    pub fn gone(&self, discrepancies: &[Discrepancy]) -> Vec<&DispositionEntry> {
+        let occurs = |entry: &&DispositionEntry| discrepancies.iter().any(|found| found.id == entry.id);
         self.entries.iter().filter(|entry| !occurs(entry)).collect()
     }
 
@@ -188,7 +188,7 @@ fn entry(found: &Discrepancy) -> String {
     text + "disposition = \"\"\nby = \"\"\n"
 }
 
-fn parse(text: &str) -> Result<Vec<Entry>, String> {
+fn parse(text: &str) -> Result<Vec<DispositionEntry>, String> {
     let wrong = |error: toml::de::Error| {
         let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
         let place = line.map_or_else(String::new, |line| format!("line {line}: "));

@@ -1,7 +1,7 @@
 //! Facts that a run or a campaign states about itself.
 
 use super::inputs::InputFacts;
-use super::signature::Key;
+use super::signature::SigningKey;
 use octant_realtime::schedule::Granted;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Equipment;
@@ -35,7 +35,7 @@ pub struct RunFacts {
     /// Result of a campaign.
     pub campaign: Option<CampaignFacts>,
     /// The key that signs the manifest.
-    pub key: Option<Arc<Key>>,
+    pub key: Option<Arc<SigningKey>>,
 }
 
 impl RunFacts {

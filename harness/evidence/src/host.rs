@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// A machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Host {
+pub struct Machine {
     /// Name.
     pub name: String,
     /// Operating system.
@@ -17,7 +17,7 @@ pub struct Host {
     pub cpus: usize,
 }
 
-impl Host {
+impl Machine {
     /// Describes this machine.
     #[must_use]
     pub fn this() -> Self {

@@ -15,7 +15,7 @@ pub struct InputFacts {
 
 /// Reason why a recording can't be hashed.
 #[derive(Debug, thiserror::Error)]
-pub enum InputError {
+pub enum InputHashError {
     /// The name of the file can't be expanded.
     #[error("{reason}")]
     Name {
@@ -36,15 +36,15 @@ pub enum InputError {
 ///
 /// # Errors
 /// If one can't be read.
-pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputError> {
+pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputHashError> {
     let one = |name: FileName| {
         let path = name
             .path(&scenario.folder)
-            .map_err(|reason| InputError::Name { reason: reason.to_string() })?;
+            .map_err(|reason| InputHashError::Name { reason: reason.to_string() })?;
         let file = path.display().to_string();
         match sha256(&path) {
             Ok(sha256) => Ok(InputFacts { file, sha256 }),
-            Err(error) => Err(InputError::Read { file, error }),
+            Err(error) => Err(InputHashError::Read { file, error }),
         }
     };
     scenario.source.recordings().into_iter().map(one).collect()

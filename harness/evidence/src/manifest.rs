@@ -1,10 +1,10 @@
 //! `manifest.json`: origin of a run, versions, and the hashes of everything in its folder.
 
-pub use super::difference::Difference;
+pub use super::difference::FolderDifference;
 pub use super::error::ManifestError;
 pub use super::facts::{CampaignFacts, FmuFacts, RunFacts};
 pub use super::files::FileHash;
-pub use super::host::Host;
+pub use super::host::Machine;
 pub use super::names::MANIFEST as FILE_NAME;
 
 use super::files::{self, Entries, system};
@@ -33,7 +33,7 @@ pub struct Manifest {
     /// Compiler that octant was built with; `null` if it isn't known.
     pub rustc: Option<String>,
     /// The machine.
-    pub host: Host,
+    pub host: Machine,
     /// Seed of the run; `null` where there is none, as in a replay.
     pub seed: Option<u64>,
     /// Start of the run, UTC, RFC 3339.
@@ -106,7 +106,7 @@ impl Manifest {
             numerics: Some(NUMERICS),
             git: some(build.git_commit).map(|commit| Git { commit, dirty: build.is_git_dirty }),
             rustc: some(build.rustc),
-            host: Host::this(),
+            host: Machine::this(),
             seed: facts.seed,
             started: humantime::format_rfc3339_millis(facts.started).to_string(),
             ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
@@ -261,24 +261,24 @@ impl Manifest {
     ///
     /// # Errors
     /// If a file can't be read.
-    pub fn verify(&self, folder: &Path) -> Result<Vec<Difference>, ManifestError> {
+    pub fn verify(&self, folder: &Path) -> Result<Vec<FolderDifference>, ManifestError> {
         let mut found = Entries::of(folder)?;
         let mut differences = Vec::new();
         for file in &self.files {
             if let Some(what) = found.others.remove(&file.path) {
-                differences.push(Difference::NoFile(file.path.clone(), what));
+                differences.push(FolderDifference::NoFile(file.path.clone(), what));
             } else if !found.files.remove(&file.path) {
-                differences.push(Difference::Missing(file.path.clone()));
+                differences.push(FolderDifference::Missing(file.path.clone()));
             } else if files::hash(folder, &file.path)? != *file {
-                differences.push(Difference::Changed(file.path.clone()));
+                differences.push(FolderDifference::Changed(file.path.clone()));
             }
         }
         for empty in &self.empty_folders {
             if !found.empty.remove(empty) {
-                differences.push(Difference::Missing(empty.clone()));
+                differences.push(FolderDifference::Missing(empty.clone()));
             }
         }
-        differences.extend(found.files.into_iter().map(Difference::Unknown));
+        differences.extend(found.files.into_iter().map(FolderDifference::Unknown));
         // A folder that should have files is empty because they are missing, which is reported
         // already.
         let had = |empty: &String| {
@@ -286,11 +286,11 @@ impl Manifest {
             self.files.iter().any(|file| file.path.starts_with(&start))
         };
         let added = found.empty.into_iter().filter(|empty| !had(empty));
-        differences.extend(added.map(Difference::EmptyFolder));
+        differences.extend(added.map(FolderDifference::EmptyFolder));
         let others = found.others.into_iter();
-        differences.extend(others.map(|(path, what)| Difference::NoFile(path, what)));
+        differences.extend(others.map(|(path, what)| FolderDifference::NoFile(path, what)));
         if found.locked {
-            differences.push(Difference::Locked);
+            differences.push(FolderDifference::Locked);
         }
         Ok(differences)
     }
@@ -416,9 +416,9 @@ mod tests {
         assert_eq!(
             manifest.verify(folder.path()).unwrap(),
             [
-                Difference::Changed("a.txt".into()),
-                Difference::Missing("sub/b.txt".into()),
-                Difference::Unknown("c.txt".into()),
+                FolderDifference::Changed("a.txt".into()),
+                FolderDifference::Missing("sub/b.txt".into()),
+                FolderDifference::Unknown("c.txt".into()),
             ]
         );
     }

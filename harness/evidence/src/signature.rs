@@ -45,17 +45,17 @@ fn refuse_readable(_: &Path) -> Result<(), String> {
 }
 
 /// Signing key.
-pub struct Key {
+pub struct SigningKey {
     secret: SecretKey,
 }
 
-impl std::fmt::Debug for Key {
+impl std::fmt::Debug for SigningKey {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Key({})", self.id())
     }
 }
 
-impl Key {
+impl SigningKey {
     /// Reads the key that the environment names; `None` if it names none.
     ///
     /// # Errors
@@ -264,7 +264,7 @@ mod tests {
         let path = folder.path().join("key");
         make_private(&path);
         std::fs::write(&path, pair.sk.to_box(None).unwrap().to_string()).unwrap();
-        let key = Key::read(&path, None).unwrap();
+        let key = SigningKey::read(&path, None).unwrap();
         let manifest = folder.path().join("manifest.json");
         std::fs::write(&manifest, "{\"schema\": 1}\n").unwrap();
         key.sign(&manifest).unwrap();
@@ -299,7 +299,7 @@ mod tests {
         make_private(&path);
         let secret = "untrusted comment: minisign encrypted secret key\nRWQAAEIyAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAGGJejVhEWMtXozaAVo8D+2wN2PE7YWyElsXM4PcvXS1lbGnvT2wBClem2MIozcVtChEQeclEDPNjZCh+b3hwAwE7eVEg1H7jAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=\n";
         std::fs::write(&path, secret).unwrap();
-        let key = Key::read(&path, None).unwrap();
+        let key = SigningKey::read(&path, None).unwrap();
         assert_eq!(key.id(), "CB5844588D5E6218");
         let manifest = folder.path().join("manifest.json");
         std::fs::write(&manifest, "{}\n").unwrap();
@@ -316,7 +316,7 @@ mod tests {
             lines.next().unwrap().replacen("YWyElsXM", "MXslEyWY", 1)
         );
         std::fs::write(&path, damaged).unwrap();
-        let error = Key::read(&path, None).unwrap().sign(&manifest).unwrap_err().to_string();
+        let error = SigningKey::read(&path, None).unwrap().sign(&manifest).unwrap_err().to_string();
         assert!(error.starts_with("sign "), "{error}");
     }
 
@@ -331,7 +331,7 @@ mod tests {
         assert!(error.starts_with("read the key no/such/file"), "{error}");
         let none = folder.path().join("none");
         make_private(&none);
-        let error = Key::read(&none, None).unwrap_err().to_string();
+        let error = SigningKey::read(&none, None).unwrap_err().to_string();
         assert!(error.contains("expected a secret key of minisign"), "{error}");
     }
 
@@ -362,7 +362,7 @@ mod tests {
             (0o777, false),
         ] {
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
-            match Key::read(&path, None) {
+            match SigningKey::read(&path, None) {
                 Ok(_) => assert!(is_good, "{mode:o}"),
                 Err(error) => {
                     let told = error.to_string();

@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, Clock, Event, Measured, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, StampClock, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp,
 };
 use std::hint::black_box;
 
@@ -13,10 +13,10 @@ const READINGS: u64 = 2000;
 fn reading(number: u64) -> Reading {
     let k = number as f64;
     Reading {
-        rotation: Some(Measured::increment([3.6e-7 + 1e-9 * k, -1e-9 * k, 2e-9])),
-        velocity: Some(Measured::increment([1e-6, -2e-9 * k, -0.049_033])),
+        rotation: Some(MeasuredTriad::increment([3.6e-7 + 1e-9 * k, -1e-9 * k, 2e-9])),
+        velocity: Some(MeasuredTriad::increment([1e-6, -2e-9 * k, -0.049_033])),
         interval_s: Some(0.005),
-        stamp: Some(Stamp { ns: number * 5_000_000, clock: Clock::Startup }),
+        stamp: Some(Stamp { ns: number * 5_000_000, clock: StampClock::Startup }),
         sequence: Some(number),
         temperature_c: Some(31.5),
         ..Reading::NOTHING
@@ -50,7 +50,7 @@ fn decode(c: &mut Criterion) {
                     let mut decoder = AnyDecoder::new(protocol);
                     for mut piece in bytes.chunks(piece) {
                         while let Some(event) = decoder.next(&mut piece) {
-                            assert!(matches!(event, Event::Reading(_)));
+                            assert!(matches!(event, FramingEvent::Reading(_)));
                             black_box(&event);
                         }
                     }

@@ -6,7 +6,7 @@
 //! points. The hull's edge below the middle of the points is the line: of all lines below all points,
 //! the closest one. Late readings, be it one or a thousand, don't move it.
 //!
-//! A clock whose rate changes (with its temperature) has no such line: use a new [`Alignment`] for each
+//! A clock whose rate changes (with its temperature) has no such line: use a new [`ClockAlignment`] for each
 //! stretch of time in which it is steady.
 //!
 //! The least delay itself can't be measured one-way: it is part of the offset. On a serial line it is
@@ -25,7 +25,7 @@ struct Point {
 
 /// Estimate of a unit's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct UnitClockEstimate {
     /// Stamp that the offset refers to: the first one.
     pub origin_ns: u64,
     /// Host time at that stamp, including the least delay, ns.
@@ -45,7 +45,7 @@ pub struct Estimate {
     pub behind: u64,
 }
 
-impl Estimate {
+impl UnitClockEstimate {
     /// Host time of a stamp, ns: the earliest time at which its reading could have arrived.
     #[must_use]
     pub fn host_ns(&self, stamp_ns: u64) -> f64 {
@@ -56,7 +56,7 @@ impl Estimate {
 
 /// Estimates offset and skew of a unit's clock, without allocating.
 #[derive(Clone, Debug)]
-pub struct Alignment {
+pub struct ClockAlignment {
     /// First stamp, and the delay of its arrival.
     origin: Option<(u64, i128)>,
     last_ns: u64,
@@ -73,13 +73,13 @@ pub struct Alignment {
     behind: u64,
 }
 
-impl Default for Alignment {
+impl Default for ClockAlignment {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Alignment {
+impl ClockAlignment {
     /// Makes an estimator without readings.
     #[must_use]
     pub const fn new() -> Self {
@@ -145,7 +145,7 @@ impl Alignment {
 
     /// Present estimate; `None` before the first reading.
     #[must_use]
-    pub fn estimate(&self) -> Option<Estimate> {
+    pub fn estimate(&self) -> Option<UnitClockEstimate> {
         let (origin_ns, first_behind) = self.origin?;
         let hull = &self.hull[..self.corners];
         let middle_s = self.sum_s / self.readings as f64;
@@ -164,7 +164,7 @@ impl Alignment {
             [self.sum_s, self.sum_s2, self.sum_ns, self.sum_ns2, self.sum_s_ns].map(|s| s / n);
         let late_mean_ns = d - a - b * t;
         let variance = (d2 - d * d) - 2.0 * b * (td - t * d) + b * b * (t2 - t * t);
-        Some(Estimate {
+        Some(UnitClockEstimate {
             late_mean_ns,
             late_sigma_ns: libm::sqrt(variance.max(0.0)),
             origin_ns,
@@ -191,8 +191,8 @@ mod tests {
     const LEAST_NS: i64 = 850_000;
 
     /// Aligns readings at 200 Hz of a clock that is slow by `skew`, with `delay` beyond the least one.
-    fn align(skew: f64, seconds: u64, delay: impl Fn(u64) -> i64) -> Alignment {
-        let mut alignment = Alignment::new();
+    fn align(skew: f64, seconds: u64, delay: impl Fn(u64) -> i64) -> ClockAlignment {
+        let mut alignment = ClockAlignment::new();
         for number in 0..seconds * 200 {
             let stamp = 1_000_000_000 + number * 5_000_000;
             let drift = (skew * (number * 5_000_000) as f64) as i64;
@@ -202,7 +202,7 @@ mod tests {
         alignment
     }
 
-    fn check(estimate: Estimate, skew: f64, offset_within_ns: f64, skew_within: f64) {
+    fn check(estimate: UnitClockEstimate, skew: f64, offset_within_ns: f64, skew_within: f64) {
         let expected = (1_000_000_000 + OFFSET_NS + LEAST_NS) as f64;
         let off = estimate.offset_ns - expected;
         assert!(off.abs() <= offset_within_ns, "offset off by {off} ns");
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn at_the_beginning_there_is_an_offset_alone() {
-        let mut alignment = Alignment::new();
+        let mut alignment = ClockAlignment::new();
         assert_eq!(alignment.estimate(), None);
         alignment.add(5_000, 9_000);
         let estimate = alignment.estimate().unwrap();
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn more_corners_than_are_kept() {
-        let mut alignment = Alignment::new();
+        let mut alignment = ClockAlignment::new();
         // On a parabola every point is a corner.
         for number in 0..1000u64 {
             alignment.add(number * 1_000_000_000, number * 1_000_000_000 + number * number);

@@ -3,12 +3,12 @@
 use crate::Reading;
 use crate::encoding::CannotCarry;
 use crate::facts::ProtocolFacts;
-use crate::framing::{Counters, Event};
+use crate::framing::{ReadingCounters, FramingEvent};
 
-/// Makes everything that there is once for each protocol: `Variant: module`. A module has `FACTS`, a
-/// `Decoder` and an `Encoder`.
+/// Makes everything that there is once for each protocol: `Variant: module, Decoder, Encoder`. A module has
+/// `FACTS` and the two types.
 macro_rules! protocols {
-    ($($variant:ident: $module:ident,)+) => {
+    ($($variant:ident: $module:ident, $decoder:ident, $encoder:ident;)+) => {
         /// A protocol on a line of bytes.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Protocol {
@@ -35,7 +35,7 @@ macro_rules! protocols {
             reason = "there is one for each port, and nothing to allocate"
         )]
         pub enum AnyDecoder {
-            $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::Decoder),)+
+            $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::$decoder),)+
         }
 
         impl AnyDecoder {
@@ -43,21 +43,21 @@ macro_rules! protocols {
             #[must_use]
             pub fn new(protocol: Protocol) -> Self {
                 match protocol {
-                    $(Protocol::$variant => Self::$variant(crate::$module::Decoder::default()),)+
+                    $(Protocol::$variant => Self::$variant(crate::$module::$decoder::default()),)+
                 }
             }
 
             /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns
             /// `None` when all bytes are taken: call it until then.
             #[inline]
-            pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+            pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent> {
                 match self {
                     $(Self::$variant(decoder) => decoder.next(bytes),)+
                 }
             }
 
             /// Ends the input, also after a long silence. Call it until it returns `None`.
-            pub fn end(&mut self) -> Option<Event> {
+            pub fn end(&mut self) -> Option<FramingEvent> {
                 match self {
                     $(Self::$variant(decoder) => decoder.end(),)+
                 }
@@ -65,7 +65,7 @@ macro_rules! protocols {
 
             /// Counts of the traffic so far.
             #[must_use]
-            pub fn counters(&self) -> &Counters {
+            pub fn counters(&self) -> &ReadingCounters {
                 match self {
                     $(Self::$variant(decoder) => decoder.counters(),)+
                 }
@@ -75,7 +75,7 @@ macro_rules! protocols {
         /// Encoder of any protocol.
         #[derive(Clone, Debug)]
         pub enum AnyEncoder {
-            $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::Encoder),)+
+            $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::$encoder),)+
         }
 
         impl AnyEncoder {
@@ -83,7 +83,7 @@ macro_rules! protocols {
             #[must_use]
             pub fn new(protocol: Protocol) -> Self {
                 match protocol {
-                    $(Protocol::$variant => Self::$variant(crate::$module::Encoder::default()),)+
+                    $(Protocol::$variant => Self::$variant(crate::$module::$encoder::default()),)+
                 }
             }
 
@@ -102,11 +102,11 @@ macro_rules! protocols {
 
 // A new protocol stands last: the fuzzer's inputs choose one by its place.
 protocols! {
-    VectorNav: vectornav,
-    Xsens: xsens,
-    NovAtel: novatel,
-    Sbg: sbg,
-    Octant: own,
+    VectorNav: vectornav, VectorNavDecoder, VectorNavEncoder;
+    Xsens: xsens, XsensDecoder, XsensEncoder;
+    NovAtel: novatel, NovatelDecoder, NovatelEncoder;
+    Sbg: sbg, SbgDecoder, SbgEncoder;
+    Octant: own, OwnDecoder, OwnEncoder;
 }
 
 impl Protocol {

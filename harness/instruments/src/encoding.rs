@@ -1,6 +1,6 @@
 //! Shared parts of the encoders.
 
-use crate::{Kind, Measured};
+use crate::{ReadingKind, MeasuredTriad};
 
 /// Error of a reading that lacks a value for a frame, or has one that doesn't fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,29 +24,29 @@ impl Needs {
     /// Requires increments, which are also made from means if the interval is known.
     pub(crate) fn increments(
         self,
-        measured: Option<Measured>,
+        measured: Option<MeasuredTriad>,
         interval_s: Option<f64>,
         what: &'static str,
     ) -> Result<[f64; 3], CannotCarry> {
         let measured = self.some(measured, what)?;
         match (measured.kind, interval_s) {
-            (Kind::Increment, _) => Ok(measured.value),
-            (Kind::Mean, Some(interval_s)) => Ok(measured.over(interval_s)),
-            (Kind::Mean, None) => Err(CannotCarry { protocol: self.0, what }),
+            (ReadingKind::Increment, _) => Ok(measured.value),
+            (ReadingKind::Mean, Some(interval_s)) => Ok(measured.over(interval_s)),
+            (ReadingKind::Mean, None) => Err(CannotCarry { protocol: self.0, what }),
         }
     }
 
     /// Requires means, which are also made from increments if the interval is known.
     pub(crate) fn means(
         self,
-        measured: Option<Measured>,
+        measured: Option<MeasuredTriad>,
         interval_s: Option<f64>,
         what: &'static str,
     ) -> Result<[f64; 3], CannotCarry> {
         let measured = self.some(measured, what)?;
         match (measured.kind, interval_s) {
-            (Kind::Mean, _) => Ok(measured.value),
-            (Kind::Increment, Some(interval_s)) if interval_s > 0.0 => {
+            (ReadingKind::Mean, _) => Ok(measured.value),
+            (ReadingKind::Increment, Some(interval_s)) if interval_s > 0.0 => {
                 Ok(measured.value.map(|value| value / interval_s))
             }
             _ => Err(CannotCarry { protocol: self.0, what }),

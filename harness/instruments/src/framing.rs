@@ -1,7 +1,7 @@
 //! Frames among other bytes.
 //!
 //! A protocol says where a frame may begin, how long a frame that begins there is, and whether it is
-//! valid. The [`Decoder`] does the rest: it takes bytes in pieces of any length. If a supposed frame
+//! valid. The [`FrameDecoder`] does the rest: it takes bytes in pieces of any length. If a supposed frame
 //! turns out to be invalid, it searches on from the byte after the first, so that a sync by chance
 //! costs no frame after it. Its results don't depend on how the bytes were cut.
 
@@ -21,7 +21,7 @@ pub enum Extent {
 
 /// Reason why bytes are no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Cause {
+pub enum ReadingDefect {
     /// The checksum is wrong.
     #[error("the frame is damaged: checksum {found:#x}, computed {computed:#x}")]
     Checksum {
@@ -52,7 +52,7 @@ pub enum Cause {
     Unreadable(octant_wire::Unreadable),
 }
 
-impl Cause {
+impl ReadingDefect {
     /// True if the frame itself was intact.
     #[must_use]
     pub fn is_intact(self) -> bool {
@@ -79,30 +79,30 @@ pub trait Framing {
     ///
     /// # Errors
     /// If the frame isn't intact or can't be decoded.
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause>;
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect>;
 }
 
 /// Bytes that are no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lost {
+pub struct UnreadBytes {
     /// Reason.
-    pub cause: Cause,
+    pub cause: ReadingDefect,
     /// Number of bytes that the frame would have had.
     pub bytes: usize,
 }
 
 /// Event in a stream of bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
+pub enum FramingEvent {
     /// A reading.
     Reading(Reading),
     /// Bytes that looked like a frame, but can't be read.
-    Lost(Lost),
+    Lost(UnreadBytes),
 }
 
 /// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
+pub struct ReadingCounters {
     /// All bytes.
     pub bytes: u64,
     /// Bytes of intact frames.
@@ -126,7 +126,7 @@ pub struct Counters {
     pub behind: u64,
 }
 
-impl Counters {
+impl ReadingCounters {
     /// Counts gaps and repetitions by a reading's sequence number.
     pub(crate) fn in_sequence(&mut self, last: &mut Option<u64>, sequence: Option<u64>) {
         let Some(sequence) = sequence else { return };
@@ -139,11 +139,11 @@ impl Counters {
     }
 
     /// Counts bytes that are no reading.
-    pub(crate) fn cause(&mut self, cause: Cause) {
+    pub(crate) fn cause(&mut self, cause: ReadingDefect) {
         match cause {
-            Cause::Checksum { .. } => self.checksum += 1,
-            Cause::Malformed => self.malformed += 1,
-            Cause::Unknown { .. } | Cause::NoNumber { .. } | Cause::Unreadable(_) => {
+            ReadingDefect::Checksum { .. } => self.checksum += 1,
+            ReadingDefect::Malformed => self.malformed += 1,
+            ReadingDefect::Unknown { .. } | ReadingDefect::NoNumber { .. } | ReadingDefect::Unreadable(_) => {
                 self.unknown += 1;
             }
         }
@@ -159,22 +159,22 @@ impl Counters {
 
 /// Finds frames in bytes as they arrive.
 #[derive(Clone, Debug)]
-pub struct Decoder<P: Framing> {
+pub struct FrameDecoder<P: Framing> {
     protocol: P,
     /// Beginning of an incomplete frame.
     held: P::Room,
     length: usize,
     last_sequence: Option<u64>,
-    counters: Counters,
+    counters: ReadingCounters,
 }
 
-impl<P: Framing + Default> Default for Decoder<P> {
+impl<P: Framing + Default> Default for FrameDecoder<P> {
     fn default() -> Self {
         Self::new(P::default())
     }
 }
 
-impl<P: Framing> Decoder<P> {
+impl<P: Framing> FrameDecoder<P> {
     /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new(protocol: P) -> Self {
@@ -183,13 +183,13 @@ impl<P: Framing> Decoder<P> {
             held: P::EMPTY,
             length: 0,
             last_sequence: None,
-            counters: Counters::default(),
+            counters: ReadingCounters::default(),
         }
     }
 
     /// Counts of the traffic so far.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
+    pub fn counters(&self) -> &ReadingCounters {
         &self.counters
     }
 
@@ -202,7 +202,7 @@ impl<P: Framing> Decoder<P> {
     /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
-    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent> {
         loop {
             if self.length > 0 {
                 match self.complete(bytes) {
@@ -242,7 +242,7 @@ impl<P: Framing> Decoder<P> {
 
     /// Ends the input, also after a long silence: the incomplete frame is dropped, but frames may
     /// follow its first byte. Call it until it returns `None`.
-    pub fn end(&mut self) -> Option<Event> {
+    pub fn end(&mut self) -> Option<FramingEvent> {
         while self.length > 0 {
             match self.complete(&mut &[][..]) {
                 Step::Said(event) => return Some(event),
@@ -324,7 +324,7 @@ impl<P: Framing> Decoder<P> {
     }
 
     /// Counts an outcome; returns true if the frame was intact.
-    fn conclude(&mut self, outcome: &Result<Option<Reading>, Cause>, length: usize) -> bool {
+    fn conclude(&mut self, outcome: &Result<Option<Reading>, ReadingDefect>, length: usize) -> bool {
         let counters = &mut self.counters;
         let intact = match outcome {
             Ok(Some(reading)) => {
@@ -349,10 +349,10 @@ impl<P: Framing> Decoder<P> {
         intact
     }
 
-    fn event(&self, outcome: Result<Option<Reading>, Cause>, bytes: usize) -> Option<Event> {
+    fn event(&self, outcome: Result<Option<Reading>, ReadingDefect>, bytes: usize) -> Option<FramingEvent> {
         match outcome {
-            Ok(reading) => reading.map(Event::Reading),
-            Err(cause) => Some(Event::Lost(Lost { cause, bytes })),
+            Ok(reading) => reading.map(FramingEvent::Reading),
+            Err(cause) => Some(FramingEvent::Lost(UnreadBytes { cause, bytes })),
         }
     }
 }
@@ -360,7 +360,7 @@ impl<P: Framing> Decoder<P> {
 /// Result of a step with the bytes held.
 enum Step {
     /// An event.
-    Said(Event),
+    Said(FramingEvent),
     /// Another step is possible.
     Go,
     /// More bytes are needed.

@@ -5,11 +5,11 @@
 
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{Cause, Counters, Event, Lost};
-use crate::{Measured, Reading};
+use crate::framing::{ReadingDefect, ReadingCounters, FramingEvent, UnreadBytes};
+use crate::{MeasuredTriad, Reading};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, Sample, Status};
-use octant_wire::message::{ClockTime, SampleMessage, Step};
+use octant_wire::message::{ClockTime, SampleMessage, StepNumber};
 use octant_wire::{Message, serial};
 
 /// Facts of the protocol.
@@ -22,13 +22,13 @@ pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
 
 /// Finds readings in a stream of bytes.
 #[derive(Clone, Debug, Default)]
-pub struct Decoder {
-    line: serial::Decoder,
+pub struct OwnDecoder {
+    line: serial::SerialDecoder,
     last_sequence: Option<u64>,
-    counters: Counters,
+    counters: ReadingCounters,
 }
 
-impl Decoder {
+impl OwnDecoder {
     /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new() -> Self {
@@ -38,14 +38,14 @@ impl Decoder {
     /// Counts of the traffic so far. Zeros count as part of a frame, and so do the bytes of an
     /// incomplete one.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
+    pub fn counters(&self) -> &ReadingCounters {
         &self.counters
     }
 
     /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
-    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent> {
         loop {
             let event = self.line.next(bytes);
             self.count_bytes();
@@ -56,7 +56,7 @@ impl Decoder {
     }
 
     /// Ends the input.
-    pub fn end(&mut self) -> Option<Event> {
+    pub fn end(&mut self) -> Option<FramingEvent> {
         let event = self.line.end();
         self.count_bytes();
         self.event(event?)
@@ -69,32 +69,32 @@ impl Decoder {
         self.counters.bytes_framed = line.bytes - line.bytes_lost;
     }
 
-    fn event(&mut self, event: serial::Event) -> Option<Event> {
+    fn event(&mut self, event: serial::DecodeEvent) -> Option<FramingEvent> {
         let counters = &mut self.counters;
         match event {
-            serial::Event::Received(received) => match received.message {
+            serial::DecodeEvent::Received(received) => match received.message {
                 Message::Sample(SampleMessage { sample, .. }) => {
                     let reading = Reading::of_sample(&sample);
                     counters.readings += 1;
                     counters.in_sequence(&mut self.last_sequence, reading.sequence);
-                    Some(Event::Reading(reading))
+                    Some(FramingEvent::Reading(reading))
                 }
                 _ => {
                     counters.other += 1;
                     None
                 }
             },
-            serial::Event::Lost(lost) => {
+            serial::DecodeEvent::Lost(lost) => {
                 let cause = match lost.cause {
-                    serial::Cause::Long | serial::Cause::Malformed => Cause::Malformed,
-                    serial::Cause::Checksum { found, computed } => {
-                        Cause::Checksum { found, computed }
+                    serial::FrameDefect::Long | serial::FrameDefect::Malformed => ReadingDefect::Malformed,
+                    serial::FrameDefect::Checksum { found, computed } => {
+                        ReadingDefect::Checksum { found, computed }
                     }
-                    serial::Cause::Unreadable(unreadable) => Cause::Unreadable(unreadable),
+                    serial::FrameDefect::Unreadable(unreadable) => ReadingDefect::Unreadable(unreadable),
                 };
                 counters.cause(cause);
                 let bytes = usize::try_from(lost.bytes).unwrap_or(usize::MAX);
-                Some(Event::Lost(Lost { cause, bytes }))
+                Some(FramingEvent::Lost(UnreadBytes { cause, bytes }))
             }
         }
     }
@@ -102,13 +102,13 @@ impl Decoder {
 
 /// Encodes readings as frames with a sample in each.
 #[derive(Clone, Debug, Default)]
-pub struct Encoder {
-    line: serial::Encoder,
+pub struct OwnEncoder {
+    line: serial::SerialEncoder,
     rotation: [Accumulator; 3],
     velocity: [Accumulator; 3],
 }
 
-impl Encoder {
+impl OwnEncoder {
     /// Makes an encoder that has sent nothing.
     #[must_use]
     pub fn new() -> Self {
@@ -124,7 +124,7 @@ impl Encoder {
         let sequence = needs.some(reading.sequence, "a sequence number")?;
         let ns = needs.some(reading.stamp, "a stamp")?.ns;
         let mut status = reading.status;
-        let mut counts = |measured: Option<Measured>,
+        let mut counts = |measured: Option<MeasuredTriad>,
                           accumulators: &mut [Accumulator; 3],
                           lsb: f64,
                           saturated: Status,
@@ -157,7 +157,7 @@ impl Encoder {
             status,
         };
         // The step has 15 bits, and is 0 for the first sample.
-        let step = Step::new((sequence.wrapping_sub(1) & 0x7FFF) as u16);
+        let step = StepNumber::new((sequence.wrapping_sub(1) & 0x7FFF) as u16);
         let message = Message::Sample(SampleMessage { step, aided: false, sample });
         Ok(self.line.encode(&message, ClockTime { ns }))
     }

@@ -5,7 +5,7 @@ use octant_sample::{GimbalAngles, Sample, Status};
 
 /// Kind of a measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ReadingKind {
     /// Integral over the interval of the reading: rad, m/s.
     Increment,
     /// Mean over the interval, or a value at its end: rad/s, m/s². Multiplied by the interval it is an
@@ -15,31 +15,31 @@ pub enum Kind {
 
 /// Measured values of three axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredTriad {
     /// Increments or means.
-    pub kind: Kind,
+    pub kind: ReadingKind,
     /// Values of x, y, z.
     pub value: [f64; 3],
     /// Size of one count, if the protocol sends integers: `value` is a count times this.
     pub lsb: Option<f64>,
 }
 
-impl Measured {
+impl MeasuredTriad {
     /// Increments sent as floating-point numbers.
     #[must_use]
     pub const fn increment(value: [f64; 3]) -> Self {
-        Self { kind: Kind::Increment, value, lsb: None }
+        Self { kind: ReadingKind::Increment, value, lsb: None }
     }
 
     /// Means sent as floating-point numbers.
     #[must_use]
     pub const fn mean(value: [f64; 3]) -> Self {
-        Self { kind: Kind::Mean, value, lsb: None }
+        Self { kind: ReadingKind::Mean, value, lsb: None }
     }
 
     /// Integers with counts of size `lsb`.
     #[must_use]
-    pub fn counts(kind: Kind, counts: [i32; 3], lsb: f64) -> Self {
+    pub fn counts(kind: ReadingKind, counts: [i32; 3], lsb: f64) -> Self {
         Self { kind, value: counts.map(|count| f64::from(count) * lsb), lsb: Some(lsb) }
     }
 
@@ -48,15 +48,15 @@ impl Measured {
     #[inline]
     pub fn over(&self, interval_s: f64) -> [f64; 3] {
         match self.kind {
-            Kind::Increment => self.value,
-            Kind::Mean => self.value.map(|mean| mean * interval_s),
+            ReadingKind::Increment => self.value,
+            ReadingKind::Mean => self.value.map(|mean| mean * interval_s),
         }
     }
 }
 
 /// Clock of a stamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clock {
+pub enum StampClock {
     /// Clock of the unit, since it was switched on.
     Startup,
     /// GPS time since 6 January 1980.
@@ -69,16 +69,16 @@ pub struct Stamp {
     /// Time of the clock, ns. A counter that rolls over is continued.
     pub ns: u64,
     /// Clock of the time.
-    pub clock: Clock,
+    pub clock: StampClock,
 }
 
 /// One reading. Values that its protocol doesn't send are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Rotation of the unit against inertial space.
-    pub rotation: Option<Measured>,
+    pub rotation: Option<MeasuredTriad>,
     /// Specific force, or its integral.
-    pub velocity: Option<Measured>,
+    pub velocity: Option<MeasuredTriad>,
     /// Length of the interval as reported by the unit, s.
     pub interval_s: Option<f64>,
     /// End of the interval.
@@ -112,12 +112,12 @@ impl Reading {
     /// Converts a sample to the reading of a unit with Octant's resolution.
     #[must_use]
     pub fn of_sample(sample: &Sample) -> Self {
-        let counts = |counts, lsb| Some(Measured::counts(Kind::Increment, counts, lsb));
+        let counts = |counts, lsb| Some(MeasuredTriad::counts(ReadingKind::Increment, counts, lsb));
         Self {
             rotation: counts(sample.delta_theta, DELTA_THETA_LSB_RAD),
             velocity: counts(sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
             interval_s: None,
-            stamp: Some(Stamp { ns: sample.device_time.ns, clock: Clock::Startup }),
+            stamp: Some(Stamp { ns: sample.device_time.ns, clock: StampClock::Startup }),
             sequence: Some(sample.sequence),
             gimbal: Some(sample.gimbal),
             status: sample.status,

@@ -6,7 +6,7 @@ use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 
 /// Settings of a unit beside its protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
+pub struct SamplerSettings {
     /// Mounting of the unit.
     pub axes: Axes,
     /// Configured sample period, ns.
@@ -49,7 +49,7 @@ pub struct SamplerCounters {
 /// and the sequence number shows the gap.
 #[derive(Clone, Debug)]
 pub struct Sampler {
-    settings: Settings,
+    settings: SamplerSettings,
     rotation: [Accumulator; 3],
     velocity: [Accumulator; 3],
     /// Last reading, and the sequence number of its sample.
@@ -69,7 +69,7 @@ struct Last {
 impl Sampler {
     /// Makes a sampler without readings.
     #[must_use]
-    pub fn new(settings: Settings) -> Self {
+    pub fn new(settings: SamplerSettings) -> Self {
         Self {
             settings,
             rotation: Default::default(),

@@ -14,9 +14,9 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{Cause, Extent, Framing};
+use crate::framing::{ReadingDefect, Extent, Framing};
 use crate::rollover::Rollover;
-use crate::{Clock, Kind, Measured, Reading, Stamp};
+use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
 use octant_sample::Status;
 
 const SYNC: [u8; 2] = [0xFF, 0x5A];
@@ -73,7 +73,7 @@ impl Default for Sbg {
 }
 
 /// Finds readings in a stream of bytes.
-pub type Decoder = crate::framing::Decoder<Sbg>;
+pub type SbgDecoder = crate::framing::FrameDecoder<Sbg>;
 
 impl Framing for Sbg {
     type Room = [u8; MAX_BYTES];
@@ -102,19 +102,19 @@ impl Framing for Sbg {
     }
 
     #[inline]
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
-        let (bare, tail) = frame.split_last_chunk::<TAIL_BYTES>().ok_or(Cause::Malformed)?;
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
+        let (bare, tail) = frame.split_last_chunk::<TAIL_BYTES>().ok_or(ReadingDefect::Malformed)?;
         if tail[2] != END {
-            return Err(Cause::Malformed);
+            return Err(ReadingDefect::Malformed);
         }
         let found = u16::from_le_bytes([tail[0], tail[1]]);
         let computed = checksum::sbg(bare.get(2..).unwrap_or_default());
         if found != computed {
-            return Err(Cause::Checksum { found: found.into(), computed: computed.into() });
+            return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
         }
         let data = &bare[HEADER_BYTES..];
         let fields = &mut Reader::new(data);
-        let unknown = |field, found: usize| Cause::Unknown { field, found: found as u32 };
+        let unknown = |field, found: usize| ReadingDefect::Unknown { field, found: found as u32 };
         let mut reading = Reading::NOTHING;
         let (micros, status) = match (bare[3], bare[2]) {
             (CLASS_LOG, IMU_SHORT) => {
@@ -125,7 +125,7 @@ impl Framing for Sbg {
                 let high = head.1 & GYROS_USE_HIGH_SCALE != 0;
                 let rate_lsb = if high { RATE_HIGH_LSB_RADPS } else { RATE_LSB_RADPS };
                 let mut counts =
-                    |lsb| Some(Measured::counts(Kind::Mean, fields.three(Reader::i32_le), lsb));
+                    |lsb| Some(MeasuredTriad::counts(ReadingKind::Mean, fields.three(Reader::i32_le), lsb));
                 reading.velocity = counts(ACCELERATION_LSB_MPS2);
                 reading.rotation = counts(rate_lsb);
                 let temperature = f32::from(fields.i16_le());
@@ -141,7 +141,7 @@ impl Framing for Sbg {
                 fields.skip(24);
                 reading.temperature_c = Some(fields.f32_le());
                 let mut mean =
-                    || Some(Measured::mean(fields.three(|fields| f64::from(fields.f32_le()))));
+                    || Some(MeasuredTriad::mean(fields.three(|fields| f64::from(fields.f32_le()))));
                 reading.velocity = mean();
                 reading.rotation = mean();
                 head
@@ -149,7 +149,7 @@ impl Framing for Sbg {
             _ => return Ok(None),
         };
         let ns = self.clock.continued(micros.into()).saturating_mul(1000);
-        reading.stamp = Some(Stamp { ns, clock: Clock::Startup });
+        reading.stamp = Some(Stamp { ns, clock: StampClock::Startup });
         reading.status_word = Some(status.into());
         let out = |bit: u16| status & bit == 0;
         reading.status.set(Status::ACCELEROMETER_SATURATED, out(ACCELEROMETERS_IN_RANGE));
@@ -161,19 +161,19 @@ impl Framing for Sbg {
 
 /// Encodes readings as frames of `IMU_SHORT`.
 #[derive(Clone, Debug)]
-pub struct Encoder {
+pub struct SbgEncoder {
     frame: Frame<{ HEADER_BYTES + IMU_SHORT_BYTES + TAIL_BYTES }>,
     rotation: Carry,
     velocity: Carry,
 }
 
-impl Default for Encoder {
+impl Default for SbgEncoder {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Encoder {
+impl SbgEncoder {
     /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {

@@ -18,8 +18,8 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{Cause, Extent, Framing};
-use crate::{Clock, Measured, Reading, Stamp};
+use crate::framing::{ReadingDefect, Extent, Framing};
+use crate::{StampClock, MeasuredTriad, Reading, Stamp};
 use octant_sample::Status;
 
 const SYNC: u8 = 0xFA;
@@ -99,7 +99,7 @@ pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
 pub struct VectorNav;
 
 /// Finds readings in a stream of bytes.
-pub type Decoder = crate::framing::Decoder<VectorNav>;
+pub type VectorNavDecoder = crate::framing::FrameDecoder<VectorNav>;
 
 /// Masks of the groups of a header.
 struct Header {
@@ -167,14 +167,14 @@ impl Framing for VectorNav {
     }
 
     #[inline]
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
-        let (bare, crc) = frame.split_last_chunk::<2>().ok_or(Cause::Malformed)?;
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
+        let (bare, crc) = frame.split_last_chunk::<2>().ok_or(ReadingDefect::Malformed)?;
         let found = u16::from_be_bytes(*crc);
         let computed = checksum::vectornav(bare.get(1..).unwrap_or_default());
         if found != computed {
-            return Err(Cause::Checksum { found: found.into(), computed: computed.into() });
+            return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
         }
-        let header = header(bare).map_err(|_| Cause::Malformed)?;
+        let header = header(bare).map_err(|_| ReadingDefect::Malformed)?;
         let mut fields = Reader::new(&bare[header.bytes..]);
         let mut reading = Reading::NOTHING;
         let (mut means, mut gps_ns) = (Means::default(), None);
@@ -188,13 +188,13 @@ impl Framing for VectorNav {
                 match (group, 1u16 << index) {
                     (COMMON | TIME, TIME_STARTUP) => {
                         let ns = field.u64_le();
-                        reading.stamp = Some(Stamp { ns, clock: Clock::Startup });
+                        reading.stamp = Some(Stamp { ns, clock: StampClock::Startup });
                     }
                     (COMMON | TIME, TIME_GPS) => gps_ns = Some(field.u64_le()),
                     (COMMON, COMMON_DELTA_THETA) => {
                         reading.interval_s = Some(f64::from(field.f32_le()));
                         reading.rotation = Some(degrees(&mut field));
-                        reading.velocity = Some(Measured::increment(floats(&mut field)));
+                        reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
                     }
                     (COMMON, COMMON_IMU) => {
                         means.common_velocity = Some(floats(&mut field));
@@ -206,7 +206,7 @@ impl Framing for VectorNav {
                         reading.rotation = Some(degrees(&mut field));
                     }
                     (IMU, IMU_DELTA_VEL) if reading.velocity.is_none() => {
-                        reading.velocity = Some(Measured::increment(floats(&mut field)));
+                        reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
                     }
                     (IMU, IMU_UNCOMP_ACCEL) => means.velocity = Some(floats(&mut field)),
                     (IMU, IMU_UNCOMP_GYRO) => means.rotation = Some(floats(&mut field)),
@@ -224,10 +224,10 @@ impl Framing for VectorNav {
             }
         }
         if reading.stamp.is_none() {
-            reading.stamp = gps_ns.map(|ns| Stamp { ns, clock: Clock::Gps });
+            reading.stamp = gps_ns.map(|ns| Stamp { ns, clock: StampClock::Gps });
         }
         let mean = |first: Option<[f64; 3]>, second: Option<[f64; 3]>| {
-            first.or(second).map(Measured::mean)
+            first.or(second).map(MeasuredTriad::mean)
         };
         reading.rotation = reading.rotation.or_else(|| mean(means.common_rotation, means.rotation));
         reading.velocity = reading.velocity.or_else(|| mean(means.common_velocity, means.velocity));
@@ -248,26 +248,26 @@ fn floats(field: &mut Reader<'_>) -> [f64; 3] {
     field.three(|field| f64::from(field.f32_le()))
 }
 
-fn degrees(field: &mut Reader<'_>) -> Measured {
-    Measured::increment(floats(field).map(|degrees| degrees * DEGREE_RAD))
+fn degrees(field: &mut Reader<'_>) -> MeasuredTriad {
+    MeasuredTriad::increment(floats(field).map(|degrees| degrees * DEGREE_RAD))
 }
 
 /// Encodes readings as a unit does that is configured for `TimeStartup` and `DeltaTheta` of the common
 /// group, `Temp` and `SensSat` of the IMU group.
 #[derive(Clone, Debug)]
-pub struct Encoder {
+pub struct VectorNavEncoder {
     frame: Frame<{ MAX_HEADER_BYTES + 64 }>,
     rotation: Carry,
     velocity: Carry,
 }
 
-impl Default for Encoder {
+impl Default for VectorNavEncoder {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Encoder {
+impl VectorNavEncoder {
     /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {

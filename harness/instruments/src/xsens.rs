@@ -18,9 +18,9 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{Cause, Extent, Framing};
+use crate::framing::{ReadingDefect, Extent, Framing};
 use crate::rollover::Rollover;
-use crate::{Clock, Measured, Reading, Stamp};
+use crate::{StampClock, MeasuredTriad, Reading, Stamp};
 use octant_sample::Status;
 
 const HEAD: [u8; 3] = [0xFA, 0xFF, 0x36];
@@ -76,7 +76,7 @@ impl Default for Xsens {
 }
 
 /// Finds readings in a stream of bytes.
-pub type Decoder = crate::framing::Decoder<Xsens>;
+pub type XsensDecoder = crate::framing::FrameDecoder<Xsens>;
 
 /// Format of a packet's numbers.
 #[derive(Clone, Copy)]
@@ -151,14 +151,14 @@ impl Framing for Xsens {
     }
 
     #[inline]
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
-        let (checksum, summed) = frame.split_last().ok_or(Cause::Malformed)?;
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
+        let (checksum, summed) = frame.split_last().ok_or(ReadingDefect::Malformed)?;
         let computed = checksum::sum(summed.get(1..).unwrap_or_default()).wrapping_neg();
         if *checksum != computed {
-            return Err(Cause::Checksum { found: (*checksum).into(), computed: computed.into() });
+            return Err(ReadingDefect::Checksum { found: (*checksum).into(), computed: computed.into() });
         }
         let data = if frame[3] == 0xFF { 6 } else { 4 };
-        let found = Found::read(&summed[data..]).ok_or(Cause::Malformed)?;
+        let found = Found::read(&summed[data..]).ok_or(ReadingDefect::Malformed)?;
         let mut reading = Reading {
             rotation: found.delta_q.map(rotation).or(found.rate).or(found.rate_hr),
             velocity: found.delta_v.or(found.acceleration).or(found.acceleration_hr),
@@ -172,7 +172,7 @@ impl Framing for Xsens {
         reading.sequence = found.counter.map(|counter| self.counter.continued(counter.into()));
         reading.stamp = found.fine.map(|fine| Stamp {
             ns: self.fine.continued(fine.into()).saturating_mul(FINE_NS),
-            clock: Clock::Startup,
+            clock: StampClock::Startup,
         });
         if let Some(word) = found.status_word {
             reading.status.set(Status::GYRO_SATURATED, word & CLIPPED_GYRO != 0);
@@ -189,11 +189,11 @@ struct Found {
     counter: Option<u16>,
     fine: Option<u32>,
     delta_q: Option<[f64; 4]>,
-    delta_v: Option<Measured>,
-    rate: Option<Measured>,
-    rate_hr: Option<Measured>,
-    acceleration: Option<Measured>,
-    acceleration_hr: Option<Measured>,
+    delta_v: Option<MeasuredTriad>,
+    rate: Option<MeasuredTriad>,
+    rate_hr: Option<MeasuredTriad>,
+    acceleration: Option<MeasuredTriad>,
+    acceleration_hr: Option<MeasuredTriad>,
     status_byte: Option<u8>,
     status_word: Option<u32>,
     temperature_c: Option<f32>,
@@ -212,7 +212,7 @@ impl Found {
             let precision = Precision::of(identifier);
             let is = |bytes: usize| (data.len() == bytes).then_some(());
             let data_reader = &mut Reader::new(data);
-            let mut three = |kind: fn([f64; 3]) -> Measured| {
+            let mut three = |kind: fn([f64; 3]) -> MeasuredTriad| {
                 is(3 * precision.bytes())?;
                 Some(kind(data_reader.three(|data| precision.number(data))))
             };
@@ -225,11 +225,11 @@ impl Found {
                     is(4)?;
                     found.fine = Some(data_reader.u32_be());
                 }
-                DELTA_V => found.delta_v = Some(three(Measured::increment)?),
-                ACCELERATION => found.acceleration = Some(three(Measured::mean)?),
-                ACCELERATION_HR => found.acceleration_hr = Some(three(Measured::mean)?),
-                RATE_OF_TURN => found.rate = Some(three(Measured::mean)?),
-                RATE_OF_TURN_HR => found.rate_hr = Some(three(Measured::mean)?),
+                DELTA_V => found.delta_v = Some(three(MeasuredTriad::increment)?),
+                ACCELERATION => found.acceleration = Some(three(MeasuredTriad::mean)?),
+                ACCELERATION_HR => found.acceleration_hr = Some(three(MeasuredTriad::mean)?),
+                RATE_OF_TURN => found.rate = Some(three(MeasuredTriad::mean)?),
+                RATE_OF_TURN_HR => found.rate_hr = Some(three(MeasuredTriad::mean)?),
                 DELTA_Q => {
                     is(4 * precision.bytes())?;
                     let q = core::array::from_fn(|_| precision.number(data_reader));
@@ -255,7 +255,7 @@ impl Found {
 }
 
 /// Rotation vector of a quaternion, scalar first, whose norm may differ from one by rounding.
-fn rotation(q: [f64; 4]) -> Measured {
+fn rotation(q: [f64; 4]) -> MeasuredTriad {
     let [w, v @ ..] = q;
     // q and −q are the same rotation: take the shorter one.
     let sign = if w < 0.0 { -1.0 } else { 1.0 };
@@ -263,7 +263,7 @@ fn rotation(q: [f64; 4]) -> Measured {
     // 2·atan2(n, w)/n, whose limit is 2/w.
     let factor =
         if norm > 1e-9 { 2.0 * libm::atan2(norm, w * sign) / norm } else { 2.0 / (w * sign) };
-    Measured::increment(v.map(|v| sign * factor * v))
+    MeasuredTriad::increment(v.map(|v| sign * factor * v))
 }
 
 /// Quaternion of a rotation vector, scalar first.
@@ -277,19 +277,19 @@ fn quaternion(vector: [f64; 3]) -> [f64; 4] {
 /// Encodes readings as a unit does that is configured for packet counter, `SampleTimeFine`, `DeltaQ`
 /// and `DeltaV` as floats, temperature and status word.
 #[derive(Clone, Debug)]
-pub struct Encoder {
+pub struct XsensEncoder {
     frame: Frame<80>,
     rotation: Carry,
     velocity: Carry,
 }
 
-impl Default for Encoder {
+impl Default for XsensEncoder {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Encoder {
+impl XsensEncoder {
     /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {

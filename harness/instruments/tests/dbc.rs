@@ -3,11 +3,11 @@
 #[path = "../../../fuzz/dbc.rs"]
 mod fuzz;
 
-use octant_instruments::dbc::{CanFrame, Database, Gatherer, Mapping};
-use octant_instruments::{Kind, Reading};
+use octant_instruments::dbc::{CanFrame, Database, Gatherer, SignalMapping};
+use octant_instruments::{ReadingKind, Reading};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
-use octant_wire::can::{Format, segments};
-use octant_wire::message::{Role, SampleMessage, Step};
+use octant_wire::can::{CanVersion, segments};
+use octant_wire::message::{EndRole, SampleMessage, StepNumber};
 use octant_wire::{Message, can};
 use proptest::prelude::*;
 
@@ -67,7 +67,7 @@ order = ["Gyro", "Accel"]
 
 fn gatherer(dbc: &str, mapping: &str) -> Gatherer {
     let database = Database::parse("unit.dbc", dbc).unwrap();
-    Gatherer::new(&database, &Mapping::parse("unit.toml", mapping).unwrap()).unwrap()
+    Gatherer::new(&database, &SignalMapping::parse("unit.toml", mapping).unwrap()).unwrap()
 }
 
 fn sample(number: u64) -> Sample {
@@ -82,13 +82,13 @@ fn sample(number: u64) -> Sample {
     }
 }
 
-fn own_frames(number: u64) -> Vec<can::Frame> {
-    let step = Step::new((number & 0x7FFF) as u16);
+fn own_frames(number: u64) -> Vec<can::BusFrame> {
+    let step = StepNumber::new((number & 0x7FFF) as u16);
     let message = Message::Sample(SampleMessage { step, aided: false, sample: sample(number) });
-    segments(&message, Role::Instrument, Format::Classic).unwrap().collect()
+    segments(&message, EndRole::Instrument, CanVersion::Classic).unwrap().collect()
 }
 
-fn frame(frame: &can::Frame) -> CanFrame<'_> {
+fn frame(frame: &can::BusFrame) -> CanFrame<'_> {
     CanFrame { id: frame.id().into(), extended: false, data: frame.data() }
 }
 
@@ -164,7 +164,7 @@ proptest! {
         let found = send(&mut gatherer, Some(&gyro), Some(&accel));
         prop_assert_eq!(found.len(), 1);
         let (rotation, velocity) = (found[0].rotation.unwrap(), found[0].velocity.unwrap());
-        prop_assert_eq!((rotation.kind, velocity.kind), (Kind::Mean, Kind::Mean));
+        prop_assert_eq!((rotation.kind, velocity.kind), (ReadingKind::Mean, ReadingKind::Mean));
         for (axis, sign) in [(0, 1.0), (1, 1.0), (2, -1.0)] {
             let rate = sign * (rates[axis] as f64 * 0.0025).to_radians();
             prop_assert!((rotation.value[axis] - rate).abs() < 1e-14);
@@ -198,7 +198,7 @@ proptest! {
         }
         let text = String::from_utf8_lossy(&bytes);
         if let Ok(database) = Database::parse("unit.dbc", &text)
-            && let Ok(mut gatherer) = Gatherer::new(&database, &Mapping::parse("unit.toml", UNIT).unwrap())
+            && let Ok(mut gatherer) = Gatherer::new(&database, &SignalMapping::parse("unit.toml", UNIT).unwrap())
         {
             send(&mut gatherer, Some(&[0xFF; 8]), Some(&[0x55; 12]));
         }
@@ -248,7 +248,7 @@ fn refusal(dbc: &str, from: &str, to: &str) -> String {
     let database = Database::parse("unit.dbc", dbc).unwrap();
     let mapping = UNIT.replace(from, to);
     assert!(from.is_empty() || mapping != UNIT, "{from}");
-    match Mapping::parse("unit.toml", &mapping) {
+    match SignalMapping::parse("unit.toml", &mapping) {
         Ok(mapping) => Gatherer::new(&database, &mapping).unwrap_err().to_string(),
         Err(problem) => problem.to_string(),
     }
@@ -355,9 +355,9 @@ velocity = { x = "Float.choice", y = "Float.choice", z = "Float.choice", unit = 
     let (rotation, velocity) = (reading.rotation.unwrap(), reading.velocity.unwrap());
     assert_eq!(
         (rotation.kind, rotation.value, rotation.lsb),
-        (Kind::Increment, [-2.5e-3; 3], None)
+        (ReadingKind::Increment, [-2.5e-3; 3], None)
     );
-    assert_eq!((velocity.kind, velocity.value), (Kind::Increment, [0.2; 3]));
+    assert_eq!((velocity.kind, velocity.value), (ReadingKind::Increment, [0.2; 3]));
 }
 
 /// Runs the fuzzer's seeds and findings; the seeds are written with `OCTANT_WRITE_FIXTURES=1`.

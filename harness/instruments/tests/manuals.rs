@@ -2,7 +2,7 @@
 
 use crate::common::{events, only, readings, unhex};
 use octant_instruments::novatel::scale_of;
-use octant_instruments::{AnyDecoder, Clock, Kind, Protocol, Stamp};
+use octant_instruments::{AnyDecoder, StampClock, ReadingKind, Protocol, Stamp};
 use octant_sample::Status;
 
 /// VN-100 user manual UM001, 4.3.7 "Example Cases", both cases: attitude alone, and attitude with a field
@@ -44,10 +44,10 @@ fn vectornav_increments_after_the_tables() {
     });
     frame.extend(crc.to_be_bytes());
     let reading = only(Protocol::VectorNav, &frame);
-    assert_eq!(reading.stamp, Some(Stamp { ns: 123_456_789_000, clock: Clock::Startup }));
+    assert_eq!(reading.stamp, Some(Stamp { ns: 123_456_789_000, clock: StampClock::Startup }));
     assert_eq!(reading.interval_s, Some(f64::from(0.005f32)));
     let (rotation, velocity) = (reading.rotation.unwrap(), reading.velocity.unwrap());
-    assert_eq!((rotation.kind, velocity.kind), (Kind::Increment, Kind::Increment));
+    assert_eq!((rotation.kind, velocity.kind), (ReadingKind::Increment, ReadingKind::Increment));
     assert!((rotation.value[0] - core::f64::consts::FRAC_PI_4).abs() < 1e-15);
     assert!((rotation.value[1] + 0.25f64.to_radians()).abs() < 1e-17);
     assert_eq!(velocity.value[..2], [0.5, -0.0625]);
@@ -69,14 +69,14 @@ fn novatel_binary_and_line_of_one_epoch() {
     assert_eq!(from_binary, from_line);
     let reading = from_binary;
     let ns = 1692 * 604_800_000_000_000 + 484_620_664_389_000;
-    assert_eq!(reading.stamp, Some(Stamp { ns, clock: Clock::Gps }));
+    assert_eq!(reading.stamp, Some(Stamp { ns, clock: StampClock::Gps }));
     assert_eq!(reading.status_word, Some(0x0080_1503));
     assert_eq!(reading.status, Status::empty());
     // Axes are z, −y, x in the log; a count is 2⁻³³ rad and 2⁻²⁷ ft/s.
     let rad = 1.0 / (1u64 << 33) as f64;
     let mps = 0.3048 / (1u64 << 27) as f64;
     let rotation = reading.rotation.unwrap();
-    assert_eq!(rotation.kind, Kind::Increment);
+    assert_eq!(rotation.kind, ReadingKind::Increment);
     assert_eq!(rotation.value, [-9895.0, 41188.0, -215_194.0].map(|count| count * rad));
     let velocity = reading.velocity.unwrap().value;
     assert_eq!(velocity, [-202_184.0, 817_242.0, 43_110_635.0].map(|count| count * mps));
@@ -93,7 +93,7 @@ fn novatel_example_of_the_documentation() {
         329308016,-2706935,4508389,196192,417138,-1000837*038422a7\r\n";
     let reading = only(Protocol::NovAtel, line);
     let ns = 2209 * 604_800_000_000_000 + 491_674_013_699_000;
-    assert_eq!(reading.stamp, Some(Stamp { ns, clock: Clock::Gps }));
+    assert_eq!(reading.stamp, Some(Stamp { ns, clock: StampClock::Gps }));
     assert_eq!(reading.status_word, Some(0xea59_fe00));
     let scale = scale_of(41).unwrap();
     let velocity = reading.velocity.unwrap().value;
@@ -132,11 +132,11 @@ fn xsens_increments_of_a_recorded_unit() {
     );
     let reading = only(Protocol::Xsens, &bytes);
     assert_eq!(reading.sequence, Some(35216));
-    assert_eq!(reading.stamp, Some(Stamp { ns: 254_136_300_000, clock: Clock::Startup }));
+    assert_eq!(reading.stamp, Some(Stamp { ns: 254_136_300_000, clock: StampClock::Startup }));
     assert_eq!((reading.status_word, reading.status), (Some(5), Status::empty()));
     let velocity = reading.velocity.unwrap();
     let expected = [8.416175842285156e-05, -0.00010259449481964111, 0.024537160992622375];
-    assert_eq!((velocity.kind, velocity.value), (Kind::Increment, expected));
+    assert_eq!((velocity.kind, velocity.value), (ReadingKind::Increment, expected));
     // Twice the vector part over the scalar, 1 + 2⁻²³: the next term is smaller by 1e-11.
     let rotation = reading.rotation.unwrap();
     let q = [-2.186745632570819e-06, -5.884096026420593e-06, -2.0600855350494385e-06];
@@ -179,7 +179,7 @@ fn xsens_means_of_a_recorded_unit() {
     assert_eq!(reading.sequence, Some(0xDFC5));
     assert_eq!(reading.stamp.unwrap().ns, 0x0045_9DA0 * 100_000);
     let (velocity, rotation) = (reading.velocity.unwrap(), reading.rotation.unwrap());
-    assert_eq!((velocity.kind, rotation.kind), (Kind::Mean, Kind::Mean));
+    assert_eq!((velocity.kind, rotation.kind), (ReadingKind::Mean, ReadingKind::Mean));
     assert_eq!(velocity.value[2], f64::from(f32::from_bits(0x411C_BB70)));
     assert_eq!(rotation.value[0], f64::from(f32::from_bits(0xBBAA_5C80)));
 }
@@ -209,11 +209,11 @@ fn sbg_frame_after_the_table() {
     frame.extend(crc.to_le_bytes());
     frame.push(0x33);
     let reading = only(Protocol::Sbg, &frame);
-    assert_eq!(reading.stamp.unwrap(), Stamp { ns: 4_000_000_000_000, clock: Clock::Startup });
+    assert_eq!(reading.stamp.unwrap(), Stamp { ns: 4_000_000_000_000, clock: StampClock::Startup });
     assert_eq!((reading.status, reading.status_word), (Status::empty(), Some(0x3FF)));
     assert_eq!(reading.temperature_c, Some(-2.5));
     let (velocity, rotation) = (reading.velocity.unwrap(), reading.rotation.unwrap());
-    assert_eq!((velocity.kind, rotation.kind), (Kind::Mean, Kind::Mean));
+    assert_eq!((velocity.kind, rotation.kind), (ReadingKind::Mean, ReadingKind::Mean));
     assert_eq!(velocity.value, [1.0, 0.0, -10_283_008.0 / 1_048_576.0]);
     assert_eq!(rotation.value, [1.0, -1.0 / 67_108_864.0, 0.0]);
 }

@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common;
-use octant_instruments::{AnyDecoder, AnyEncoder, Axes, Event, Protocol, Sampler, Settings};
+use octant_instruments::{AnyDecoder, AnyEncoder, Axes, FramingEvent, Protocol, Sampler, SamplerSettings};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
@@ -36,7 +36,7 @@ fn nothing_is_allocated() {
     let mut samples = 0;
     for protocol in Protocol::ALL {
         let (mut encoder, mut decoder) = (AnyEncoder::new(protocol), AnyDecoder::new(protocol));
-        let mut sampler = Sampler::new(Settings { axes: Axes::SAME, period_ns: 5_000_000 });
+        let mut sampler = Sampler::new(SamplerSettings { axes: Axes::SAME, period_ns: 5_000_000 });
         for number in 1..=200 {
             let frame = encoder.encode(&common::reading(number)).unwrap();
             // Each tenth frame is cut in two, each seventh has garbage before it.
@@ -46,7 +46,7 @@ fn nothing_is_allocated() {
             let (head, tail) = frame.split_at(if number % 10 == 0 { 9 } else { 0 });
             for mut piece in [head, tail] {
                 while let Some(event) = decoder.next(&mut piece) {
-                    if let Event::Reading(reading) = event {
+                    if let FramingEvent::Reading(reading) = event {
                         samples += u64::from(sampler.sample(&reading, None).is_ok());
                     }
                 }

@@ -2,7 +2,7 @@
 
 use crate::common::{self, events, readings, streams};
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, Clock, Event, Kind, Measured, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, StampClock, FramingEvent, ReadingKind, MeasuredTriad, Protocol, Reading, Stamp,
 };
 use octant_sample::Status;
 use proptest::prelude::*;
@@ -15,8 +15,8 @@ fn any_reading() -> impl Strategy<Value = Reading> {
             status.set(Status::GYRO_SATURATED, gyro);
             status.set(Status::ACCELEROMETER_SATURATED, accelerometer);
             Reading {
-                rotation: Some(Measured::increment(rotation)),
-                velocity: Some(Measured::increment(velocity)),
+                rotation: Some(MeasuredTriad::increment(rotation)),
+                velocity: Some(MeasuredTriad::increment(velocity)),
                 interval_s: Some(0.005),
                 status,
                 temperature_c: Some(temperature_c),
@@ -43,11 +43,11 @@ proptest! {
                 let number = number as u64;
                 // Times on a grid that all protocols can represent.
                 let ns = (start + number) * 5_000_000;
-                let stamp = Some(Stamp { ns, clock: Clock::Startup });
+                let stamp = Some(Stamp { ns, clock: StampClock::Startup });
                 let told = Reading { sequence: Some(start + number), stamp, ..*told };
                 let said = events(&mut decoder, encoder.encode(&told).unwrap());
                 prop_assert_eq!(said.len(), 1);
-                let Event::Reading(said) = said[0] else { panic!("{said:?}") };
+                let FramingEvent::Reading(said) = said[0] else { panic!("{said:?}") };
                 for (which, told, said, limit) in [
                     (0, told.rotation, said.rotation, rotation),
                     (1, told.velocity, said.velocity, velocity),
@@ -167,7 +167,7 @@ fn xsens_numbers_of_every_precision() {
         let numbers: Vec<&[u8]> = numbers.iter().map(Vec::as_slice).collect();
         let reading = common::only(Protocol::Xsens, &frame(0x4010 | precision, &numbers));
         let velocity = reading.velocity.unwrap();
-        assert_eq!((velocity.kind, velocity.value), (Kind::Increment, values), "{precision}");
+        assert_eq!((velocity.kind, velocity.value), (ReadingKind::Increment, values), "{precision}");
         let reading = common::only(Protocol::Xsens, &frame(0x8020 | precision | 4, &numbers));
         assert_eq!(reading.rotation.unwrap().value, values);
         // A packet whose length isn't that of its kind is no frame.
@@ -186,7 +186,7 @@ fn xsens_rotations_of_any_size() {
             let mut rotation = [0.0; 3];
             rotation[axis] = angle;
             let told =
-                Reading { rotation: Some(Measured::increment(rotation)), ..common::reading(1) };
+                Reading { rotation: Some(MeasuredTriad::increment(rotation)), ..common::reading(1) };
             let mut encoder = AnyEncoder::new(Protocol::Xsens);
             let mut frame = encoder.encode(&told).unwrap().to_vec();
             let said = common::only(Protocol::Xsens, &frame).rotation.unwrap().value;
@@ -229,8 +229,8 @@ fn counters_roll_over() {
 #[test]
 fn sbg_high_range() {
     let told = Reading {
-        rotation: Some(Measured::mean([50.0, -1.0, 0.0])),
-        velocity: Some(Measured::mean([0.0, 0.0, -9.8])),
+        rotation: Some(MeasuredTriad::mean([50.0, -1.0, 0.0])),
+        velocity: Some(MeasuredTriad::mean([0.0, 0.0, -9.8])),
         interval_s: None,
         ..common::reading(1)
     };

@@ -1,7 +1,7 @@
 //! Conversion of readings to samples: counts with remainders, axes, numbers and time.
 
 use crate::common::{self, frames, only, reading};
-use octant_instruments::{Axes, Measured, Protocol, Reading, Sampler, Settings, Stamp, Unusable};
+use octant_instruments::{Axes, MeasuredTriad, Protocol, Reading, Sampler, SamplerSettings, Stamp, Unusable};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 const PERIOD_NS: u64 = 5_000_000;
 
 fn sampler(axes: &str) -> Sampler {
-    Sampler::new(Settings { axes: Axes::parse(axes).unwrap(), period_ns: PERIOD_NS })
+    Sampler::new(SamplerSettings { axes: Axes::parse(axes).unwrap(), period_ns: PERIOD_NS })
 }
 
 /// The rate is constant and far below a count: the sum of the counts equals the closed form within half
@@ -22,8 +22,8 @@ fn counts_follow_the_integral() {
     let mut sums = [0i64; 2];
     for number in 1..=20_000u64 {
         let told = Reading {
-            rotation: Some(Measured::mean([0.0, 0.0, rate])),
-            velocity: Some(Measured::mean([0.0, 0.0, g])),
+            rotation: Some(MeasuredTriad::mean([0.0, 0.0, rate])),
+            velocity: Some(MeasuredTriad::mean([0.0, 0.0, g])),
             interval_s: None,
             ..reading(number)
         };
@@ -45,7 +45,7 @@ proptest! {
     fn counts_are_exact_on_our_own_wire(
         all in proptest::collection::vec(any::<([i32; 3], [i32; 3], i32, i32)>(), 1..30),
     ) {
-        let mut encoder = octant_instruments::own::Encoder::new();
+        let mut encoder = octant_instruments::own::OwnEncoder::new();
         let mut sampler = sampler("x y z");
         for (number, (delta_theta, delta_velocity, azimuth, roll)) in (1..).zip(all) {
             let most = |count: i32| count.clamp(-i32::MAX + 1, i32::MAX - 1);
@@ -69,8 +69,8 @@ fn the_unit_is_turned_to_the_body() {
     // Mounted upside down with a quarter turn: body x is the unit's −y.
     let mut sampler = sampler("-y -x -z");
     let told = Reading {
-        rotation: Some(Measured::increment([1e-3, 2e-3, 3e-3])),
-        velocity: Some(Measured::increment([0.1, 0.2, 0.3])),
+        rotation: Some(MeasuredTriad::increment([1e-3, 2e-3, 3e-3])),
+        velocity: Some(MeasuredTriad::increment([0.1, 0.2, 0.3])),
         ..reading(1)
     };
     let sample = sampler.sample(&told, Some(GimbalAngles { azimuth: 4, roll: 5 })).unwrap();
@@ -135,11 +135,11 @@ fn what_cannot_be_used_is_said() {
     let long = Reading { interval_s: Some(0.0053), ..reading(1) };
     assert!(sampler.sample(&long, None).is_ok());
     assert_eq!(sampler.counters().irregular, 1);
-    let nan = Reading { rotation: Some(Measured::increment([f64::NAN, 0.0, 0.0])), ..reading(2) };
+    let nan = Reading { rotation: Some(MeasuredTriad::increment([f64::NAN, 0.0, 0.0])), ..reading(2) };
     let sample = sampler.sample(&nan, None).unwrap();
     assert!(sample.status.contains(Status::INERTIAL_INVALID | Status::GYRO_SATURATED));
     assert_eq!(sample.delta_theta[0], 0);
-    let fast = Reading { rotation: Some(Measured::increment([0.1, 0.0, 0.0])), ..reading(3) };
+    let fast = Reading { rotation: Some(MeasuredTriad::increment([0.1, 0.0, 0.0])), ..reading(3) };
     let sample = sampler.sample(&fast, None).unwrap();
     assert_eq!(
         (sample.delta_theta[0], sample.status.contains(Status::GYRO_SATURATED)),

@@ -17,7 +17,7 @@ pub struct Stamps {
 
 /// Estimate of the other clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct ClockEstimate {
     /// Offset by which the other clock is ahead at the time of the last exchange, ns.
     pub offset_ns: f64,
     /// Bound of the error of the offset, ns: half of the least delay.
@@ -113,7 +113,7 @@ impl ClockEstimator {
 
     /// Present estimate; `None` before the first exchange.
     #[must_use]
-    pub fn estimate(&self) -> Option<Estimate> {
+    pub fn estimate(&self) -> Option<ClockEstimate> {
         let (_, origin_offset) = self.origin?;
         let best = &self.best[..self.used];
         let delay_min_ns = best.iter().map(|b| b.delay_ns).fold(f64::INFINITY, f64::min);
@@ -130,7 +130,7 @@ impl ClockEstimator {
         let skew = (self.used >= 2 && spread > 0.0)
             .then(|| sum(&|b| (b.at_ns - at) * (b.offset_ns - offset)) / spread);
         let now = offset + skew.unwrap_or(0.0) * (self.last.at_ns - at);
-        Some(Estimate {
+        Some(ClockEstimate {
             offset_ns: origin_offset as f64 + now,
             bound_ns: 0.5 * delay_min_ns,
             skew,

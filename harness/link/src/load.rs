@@ -10,11 +10,11 @@ pub const LIMIT: f64 = 0.9;
 
 /// Load of a port.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Load {
+pub enum PortLoad {
     /// Load of a serial line, which has a wire for each direction.
     Line(LineLoad),
     /// Load of a bus.
-    Bus(Bus, can::Load),
+    Bus(Bus, can::BusLoad),
     /// The port has no bit rate: a pseudo terminal, UDP, a virtual bus.
     Unlimited,
 }
@@ -49,7 +49,7 @@ pub enum LoadError {
 ///
 /// # Errors
 /// If the port is too slow.
-pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Load, LoadError> {
+pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<PortLoad, LoadError> {
     let traffic = Traffic::session(sample_rate_hz);
     let bus = match uri.rates() {
         Rates::Line(baud) => return line(baud, &traffic),
@@ -57,8 +57,8 @@ pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Loa
         Rates::Unlimited => None,
     };
     match bus {
-        Some(bus) => Ok(Load::Bus(bus, bus.carry(&traffic, LIMIT)?)),
-        None => Ok(Load::Unlimited),
+        Some(bus) => Ok(PortLoad::Bus(bus, bus.carry(&traffic, LIMIT)?)),
+        None => Ok(PortLoad::Unlimited),
     }
 }
 
@@ -79,11 +79,11 @@ const BAUDS: [u32; 10] = [
     4_000_000,
 ];
 
-fn line(rate: u32, traffic: &Traffic) -> Result<Load, LoadError> {
+fn line(rate: u32, traffic: &Traffic) -> Result<PortLoad, LoadError> {
     let most = |load: &LineLoad| load.from_harness.max(load.to_harness);
     let load = Baud::new(rate).load(traffic);
     if most(&load) <= LIMIT {
-        return Ok(Load::Line(load));
+        return Ok(PortLoad::Line(load));
     }
     let needed = most(&load) * f64::from(rate) / LIMIT;
     let fits = BAUDS.into_iter().find(|baud| f64::from(*baud) >= needed);
@@ -99,7 +99,7 @@ fn line(rate: u32, traffic: &Traffic) -> Result<Load, LoadError> {
 mod tests {
     use super::*;
 
-    fn load(uri: &str, rate_hz: f64) -> Result<Load, String> {
+    fn load(uri: &str, rate_hz: f64) -> Result<PortLoad, String> {
         real_time(&uri.parse().unwrap(), rate_hz, None).map_err(|error| error.to_string())
     }
 
@@ -120,7 +120,7 @@ mod tests {
         assert!(load("can:can0?bitrate=1000000", 200.0).is_ok());
         assert!(load("slcan:/dev/ttyACM0?bitrate=500000", 200.0).is_err());
         let fd = load("can:can0?fd=1&bitrate=500000&data_bitrate=2000000", 200.0).unwrap();
-        assert!(matches!(fd, Load::Bus(_, load) if load.share() < 0.3));
+        assert!(matches!(fd, PortLoad::Bus(_, load) if load.share() < 0.3));
         // FD without a second rate is sent at the first one.
         assert!(load("can:can0?fd=1&bitrate=250000", 1000.0).is_err());
     }
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn what_has_no_rate_has_no_limit() {
         for uri in ["pty:", "udp:127.0.0.1:5005", "can:vcan0"] {
-            assert_eq!(load(uri, 1000.0).unwrap(), Load::Unlimited);
+            assert_eq!(load(uri, 1000.0).unwrap(), PortLoad::Unlimited);
         }
         // The URI names no rate, so that of the interface counts.
         let uri = "can:can0".parse().unwrap();

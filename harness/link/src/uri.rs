@@ -8,7 +8,7 @@ mod parts;
 pub use parts::UriError;
 
 use octant_faults::wire::Medium;
-use octant_wire::can::{Bus, Format};
+use octant_wire::can::{Bus, CanVersion};
 use parts::Parts;
 use std::fmt;
 
@@ -25,7 +25,7 @@ pub enum Uri {
     /// A CAN interface of the kernel: `can:can0?fd=1`.
     Can(Can),
     /// A CAN adapter behind a serial line that speaks slcan: `slcan:/dev/ttyACM0?bitrate=500000`.
-    Slcan(Slcan),
+    Slcan(SlcanUri),
     /// UDP: `udp:host:port`.
     Udp(Udp),
 }
@@ -45,7 +45,7 @@ pub struct Can {
     /// Name of the interface.
     pub interface: String,
     /// Format of the frames.
-    pub format: Format,
+    pub format: CanVersion,
     /// Nominal bit rate that the bus must have, bit/s; `None`: as the interface reports.
     pub bitrate: Option<u32>,
     /// Bit rate of the data of FD frames, likewise, bit/s.
@@ -57,15 +57,15 @@ impl Can {
     fn bus(&self) -> Option<Bus> {
         let nominal_bps = self.bitrate?;
         match (self.format, self.data_bitrate) {
-            (Format::Classic, _) => Some(Bus::classic(nominal_bps)),
-            (Format::Fd, data) => Some(Bus::fd(nominal_bps, data.unwrap_or(nominal_bps))),
+            (CanVersion::Classic, _) => Some(Bus::classic(nominal_bps)),
+            (CanVersion::Fd, data) => Some(Bus::fd(nominal_bps, data.unwrap_or(nominal_bps))),
         }
     }
 }
 
 /// A CAN adapter behind a serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Slcan {
+pub struct SlcanUri {
     /// The serial line.
     pub serial: Serial,
     /// The bus behind it.
@@ -153,7 +153,7 @@ const SLCAN: Scheme = Scheme {
     read: |parts| {
         let path = parts.named("slcan:PORT, such as slcan:/dev/ttyACM0")?;
         let baud = parts.rate("baud")?.unwrap_or(DEFAULT_BAUD);
-        Ok(Uri::Slcan(Slcan { serial: Serial { path, baud }, bus: slcan_bus(parts)? }))
+        Ok(Uri::Slcan(SlcanUri { serial: Serial { path, baud }, bus: slcan_bus(parts)? }))
     },
 };
 
@@ -211,8 +211,8 @@ fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
     let format = options.format()?;
     let nominal_bps = one_of("bitrate", options.rate("bitrate")?, &SLCAN_BITRATES)?;
     let data_bps = match format {
-        Format::Classic => None,
-        Format::Fd => {
+        CanVersion::Classic => None,
+        CanVersion::Fd => {
             let found = options.rate("data_bitrate")?;
             Some(one_of("data_bitrate", found, &SLCAN_DATA_BITRATES)?)
         }
@@ -278,7 +278,7 @@ impl fmt::Display for Uri {
             Self::Serial(Serial { path, baud }) => write!(f, "serial:{path}?baud={baud}"),
             Self::Pty { link } => write!(f, "pty:{link}"),
             Self::Can(Can { interface, format, bitrate, data_bitrate }) => {
-                write!(f, "can:{interface}?fd={}", u8::from(*format == Format::Fd))?;
+                write!(f, "can:{interface}?fd={}", u8::from(*format == CanVersion::Fd))?;
                 for (option, rate) in [("bitrate", bitrate), ("data_bitrate", data_bitrate)] {
                     if let Some(rate) = rate {
                         write!(f, "&{option}={rate}")?;
@@ -286,7 +286,7 @@ impl fmt::Display for Uri {
                 }
                 Ok(())
             }
-            Self::Slcan(Slcan { serial: Serial { path, baud }, bus }) => {
+            Self::Slcan(SlcanUri { serial: Serial { path, baud }, bus }) => {
                 write!(f, "slcan:{path}?baud={baud}&bitrate={}", bus.nominal_bps)?;
                 match bus.data_bps {
                     Some(rate) => write!(f, "&fd=1&data_bitrate={rate}"),

@@ -1,11 +1,11 @@
 //! Messages across a port, and counts of losses.
 
-use crate::port::{BusEvent, Bytes, Frames, Port, PortError, Trouble};
+use crate::port::{BusEvent, Bytes, Frames, Port, PortError, BusTrouble};
 use octant_faults::wire::Wired;
-use octant_wire::can::{self, Bits, Bus, Format, Reassembler};
-use octant_wire::message::{ClockTime, Message, Role};
-use octant_wire::serial::{self, Decoder, Encoder};
-use octant_wire::{Unreadable, message::Status};
+use octant_wire::can::{self, Bits, Bus, CanVersion, Reassembler};
+use octant_wire::message::{ClockTime, Message, EndRole};
+use octant_wire::serial::{self, SerialDecoder, SerialEncoder};
+use octant_wire::{Unreadable, message::DeviceStatus};
 use std::time::{Duration, Instant};
 
 /// A unit received.
@@ -20,7 +20,7 @@ pub enum Incoming {
 
 /// Counts of the traffic on a wire, seen from one end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Counts {
+pub struct TrafficCounts {
     /// Messages sent.
     pub sent: u64,
     /// Messages that the port did not accept in full.
@@ -59,7 +59,7 @@ pub struct Wire {
     begun: Instant,
     last_sent: Option<Instant>,
     last_received: Option<Instant>,
-    counts: Counts,
+    counts: TrafficCounts,
     /// Bit rates of the bus, for its load.
     bus: Option<Bus>,
     /// Time since which the controller is off the bus, or of the last attempt to restart it.
@@ -75,8 +75,8 @@ enum Medium {
 #[derive(Debug)]
 struct ByteMedium {
     port: Box<dyn Bytes>,
-    encoder: Encoder,
-    decoder: Decoder,
+    encoder: SerialEncoder,
+    decoder: SerialDecoder,
     buffer: [u8; 4096],
     /// Range of the buffer that isn't decoded yet.
     from: usize,
@@ -89,8 +89,8 @@ struct ByteMedium {
 struct FrameMedium {
     port: Box<dyn Frames>,
     reassembler: Reassembler,
-    role: Role,
-    format: Format,
+    role: EndRole,
+    format: CanVersion,
 }
 
 /// Shortest interval between two attempts to restart a controller.
@@ -99,21 +99,21 @@ const RESTART_EVERY: Duration = Duration::from_millis(100);
 impl Wire {
     /// Makes a wire for the end of a role. `name` is the port's name in errors.
     #[must_use]
-    pub fn new(name: impl Into<String>, port: Port, role: Role) -> Self {
+    pub fn new(name: impl Into<String>, port: Port, role: EndRole) -> Self {
         let medium = match port {
             Port::Bytes(port) => Medium::Bytes(Box::new(ByteMedium {
                 port,
-                encoder: Encoder::new(),
-                decoder: Decoder::new(),
+                encoder: SerialEncoder::new(),
+                decoder: SerialDecoder::new(),
                 buffer: [0; 4096],
                 from: 0,
                 to: 0,
                 concludes: false,
             })),
             Port::Frames(port) => {
-                let others: &[Role] = match role {
-                    Role::Harness => &[Role::Device, Role::Instrument],
-                    Role::Device | Role::Instrument => &[Role::Harness],
+                let others: &[EndRole] = match role {
+                    EndRole::Harness => &[EndRole::Device, EndRole::Instrument],
+                    EndRole::Device | EndRole::Instrument => &[EndRole::Harness],
                 };
                 let format = port.format();
                 let reassembler = Reassembler::new(others, format);
@@ -126,7 +126,7 @@ impl Wire {
             begun: Instant::now(),
             last_sent: None,
             last_received: None,
-            counts: Counts::default(),
+            counts: TrafficCounts::default(),
             bus: None,
             off: None,
         }
@@ -136,11 +136,11 @@ impl Wire {
     ///
     /// # Errors
     /// If the port can't be opened.
-    pub fn open(uri: &crate::Uri, role: Role) -> Result<Self, PortError> {
+    pub fn open(uri: &crate::Uri, role: EndRole) -> Result<Self, PortError> {
         Ok(Self::new(uri.to_string(), crate::port::open(uri, role)?, role))
     }
 
-    /// Sets the bit rates of the bus, from which [`Counts::bus_s`] is computed.
+    /// Sets the bit rates of the bus, from which [`TrafficCounts::bus_s`] is computed.
     pub fn set_bus(&mut self, bus: Bus) {
         self.bus = Some(bus);
     }
@@ -249,18 +249,18 @@ impl Wire {
 
     /// Counts a problem of the bus, and notes whether the controller is off.
     #[cold]
-    fn trouble(&mut self, trouble: Trouble) {
+    fn trouble(&mut self, trouble: BusTrouble) {
         let counts = &mut self.counts;
-        counts.error_frames += u64::from(trouble != Trouble::Foreign);
+        counts.error_frames += u64::from(trouble != BusTrouble::Foreign);
         match trouble {
-            Trouble::Passive => counts.error_passive += 1,
-            Trouble::ArbitrationLost => counts.arbitration_lost += 1,
-            Trouble::Off => {
+            BusTrouble::Passive => counts.error_passive += 1,
+            BusTrouble::ArbitrationLost => counts.arbitration_lost += 1,
+            BusTrouble::Off => {
                 counts.bus_off += 1;
                 // The restart waits: a controller restarted at once may break a bus that recovers.
                 self.off = Some(Instant::now());
             }
-            Trouble::Restarted => {
+            BusTrouble::Restarted => {
                 counts.restarted += 1;
                 self.off = None;
             }
@@ -331,7 +331,7 @@ impl Wire {
 
     /// Counts of the traffic so far.
     #[must_use]
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> TrafficCounts {
         let mut counts = self.counts;
         match &self.medium {
             Medium::Bytes(medium) => {
@@ -356,17 +356,17 @@ impl Wire {
 
     /// Fields of a status that the wire counts, since `before`.
     #[must_use]
-    pub fn status(&self, before: &Counts) -> Status {
+    pub fn status(&self, before: &TrafficCounts) -> DeviceStatus {
         let now = self.counts();
         let since = |now: u64, before: u64| u32::try_from(now - before).unwrap_or(u32::MAX);
-        Status {
+        DeviceStatus {
             received: since(now.received, before.received),
             lost: since(now.lost, before.lost),
             damaged: since(now.damaged, before.damaged),
             missing: since(now.missing, before.missing),
             out_of_order: since(now.out_of_order, before.out_of_order),
             unreadable: since(now.unreadable, before.unreadable),
-            ..Status::default()
+            ..DeviceStatus::default()
         }
     }
 }
@@ -377,7 +377,7 @@ enum Next {
     Incoming(Incoming),
     /// Bytes or a frame that are no message; more may follow.
     Lost,
-    Trouble(Trouble),
+    Trouble(BusTrouble),
     Nothing,
 }
 
@@ -403,24 +403,24 @@ impl ByteMedium {
             event => event,
         };
         Ok(match event {
-            Some(serial::Event::Received(received)) => {
+            Some(serial::DecodeEvent::Received(received)) => {
                 Next::Incoming(Incoming::Message(received.message))
             }
-            Some(serial::Event::Lost(serial::Lost {
-                cause: serial::Cause::Unreadable(Unreadable::NewerVersion { found }),
+            Some(serial::DecodeEvent::Lost(serial::SkippedBytes {
+                cause: serial::FrameDefect::Unreadable(Unreadable::NewerVersion { found }),
                 ..
             })) => Next::Incoming(Incoming::Newer(found)),
-            Some(serial::Event::Lost(_)) | None => Next::Lost,
+            Some(serial::DecodeEvent::Lost(_)) | None => Next::Lost,
         })
     }
 }
 
 /// Longest time of a frame on a bus, s; 0 if its rates are unknown.
-fn frame_s(frame: &can::Frame, bus: Option<Bus>) -> f64 {
+fn frame_s(frame: &can::BusFrame, bus: Option<Bus>) -> f64 {
     let Some(bus) = bus else { return 0.0 };
     let bits: Bits = match frame.format() {
-        Format::Classic => can::classic_bits(frame.data().len()),
-        Format::Fd => can::fd_bits(frame.data().len()),
+        CanVersion::Classic => can::classic_bits(frame.data().len()),
+        CanVersion::Fd => can::fd_bits(frame.data().len()),
     };
     bits.seconds(bus)
 }
@@ -431,7 +431,7 @@ impl FrameMedium {
         message: &Message,
         wait: Duration,
         bus: Option<Bus>,
-        counts: &mut Counts,
+        counts: &mut TrafficCounts,
     ) -> Result<bool, PortError> {
         // A role has no identifier for the messages that it never sends.
         let Ok(segments) = can::segments(message, self.role, self.format) else { return Ok(false) };
@@ -448,7 +448,7 @@ impl FrameMedium {
         &mut self,
         wait: Duration,
         bus: Option<Bus>,
-        counts: &mut Counts,
+        counts: &mut TrafficCounts,
     ) -> Result<Next, PortError> {
         let frame = match self.port.receive(wait)? {
             None => return Ok(Next::Nothing),
@@ -457,14 +457,14 @@ impl FrameMedium {
         };
         counts.bus_s += frame_s(&frame, bus);
         Ok(match self.reassembler.receive(&frame) {
-            Some(can::Event::Received { message, .. }) => {
+            Some(can::ReassemblyEvent::Received { message, .. }) => {
                 Next::Incoming(Incoming::Message(message))
             }
-            Some(can::Event::Lost(can::Lost {
-                cause: can::Cause::Unreadable(Unreadable::NewerVersion { found }),
+            Some(can::ReassemblyEvent::Lost(can::DroppedMessage {
+                cause: can::DropCause::Unreadable(Unreadable::NewerVersion { found }),
                 ..
             })) => Next::Incoming(Incoming::Newer(found)),
-            Some(can::Event::Lost(_)) | None => Next::Lost,
+            Some(can::ReassemblyEvent::Lost(_)) | None => Next::Lost,
         })
     }
 }

@@ -5,9 +5,9 @@
 use crate::common::{self, Served, drive, facts, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{Harness, Options, Patience};
+use octant_link::harness::{Harness, SessionOptions, Patience};
 use octant_link::{Uri, Wire, port};
-use octant_wire::message::Role;
+use octant_wire::message::EndRole;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -65,10 +65,10 @@ fn a_bus_with_faults_carries_a_session() {
     let _alone = BUS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let (mut served, _) = Served::on(&far, facts());
     let uri: Uri = name.parse().unwrap();
-    let port = around(port::open(&uri, Role::Harness).unwrap());
+    let port = around(port::open(&uri, EndRole::Harness).unwrap());
     let patience = Patience { repeat: Duration::from_millis(10), ..options().patience };
-    let options = Options { patience, ..options() };
-    let mut harness = Harness::open(Wire::new(name, port, Role::Harness), options).unwrap();
+    let options = SessionOptions { patience, ..options() };
+    let mut harness = Harness::open(Wire::new(name, port, EndRole::Harness), options).unwrap();
     let ways = Ways { to_device: true, to_harness: true };
     let actions = [
         (WireAction::Lose, 0.005),

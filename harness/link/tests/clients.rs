@@ -7,10 +7,10 @@
 use crate::common::{drive, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{Harness, Options, Patience};
+use octant_link::harness::{Harness, SessionOptions, Patience};
 use octant_link::port::{self, Port, Pty};
 use octant_link::{Uri, Wire};
-use octant_wire::message::{Reason, Role};
+use octant_wire::message::{Reason, EndRole};
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -86,9 +86,9 @@ impl Drop for Device {
 /// Runs a session over a port, with frames lost, damaged and duplicated if `bad`.
 fn session(port: Port, bad: bool) {
     let patience = Patience { repeat: Duration::from_millis(20), ..options().patience };
-    let options = if bad { Options { patience, ..options() } } else { options() };
+    let options = if bad { SessionOptions { patience, ..options() } } else { options() };
     let mut harness =
-        Harness::open(Wire::new("client", around(port), Role::Harness), options).unwrap();
+        Harness::open(Wire::new("client", around(port), EndRole::Harness), options).unwrap();
     if bad {
         let ways = Ways { to_device: true, to_harness: true };
         for (handle, action) in
@@ -114,7 +114,7 @@ fn they_are_devices_on_udp() {
             let line = device.first_line();
             let number = line.trim().rsplit(' ').next().unwrap();
             let uri: Uri = format!("udp:127.0.0.1:{number}").parse().expect(name);
-            session(port::open(&uri, Role::Harness).unwrap(), bad);
+            session(port::open(&uri, EndRole::Harness).unwrap(), bad);
         }
     }
 }

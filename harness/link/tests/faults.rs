@@ -4,11 +4,11 @@
 use crate::common::{LONG, Served, drive, facts, options, sample};
 use octant_faults::wire::{Medium, Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{Event, Harness, Options, Patience, SessionError};
-use octant_link::port::{self, Port, Pty, Slcan};
+use octant_link::harness::{LinkEvent, Harness, SessionOptions, Patience, SessionError};
+use octant_link::port::{self, Port, Pty, SlcanPort};
 use octant_link::{PortError, Uri, Wire};
 use octant_sample::Output;
-use octant_wire::message::Role;
+use octant_wire::message::EndRole;
 use std::time::{Duration, Instant};
 
 const BOTH: Ways = Ways { to_device: true, to_harness: true };
@@ -41,9 +41,9 @@ fn actions() -> Vec<(WireAction, f64)> {
     ]
 }
 
-fn patient() -> Options {
+fn patient() -> SessionOptions {
     let patience = Patience { repeat: Duration::from_millis(10), ..options().patience };
-    Options { patience, ..options() }
+    SessionOptions { patience, ..options() }
 }
 
 /// A device on a medium, and the harness's port to it.
@@ -52,7 +52,7 @@ fn pair(medium: Medium) -> (Served, Port) {
         Medium::Line | Medium::Datagrams => {
             let uri = if medium == Medium::Line { "pty:" } else { "udp:0" };
             let (served, uri) = Served::on(uri, facts());
-            let port = port::open(&uri, Role::Harness).unwrap();
+            let port = port::open(&uri, EndRole::Harness).unwrap();
             (served, port)
         }
         // Two adapters with crossed lines: each receives what the other sends.
@@ -61,18 +61,18 @@ fn pair(medium: Medium) -> (Served, Port) {
             let uri = format!("slcan:{}?bitrate=500000", pty.name());
             let Uri::Slcan(slcan) = uri.parse().unwrap() else { panic!() };
             let far = slcan.clone();
-            let device = std::thread::spawn(move || Slcan::over(Box::new(pty), &far).unwrap());
-            let near = Slcan::open(&slcan).unwrap();
+            let device = std::thread::spawn(move || SlcanPort::over(Box::new(pty), &far).unwrap());
+            let near = SlcanPort::open(&slcan).unwrap();
             let device = Port::Frames(Box::new(device.join().unwrap()));
-            let served = Served::over(Wire::new("device", device, Role::Device), facts());
+            let served = Served::over(Wire::new("device", device, EndRole::Device), facts());
             (served, Port::Frames(Box::new(near)))
         }
     }
 }
 
 /// Opens a session, then begins one fault on its wire.
-fn faulted(port: Port, fault: WireFault, options: Options) -> Harness {
-    let wire = Wire::new("faulted", around(port), Role::Harness);
+fn faulted(port: Port, fault: WireFault, options: SessionOptions) -> Harness {
+    let wire = Wire::new("faulted", around(port), EndRole::Harness);
     let mut harness = Harness::open(wire, options).unwrap();
     harness.wire().wired().unwrap().begin(7, &fault);
     harness
@@ -154,7 +154,7 @@ fn a_bus_may_be_as_bad_as_it_likes() {
 #[test]
 fn a_bus_without_faults_carries_a_session() {
     let (mut served, port) = pair(Medium::Bus);
-    let mut harness = Harness::open(Wire::new("bus", port, Role::Harness), options()).unwrap();
+    let mut harness = Harness::open(Wire::new("bus", port, EndRole::Harness), options()).unwrap();
     drive(&mut harness, 60);
     let counts = harness.counts();
     assert_eq!((counts.lost, counts.damaged, counts.missing), (0, 0, 0));
@@ -208,7 +208,7 @@ fn a_plug_that_was_pulled_ends_the_step_and_a_port_that_is_back_goes_on() {
             let action = WireAction::HangUp { away_s };
             WireFault { ways: BOTH, chance: 1.0, action, key: [1, 2] }
         };
-        let wire = Wire::new("pulled", around(port), Role::Harness);
+        let wire = Wire::new("pulled", around(port), EndRole::Harness);
         let mut harness = Harness::open(wire, patient()).unwrap();
         let mut output = Output::default();
         let (one, aiding) = sample(1);
@@ -252,7 +252,7 @@ fn what_was_held_back_goes_on_when_the_fault_ends() {
         .begin(7, &WireFault { ways: Ways { to_device: true, to_harness: false }, ..fault });
     harness.send_sample(&one, None).unwrap();
     // Statuses of the device may arrive.
-    let is_answer = |event: &Event| matches!(event, Event::Output(_));
+    let is_answer = |event: &LinkEvent| matches!(event, LinkEvent::Output(_));
     let mut said = std::iter::from_fn(|| harness.poll(Duration::from_millis(50)).unwrap());
     assert!(!said.any(|event| is_answer(&event)));
     harness.wire().wired().unwrap().end(7);

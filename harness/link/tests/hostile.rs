@@ -5,7 +5,7 @@ use octant_link::device::{Device, Notice};
 use octant_link::port::{Bytes, Port};
 use octant_link::{PortError, Wire};
 use octant_wire::message::*;
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,16 +59,16 @@ fn serve(pieces: Vec<Vec<u8>>, datagrams: bool) -> (Vec<Message>, u64) {
     let (sent, stop) = (Arc::default(), Arc::new(AtomicBool::new(false)));
     let pieces = pieces.into_iter().filter(|piece| !piece.is_empty()).collect();
     let line = Line { pieces, sent: Arc::clone(&sent), stop: Arc::clone(&stop), datagrams };
-    let wire = Wire::new("memory", Port::Bytes(Box::new(line)), Role::Device);
+    let wire = Wire::new("memory", Port::Bytes(Box::new(line)), EndRole::Device);
     let mut echo = Echo::default();
     let mut notice = |_: &Notice| {};
     let mut device = Device::new(wire, facts(), &mut echo, &mut notice).unwrap();
     device.serve(&stop).unwrap();
     drop(device);
     let bytes = sent.lock().unwrap().clone();
-    let (mut decoder, mut rest, mut said) = (Decoder::new(), bytes.as_slice(), Vec::new());
+    let (mut decoder, mut rest, mut said) = (SerialDecoder::new(), bytes.as_slice(), Vec::new());
     while let Some(event) = decoder.next(&mut rest) {
-        let Event::Received(received) = event else { panic!("a device sends messages alone") };
+        let DecodeEvent::Received(received) = event else { panic!("a device sends messages alone") };
         said.push(received.message);
     }
     (said, echo.steps)
@@ -79,13 +79,13 @@ fn hello(session: u32) -> Message {
 }
 
 fn frames(messages: &[Message]) -> Vec<Vec<u8>> {
-    let mut encoder = Encoder::new();
+    let mut encoder = SerialEncoder::new();
     messages.iter().map(|m| encoder.encode(m, ClockTime::default()).to_vec()).collect()
 }
 
 /// Messages that a harness may send, sensible or not.
 fn message() -> impl Strategy<Value = Message> {
-    let step = || (0..6u16).prop_map(Step::new);
+    let step = || (0..6u16).prop_map(StepNumber::new);
     prop_oneof![
         (0..4u32).prop_map(hello),
         (step(), any::<bool>(), 1..9u64).prop_map(|(step, aided, k)| {
@@ -120,7 +120,7 @@ proptest! {
         }
         let session = 77;
         let (one, _) = sample(1);
-        let step = Step::new(1);
+        let step = StepNumber::new(1);
         let asked = [hello(session), Message::Sample(SampleMessage { step, aided: false, sample: one })];
         pieces.extend(frames(&asked));
         let (said, _) = serve(pieces, datagrams);
@@ -136,7 +136,7 @@ proptest! {
         let requests: Vec<Message> = order
             .iter()
             .map(|k| {
-                let step = Step::new(*k as u16);
+                let step = StepNumber::new(*k as u16);
                 Message::Sample(SampleMessage { step, aided: false, sample: sample(*k).0 })
             })
             .collect();

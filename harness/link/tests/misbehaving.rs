@@ -1,12 +1,12 @@
 //! Devices that break the protocol: late, repeated, missing and wrong answers.
 
 use crate::common::{LONG, PERIOD_NS, options, sample};
-use octant_link::harness::{Harness, Options, Patience, SessionError};
+use octant_link::harness::{Harness, SessionOptions, Patience, SessionError};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;
 use octant_wire::VERSION;
 use octant_wire::message::*;
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
 use std::net::UdpSocket;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,13 +36,13 @@ impl Scripted {
         let stop = Arc::new(AtomicBool::new(false));
         let until = Arc::clone(&stop);
         let thread = std::thread::spawn(move || {
-            let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+            let (mut encoder, mut decoder) = (SerialEncoder::new(), SerialDecoder::new());
             let mut bytes = [0; 2000];
             while !until.load(Ordering::Relaxed) {
                 let Ok((count, from)) = socket.recv_from(&mut bytes) else { continue };
                 let mut rest = &bytes[..count];
                 while let Some(event) = decoder.next(&mut rest) {
-                    let Event::Received(received) = event else { continue };
+                    let DecodeEvent::Received(received) = event else { continue };
                     for say in script(&received.message) {
                         let sent = match say {
                             Say::Message(message) => {
@@ -73,7 +73,7 @@ impl Drop for Scripted {
 
 fn hello(session: u32) -> Message {
     Message::Hello(Hello {
-        role: Role::Device,
+        role: EndRole::Device,
         session,
         capabilities: Capabilities::all(),
         sample_period_ns: PERIOD_NS,
@@ -81,7 +81,7 @@ fn hello(session: u32) -> Message {
     })
 }
 
-fn output(step: Step, sequence: u64) -> Message {
+fn output(step: StepNumber, sequence: u64) -> Message {
     let output = Output { sequence, ..Output::default() };
     Message::Output(OutputMessage { step, parameters_follow: false, output, computing_ns: 0 })
 }
@@ -105,8 +105,8 @@ fn open_within(
     answer: Duration,
 ) -> Result<Harness, SessionError> {
     let patience = Patience { hello, answer, repeat: Duration::from_millis(20) };
-    let options = Options { patience, ..options() };
-    Harness::open(Wire::open(&peer.uri, Role::Harness).unwrap(), options)
+    let options = SessionOptions { patience, ..options() };
+    Harness::open(Wire::open(&peer.uri, EndRole::Harness).unwrap(), options)
 }
 
 fn open(peer: &Scripted) -> Result<Harness, SessionError> {
@@ -182,7 +182,7 @@ fn one_that_hears_of_a_harness_that_waits() {
     let peer = Scripted::new(move |message| match message {
         Message::Hello(theirs) => {
             let Message::Hello(ours) = hello(theirs.session) else { unreachable!() };
-            let limits = Limits { silence_ms: 200, ..ours.limits };
+            let limits = EndLimits { silence_ms: 200, ..ours.limits };
             vec![Say::Message(Message::Hello(Hello { limits, ..ours }))]
         }
         Message::Sample(sample) => {
@@ -198,8 +198,8 @@ fn one_that_hears_of_a_harness_that_waits() {
         _ => Vec::new(),
     });
     let patience = Patience { hello: LONG, answer: LONG, repeat: LONG };
-    let options = Options { patience, ..options() };
-    let wire = Wire::open(&peer.uri, Role::Harness).unwrap();
+    let options = SessionOptions { patience, ..options() };
+    let wire = Wire::open(&peer.uri, EndRole::Harness).unwrap();
     let mut harness = Harness::open(wire, options).unwrap();
     steps(&mut harness, 2).unwrap();
     assert_eq!(harness.effort().repeated, 0);
@@ -219,7 +219,7 @@ fn one_that_answers_twice_and_with_old_answers() {
 #[test]
 fn one_that_answers_other_steps() {
     let peer = device(|sample| {
-        let other = Step::new(sample.step.number() + 7);
+        let other = StepNumber::new(sample.step.number() + 7);
         vec![Say::Message(output(other, 99)), Say::Bytes(vec![0xA5; 300]), Say::Bytes(vec![0; 9])]
     });
     let mut harness = open_impatient(&peer);

@@ -2,11 +2,11 @@
 
 use crate::common::{self, LONG, Served, bits, drive, facts, harness, options, sample};
 use octant_link::device::Facts;
-use octant_link::harness::{Event, Harness, Sending, SessionError};
+use octant_link::harness::{LinkEvent, Harness, Sending, SessionError};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;
 use octant_wire::Text;
-use octant_wire::message::{Capabilities, Pacing, Reason, Refusal, Role};
+use octant_wire::message::{Capabilities, StepPacing, Reason, SessionRefusal, EndRole};
 use std::time::{Duration, Instant};
 
 /// Ports that need no hardware.
@@ -37,7 +37,7 @@ fn a_name_that_a_terminal_would_obey_is_refused() {
     {
         let bad = Facts { name: Text::fitting(name), firmware: Text::fitting(firmware), ..facts() };
         let (_served, uri) = Served::on("pty:", bad);
-        let error = match Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options()) {
+        let error = match Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options()) {
             Ok(_) => panic!("{name:?} {firmware:?} was taken"),
             Err(error) => error,
         };
@@ -66,7 +66,7 @@ fn a_device_serves_one_harness_after_the_other() {
 fn a_harness_that_is_gone_without_a_word_is_given_up() {
     let short = Facts {
         // Longer than a busy host takes between two steps, and short enough for a test.
-        limits: octant_wire::message::Limits { silence_ms: 3000, ..facts().limits },
+        limits: octant_wire::message::EndLimits { silence_ms: 3000, ..facts().limits },
         ..facts()
     };
     let (served, uri) = Served::on("udp:0", short);
@@ -84,20 +84,20 @@ fn a_harness_that_is_gone_without_a_word_is_given_up() {
 
 #[test]
 fn two_that_don_t_fit_part_with_a_reason() {
-    let fails = |facts: Facts, change: fn(&mut octant_link::harness::Options)| {
+    let fails = |facts: Facts, change: fn(&mut octant_link::harness::SessionOptions)| {
         let (_served, uri) = Served::on("pty:", facts);
         let mut options = options();
         change(&mut options);
-        Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options).unwrap_err()
+        Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap_err()
     };
     let period = fails(facts(), |options| options.sample_period_ns = 1_000_000);
-    assert!(matches!(period, SessionError::Refused { reason: Refusal::Period { .. }, .. }));
+    assert!(matches!(period, SessionError::Refused { reason: SessionRefusal::Period { .. }, .. }));
     let other = Facts { configuration: [7; 32], ..facts() };
     let configuration = fails(other, |options| options.configuration = [8; 32]);
     let told = configuration.to_string();
     assert!(told.contains("configuration 0808") && told.contains("has 0707"), "{told}");
     let slow = Facts { capabilities: Capabilities::LOCK_STEP, ..facts() };
-    let pacing = fails(slow, |options| options.pacing = Pacing::RealTime);
+    let pacing = fails(slow, |options| options.pacing = StepPacing::RealTime);
     assert!(pacing.to_string().contains("asks for real-time steps"), "{pacing}");
 }
 
@@ -116,7 +116,7 @@ fn nobody_at_the_other_end_is_told_with_what_was_heard() {
     let uri: Uri = format!("serial:{name}").parse().unwrap();
     let mut options = options();
     options.patience.hello = Duration::from_millis(300);
-    let wire = Wire::open(&uri, Role::Harness).unwrap();
+    let wire = Wire::open(&uri, EndRole::Harness).unwrap();
     let error = Harness::open(wire, options).unwrap_err();
     let SessionError::NoAnswer { waited, .. } = &error else { panic!("{error}") };
     assert!(*waited >= Duration::from_millis(300), "{error}");
@@ -149,8 +149,8 @@ fn a_device_that_goes_in_the_middle_is_an_error_that_says_what_was_waited_for() 
 fn in_real_time_nothing_waits() {
     for uri in URIS {
         let (_served, uri) = Served::on(uri, facts());
-        let options = octant_link::harness::Options { pacing: Pacing::RealTime, ..options() };
-        let mut harness = Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options).unwrap();
+        let options = octant_link::harness::SessionOptions { pacing: StepPacing::RealTime, ..options() };
+        let mut harness = Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap();
         let mut echo = common::Echo::default();
         let (mut sent, mut got, mut times) = (0, 0, 0);
         let begun = Instant::now();
@@ -172,7 +172,7 @@ fn in_real_time_nothing_waits() {
             }
             while let Some(event) = harness.poll(Duration::ZERO).unwrap() {
                 match event {
-                    Event::Output(answer) => {
+                    LinkEvent::Output(answer) => {
                         got += 1;
                         let (sample, aiding) = sample(got);
                         let mut expected = Output::default();
@@ -184,7 +184,7 @@ fn in_real_time_nothing_waits() {
                         );
                         assert_eq!(bits(&answer.output), bits(&expected));
                     }
-                    Event::Time(stamps) => {
+                    LinkEvent::Time(stamps) => {
                         let found = stamps.reply.offset(stamps.harness_received);
                         assert!(found.error_ns >= 0, "{found:?}");
                         times += 1;

@@ -1,23 +1,23 @@
 //! Binds channels to the variables of one FMU: the place of each element among the numbers that are
 //! set or read together, and its conversion.
 
-use super::convert::{Conversion, conversion, fits};
-use super::find::{Found, Way, allowed, described, find, unknown};
+use super::convert::{ChannelConversion, conversion, fits};
+use super::find::{FoundElements, ValueWay, allowed, described, find, unknown};
 use octant_fmu_host::description::{Description, Variable};
-use octant_fmu_host::instance::{InstanceError, Plan};
+use octant_fmu_host::instance::{InstanceError, AccessPlan};
 use octant_scenario::channel::Channel;
-use octant_scenario::{Fmu, Made, Mapped, Problem, Written};
+use octant_scenario::{Fmu, Made, Mapped, Problem, EntryPlace};
 
 /// One element of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cell {
+pub enum ChannelCell {
     /// Number of the FMU, by its place.
-    At(usize, Conversion),
+    At(usize, ChannelConversion),
     /// A constant, SI.
     Constant(f64),
 }
 
-impl Cell {
+impl ChannelCell {
     /// Value, SI.
     #[must_use]
     #[inline]
@@ -39,7 +39,7 @@ impl Cell {
 
 /// A channel of `N` elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cells<const N: usize>([Cell; N]);
+pub struct Cells<const N: usize>([ChannelCell; N]);
 
 impl<const N: usize> Cells<N> {
     /// Values, SI.
@@ -61,7 +61,7 @@ impl<const N: usize> Cells<N> {
 /// Element located by its variable; the place follows when all variables are known.
 #[derive(Clone, Copy, Debug)]
 enum Loose {
-    At { variable: usize, element: usize, conversion: Conversion },
+    At { variable: usize, element: usize, conversion: ChannelConversion },
     Constant(f64),
 }
 
@@ -69,7 +69,7 @@ enum Loose {
 pub struct Binder<'a> {
     description: &'a Description,
     fmu: &'a Fmu,
-    way: Way,
+    way: ValueWay,
     variables: Vec<&'a Variable>,
     /// Elements of variables that are set, with their channel: no two channels may set the same
     /// element.
@@ -85,7 +85,7 @@ pub struct Handle(usize);
 impl<'a> Binder<'a> {
     /// Creates a binder for an FMU with the mapping of a scenario.
     #[must_use]
-    pub fn new(description: &'a Description, fmu: &'a Fmu, way: Way) -> Self {
+    pub fn new(description: &'a Description, fmu: &'a Fmu, way: ValueWay) -> Self {
         Self {
             description,
             fmu,
@@ -121,8 +121,8 @@ impl<'a> Binder<'a> {
         let handle = self.channel(channel);
         if handle.is_none() && self.problems.len() == problems {
             let way = match self.way {
-                Way::Out => "an output",
-                Way::In => "an input",
+                ValueWay::Out => "an output",
+                ValueWay::In => "an input",
             };
             self.problem(format!(
                 "{} is mapped to nothing, and the FMU has no variable of that name: expected {way} \
@@ -171,7 +171,7 @@ impl<'a> Binder<'a> {
     }
 
     /// Notes a problem with a setting of the scenario.
-    pub fn problem_at(&mut self, at: &Written, message: impl Into<String>) {
+    pub fn problem_at(&mut self, at: &EntryPlace, message: impl Into<String>) {
         self.problems.push(at.problem(message));
     }
 
@@ -211,7 +211,7 @@ impl<'a> Binder<'a> {
         let mut cells = Vec::with_capacity(channel.elements);
         for port in &mapped.ports {
             match &port.what {
-                Made::Constant(_) if self.way == Way::In => {
+                Made::Constant(_) if self.way == ValueWay::In => {
                     return Err(port.at.problem(format!(
                         "found a constant, and {} goes into the FMU: expected a variable; inputs \
                          that are held are set in {}.parameters",
@@ -239,7 +239,7 @@ impl<'a> Binder<'a> {
         elements: usize,
         unit: Option<&str>,
         scale: f64,
-        at: &Written,
+        at: &EntryPlace,
         cells: &mut Vec<Loose>,
     ) -> Result<(), Problem> {
         let Some(found) = find(self.description, name, elements) else {
@@ -255,7 +255,7 @@ impl<'a> Binder<'a> {
             };
             return Err(at.problem(message.to_string()));
         };
-        let Found { elements: all, negated } = found;
+        let FoundElements { elements: all, negated } = found;
         if all.len() != elements {
             let (variable, _) = all[0];
             return Err(at.problem(format!(
@@ -285,14 +285,14 @@ impl<'a> Binder<'a> {
         channel: &'static Channel,
         variable: &'a Variable,
         element: usize,
-        conversion: Conversion,
+        conversion: ChannelConversion,
     ) -> Result<Loose, String> {
         let known = self.variables.iter().position(|other| std::ptr::eq(*other, variable));
         let variable_number = known.unwrap_or_else(|| {
             self.variables.push(variable);
             self.variables.len() - 1
         });
-        if self.way == Way::In {
+        if self.way == ValueWay::In {
             let taken = self.taken.iter().find(|(v, e, _)| (*v, *e) == (variable_number, element));
             if let Some((.., other)) = taken {
                 return Err(format!("{} is set by {other} already", variable.name));
@@ -311,15 +311,15 @@ impl<'a> Binder<'a> {
         if !self.problems.is_empty() {
             return Err(BindError::Mapping(self.problems));
         }
-        let plan = Plan::new(self.description, &self.variables).map_err(BindError::Instance)?;
+        let plan = AccessPlan::new(self.description, &self.variables).map_err(BindError::Instance)?;
         let mut numbers = vec![0.0; plan.elements];
         for (variable, place) in self.variables.iter().zip(&plan.places) {
             start(variable, &mut numbers[place.clone()]);
         }
         let cell = |loose: &Loose| match *loose {
-            Loose::Constant(value) => Cell::Constant(value),
+            Loose::Constant(value) => ChannelCell::Constant(value),
             Loose::At { variable, element, conversion } => {
-                Cell::At(plan.places[variable].start + element, conversion)
+                ChannelCell::At(plan.places[variable].start + element, conversion)
             }
         };
         let channels = self.loose.iter().map(|cells| cells.iter().map(cell).collect()).collect();
@@ -340,16 +340,16 @@ pub enum BindError {
 #[derive(Clone, Debug)]
 pub struct Bound {
     /// Groups, with the count of their numbers.
-    pub plan: Plan,
+    pub plan: AccessPlan,
     /// Start values of the numbers.
     pub numbers: Vec<f64>,
-    channels: Vec<Vec<Cell>>,
+    channels: Vec<Vec<ChannelCell>>,
 }
 
 impl Bound {
     /// Returns the cells of a channel; empty if there is no channel.
     #[must_use]
-    pub fn channel(&self, handle: Option<Handle>) -> &[Cell] {
+    pub fn channel(&self, handle: Option<Handle>) -> &[ChannelCell] {
         handle.and_then(|handle| self.channels.get(handle.0)).map_or(&[], Vec::as_slice)
     }
 
@@ -362,7 +362,7 @@ impl Bound {
 
     /// Returns the cell of a channel of one element.
     #[must_use]
-    pub fn cell(&self, handle: Option<Handle>) -> Option<Cell> {
+    pub fn cell(&self, handle: Option<Handle>) -> Option<ChannelCell> {
         self.cells::<1>(handle).map(|cells| cells.0[0])
     }
 }

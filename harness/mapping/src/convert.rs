@@ -1,18 +1,18 @@
 //! Converts between the unit of an FMU's variable and SI.
 
-use octant_fmu_host::description::units::{Conversion as Units, UnitError};
-use octant_fmu_host::description::{Description, Kind, Variable};
-use octant_scenario::Dimension;
+use octant_fmu_host::description::units::{UnitConversion as Units, UnitError};
+use octant_fmu_host::description::{Description, VariableType, Variable};
+use octant_scenario::UnitDimension;
 use octant_scenario::channel::{Channel, Class};
 
 /// SI value = factor · value + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conversion {
+pub struct ChannelConversion {
     factor: f64,
     offset: f64,
 }
 
-impl Conversion {
+impl ChannelConversion {
     /// Passes the value unchanged, to the last bit.
     pub const IDENTITY: Self = Self { factor: 1.0, offset: 0.0 };
 
@@ -38,14 +38,14 @@ impl Conversion {
 
 /// Reason why values of a variable can't become those of a channel.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConversionError {
+pub enum ChannelConversionError {
     /// The type of the variable can't hold the values of the channel.
     #[error("{variable} is {}, and {channel} is {expected}", article(.kind.name()))]
     Type {
         /// Name of the variable.
         variable: String,
         /// Type found.
-        kind: Kind,
+        kind: VariableType,
         /// Name of the channel.
         channel: &'static str,
         /// Values of the channel.
@@ -69,7 +69,7 @@ pub enum ConversionError {
         /// Name of the channel.
         channel: &'static str,
         /// Dimension expected.
-        dimension: Dimension,
+        dimension: UnitDimension,
     },
     /// The unit is of another dimension.
     #[error("{variable} is in {unit}, {found}, and {channel} is {expected}")]
@@ -116,25 +116,25 @@ pub fn conversion(
     channel: &Channel,
     unit: Option<&str>,
     scale: f64,
-) -> Result<Conversion, ConversionError> {
+) -> Result<ChannelConversion, ChannelConversionError> {
     fits(variable, channel)?;
     match channel.class {
         Class::Flag | Class::Code if scale != 1.0 => {
-            Err(ConversionError::Scale { channel: channel.name })
+            Err(ChannelConversionError::Scale { channel: channel.name })
         }
-        Class::Flag | Class::Code | Class::Whole => Ok(Conversion::scaled(Units::IDENTITY, scale)),
+        Class::Flag | Class::Code | Class::Whole => Ok(ChannelConversion::scaled(Units::IDENTITY, scale)),
         Class::Nanoseconds => {
             let units = units(description, variable, channel, unit, "ns")?;
-            Ok(Conversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
+            Ok(ChannelConversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
         }
         Class::Number => {
             let units = units(description, variable, channel, unit, "1")?;
-            Ok(Conversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
+            Ok(ChannelConversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
         }
         Class::Quantity(dimension) => {
             match units(description, variable, channel, unit, dimension.si_unit())? {
-                Some(units) => Ok(Conversion::scaled(units, scale)),
-                None => Err(ConversionError::NoUnit {
+                Some(units) => Ok(ChannelConversion::scaled(units, scale)),
+                None => Err(ChannelConversionError::NoUnit {
                     variable: variable.name.clone(),
                     channel: channel.name,
                     dimension,
@@ -148,11 +148,11 @@ pub fn conversion(
 ///
 /// # Errors
 /// If it can't: found and expected.
-pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ConversionError> {
+pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ChannelConversionError> {
     let number =
-        !matches!(variable.kind, Kind::Boolean | Kind::String | Kind::Binary | Kind::Clock);
+        !matches!(variable.kind, VariableType::Boolean | VariableType::String | VariableType::Binary | VariableType::Clock);
     let (good, expected) = match channel.class {
-        Class::Flag => (variable.kind == Kind::Boolean || is_whole(variable.kind), "true or false"),
+        Class::Flag => (variable.kind == VariableType::Boolean || is_whole(variable.kind), "true or false"),
         Class::Code => (number, "a code: a whole number or an enumeration"),
         Class::Whole | Class::Nanoseconds => (number, "a whole number"),
         Class::Number | Class::Quantity(_) => (number, "a number"),
@@ -160,7 +160,7 @@ pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ConversionErro
     if good {
         return Ok(());
     }
-    Err(ConversionError::Type {
+    Err(ChannelConversionError::Type {
         variable: variable.name.clone(),
         kind: variable.kind,
         channel: channel.name,
@@ -168,8 +168,8 @@ pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ConversionErro
     })
 }
 
-fn is_whole(kind: Kind) -> bool {
-    !kind.is_float() && !matches!(kind, Kind::Boolean | Kind::String | Kind::Binary | Kind::Clock)
+fn is_whole(kind: VariableType) -> bool {
+    !kind.is_float() && !matches!(kind, VariableType::Boolean | VariableType::String | VariableType::Binary | VariableType::Clock)
 }
 
 /// Returns the conversion from a variable's unit into `wanted`; `None` where no unit is given.
@@ -179,10 +179,10 @@ fn units(
     channel: &Channel,
     said: Option<&str>,
     wanted: &str,
-) -> Result<Option<Units>, ConversionError> {
+) -> Result<Option<Units>, ChannelConversionError> {
     let problem = |error: UnitError, unit: &str| match error {
         UnitError::Dimension { from_exponents, .. } => {
-            let found = match Dimension::with_exponents(&from_exponents) {
+            let found = match UnitDimension::with_exponents(&from_exponents) {
                 Some(dimension) => dimension.name.to_owned(),
                 None => octant_fmu_host::description::units::dimension(from_exponents),
             };
@@ -193,7 +193,7 @@ fn units(
                 Class::Nanoseconds => "a time, in ns".to_owned(),
                 _ => "a number without unit".to_owned(),
             };
-            ConversionError::Dimension {
+            ChannelConversionError::Dimension {
                 variable: variable.name.clone(),
                 unit: unit.to_owned(),
                 found,
@@ -201,7 +201,7 @@ fn units(
                 expected,
             }
         }
-        error => ConversionError::Unit { variable: variable.name.clone(), error },
+        error => ChannelConversionError::Unit { variable: variable.name.clone(), error },
     };
     match (&variable.unit, said) {
         (None, None) => Ok(None),
@@ -215,7 +215,7 @@ fn units(
             if let Some(said) = said
                 && !Units::between(description, said, unit).is_ok_and(|units| units.is_identity())
             {
-                return Err(ConversionError::OtherUnit {
+                return Err(ChannelConversionError::OtherUnit {
                     variable: variable.name.clone(),
                     found: said.to_owned(),
                     expected: unit.clone(),
@@ -238,10 +238,10 @@ mod tests {
 
     #[test]
     fn a_conversion_and_its_inverse() {
-        let celsius = Conversion { factor: 1.0, offset: 273.15 };
+        let celsius = ChannelConversion { factor: 1.0, offset: 273.15 };
         assert_eq!(celsius.to_si(20.0), 293.15);
         assert!((celsius.from_si(293.15) - 20.0).abs() < 1e-12);
-        assert_eq!(Conversion::IDENTITY.to_si(-0.0).to_bits(), (-0.0f64).to_bits());
-        assert_eq!(Conversion::IDENTITY.from_si(-0.0).to_bits(), (-0.0f64).to_bits());
+        assert_eq!(ChannelConversion::IDENTITY.to_si(-0.0).to_bits(), (-0.0f64).to_bits());
+        assert_eq!(ChannelConversion::IDENTITY.from_si(-0.0).to_bits(), (-0.0f64).to_bits());
     }
 }

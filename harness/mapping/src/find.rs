@@ -5,14 +5,14 @@ use octant_fmu_host::description::{Causality, Description, Variability, Variable
 
 /// Direction of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum ValueWay {
     /// Out of the FMU.
     Out,
     /// Into the FMU, at every step.
     In,
 }
 
-impl Way {
+impl ValueWay {
     /// Variable that this direction needs, with its article.
     const fn expected(self) -> &'static str {
         match self {
@@ -24,7 +24,7 @@ impl Way {
 
 /// Elements to which a name refers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found<'a> {
+pub struct FoundElements<'a> {
     /// Variable of each element, with the index of the element in it, from 0.
     pub elements: Vec<(&'a Variable, usize)>,
     /// True if a minus sign stood before the name.
@@ -34,13 +34,13 @@ pub struct Found<'a> {
 /// Looks up a name: a variable, all elements `name[1]` … of an array whose elements are scalars in
 /// the file, or one element `name[2]` of an array; each also after a minus sign.
 #[must_use]
-pub fn find<'a>(description: &'a Description, name: &str, elements: usize) -> Option<Found<'a>> {
+pub fn find<'a>(description: &'a Description, name: &str, elements: usize) -> Option<FoundElements<'a>> {
     let found = |name: &str| plain(description, name.trim(), elements);
     if let Some(elements) = found(name) {
-        return Some(Found { elements, negated: false });
+        return Some(FoundElements { elements, negated: false });
     }
     let elements = found(name.trim().strip_prefix('-')?)?;
-    Some(Found { elements, negated: true })
+    Some(FoundElements { elements, negated: true })
 }
 
 fn plain<'a>(
@@ -80,7 +80,7 @@ pub struct DirectionError {
     /// Causality found.
     pub causality: Causality,
     /// Direction expected.
-    pub way: Way,
+    pub way: ValueWay,
 }
 
 fn in_words(causality: Causality) -> &'static str {
@@ -99,11 +99,11 @@ fn in_words(causality: Causality) -> &'static str {
 ///
 /// # Errors
 /// If its causality doesn't allow it: found and expected.
-pub fn allowed(variable: &Variable, way: Way) -> Result<(), DirectionError> {
+pub fn allowed(variable: &Variable, way: ValueWay) -> Result<(), DirectionError> {
     match (way, variable.causality) {
-        (Way::Out, Causality::Output | Causality::Local | Causality::CalculatedParameter)
-        | (Way::In, Causality::Input) => Ok(()),
-        (Way::In, Causality::Parameter) if variable.variability == Variability::Tunable => Ok(()),
+        (ValueWay::Out, Causality::Output | Causality::Local | Causality::CalculatedParameter)
+        | (ValueWay::In, Causality::Input) => Ok(()),
+        (ValueWay::In, Causality::Parameter) if variable.variability == Variability::Tunable => Ok(()),
         (way, causality) => Err(DirectionError { variable: variable.name.clone(), causality, way }),
     }
 }

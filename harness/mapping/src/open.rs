@@ -1,19 +1,19 @@
 //! Prepares the FMU of a scenario for its start.
 
-use super::settings::{Settings, Starts};
+use super::settings::{ValueSettings, Starts};
 use super::stepper::UseError;
-use octant_calibration::Config as CoreConfig;
-use octant_fmu_host::OpenError;
+use octant_calibration::CoreConfig as CoreConfig;
+use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::archive::{Archive, ArchiveError};
 use octant_fmu_host::description::{self, Description, DescriptionError};
-use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place};
-use octant_plant::config::Config as PlantConfig;
+use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
+use octant_plant::config::PlantConfig as PlantConfig;
 use octant_scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// An instance and its URI, for messages.
-pub struct Kept {
+pub struct NamedInstance {
     /// The instance.
     pub instance: Box<dyn Instance>,
     /// URI: `fmu:FILE`.
@@ -21,7 +21,7 @@ pub struct Kept {
 }
 
 /// Names and values of the variables of one of our own FMUs.
-pub type Own = Vec<(&'static str, Vec<f64>)>;
+pub type OwnVariables = Vec<(&'static str, Vec<f64>)>;
 
 /// Returns the path of a scenario's FMU.
 ///
@@ -36,17 +36,17 @@ pub fn path(scenario: &Scenario, fmu: &Fmu) -> Result<PathBuf, UseError> {
 ///
 /// # Errors
 /// If it can't be read, lacks the interface, or can't be loaded.
-pub fn instance(scenario: &Scenario, fmu: &Fmu) -> Result<Kept, UseError> {
+pub fn instance(scenario: &Scenario, fmu: &Fmu) -> Result<NamedInstance, UseError> {
     let path = path(scenario, fmu)?;
     let uri = format!("fmu:{}", path.display());
     // Our FMUs give the same answers without event mode, in a third of the time.
     let own = describe(&path).is_ok_and(|description| is_made_here(&description));
-    let options = Options { event_mode: !own, ..options(fmu) };
+    let options = OpenOptions { event_mode: !own, ..options(fmu) };
     let instance = octant_fmu_host::open(&path, &options).map_err(|error| match error {
-        OpenError::Instance(error) => UseError::instance(&uri, &error),
+        FmuOpenError::Instance(error) => UseError::instance(&uri, &error),
         other => UseError::Open { uri: uri.clone(), reason: other.to_string() },
     })?;
-    Ok(Kept { instance, uri })
+    Ok(NamedInstance { instance, uri })
 }
 
 /// Reason why the description of an FMU can't be read.
@@ -74,17 +74,17 @@ pub fn describe(path: &Path) -> Result<Description, DescribeError> {
 
 /// Returns the options with which a scenario runs an FMU.
 #[must_use]
-pub fn options(fmu: &Fmu) -> Options {
-    let default = Options::default();
-    Options {
+pub fn options(fmu: &Fmu) -> OpenOptions {
+    let default = OpenOptions::default();
+    OpenOptions {
         interface: match fmu.interface {
             InterfaceChoice::Auto => InterfaceKind::Any,
             InterfaceChoice::CoSimulation => InterfaceKind::CoSimulation,
             InterfaceChoice::ModelExchange => InterfaceKind::ModelExchange,
         },
         place: match fmu.process {
-            Process::Own => Place::OwnProcess,
-            Process::Shared => Place::ThisProcess,
+            Process::Own => ProcessPlace::OwnProcess,
+            Process::Shared => ProcessPlace::ThisProcess,
         },
         time_limit: if fmu.time_limit_s.is_finite() {
             Duration::from_secs_f64(fmu.time_limit_s)
@@ -108,7 +108,7 @@ pub fn starts(
     own: Option<&[(&'static str, Vec<f64>)]>,
 ) -> Result<Starts, UseError> {
     let open = |reason: String| UseError::Open { uri: uri.to_owned(), reason };
-    let mut settings = Settings::new(description);
+    let mut settings = ValueSettings::new(description);
     for (name, numbers) in own.unwrap_or_default() {
         settings.own(name, numbers).map_err(|error| open(error.to_string()))?;
     }
@@ -126,7 +126,7 @@ pub fn starts(
 
 /// Returns the start values of our Calibrator; `None` for a foreign FMU.
 #[must_use]
-pub fn own_calibrator(description: &Description, config: &CoreConfig) -> Option<Own> {
+pub fn own_calibrator(description: &Description, config: &CoreConfig) -> Option<OwnVariables> {
     let model = &octant_fmu::calibrator::table::MODEL;
     is_own(description, model.name).then(|| {
         let mut values = octant_fmu::calibrator::start_values(config);
@@ -148,7 +148,7 @@ pub struct NoRoom {
 ///
 /// # Errors
 /// If the plant's parameters have no room for something.
-pub fn own_plant(description: &Description, config: &PlantConfig) -> Result<Option<Own>, NoRoom> {
+pub fn own_plant(description: &Description, config: &PlantConfig) -> Result<Option<OwnVariables>, NoRoom> {
     if !is_own(description, octant_fmu::plant::table::MODEL.name) {
         return Ok(None);
     }

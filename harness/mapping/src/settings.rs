@@ -1,20 +1,20 @@
 //! Values that are set in an FMU before it starts, checked against its description.
 
-use super::convert::{ConversionError, article, conversion};
+use super::convert::{ChannelConversionError, article, conversion};
 use super::find::{UnknownVariable, count, find, unknown};
-use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variability, Variable};
-use octant_fmu_host::instance::{Access, Group, Instance, InstanceError};
+use octant_fmu_host::description::{Causality, Description, Initial, VariableType, Variability, Variable};
+use octant_fmu_host::instance::{Access, VariableGroup, Instance, InstanceError};
 use octant_scenario::channel::{Channel, Class};
-use octant_scenario::{Dimension, Set, quantity_of};
+use octant_scenario::{UnitDimension, Set, quantity_of};
 use std::ops::Range;
 
 /// Values that are set before an FMU starts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Starts {
     /// Numbers by group, those of configuration mode first.
-    numbers: Vec<(Group, Vec<f64>)>,
+    numbers: Vec<(VariableGroup, Vec<f64>)>,
     /// Texts.
-    texts: Vec<(Group, Vec<String>)>,
+    texts: Vec<(VariableGroup, Vec<String>)>,
 }
 
 impl Starts {
@@ -75,7 +75,7 @@ pub enum SettingError {
         /// Name of the variable.
         variable: String,
         /// Its type.
-        kind: Kind,
+        kind: VariableType,
         /// Value found.
         found: Set,
         /// Value expected.
@@ -111,7 +111,7 @@ pub enum SettingError {
     },
     /// A quantity doesn't fit the variable's unit.
     #[error(transparent)]
-    Conversion(#[from] ConversionError),
+    Conversion(#[from] ChannelConversionError),
 }
 
 fn in_words(value: &Set) -> String {
@@ -124,13 +124,13 @@ fn in_words(value: &Set) -> String {
 
 /// Collects values to set; a later value of a variable replaces an earlier one.
 #[derive(Debug)]
-pub struct Settings<'a> {
+pub struct ValueSettings<'a> {
     description: &'a Description,
     numbers: Vec<(&'a Variable, Vec<f64>)>,
     texts: Vec<(&'a Variable, Vec<String>)>,
 }
 
-impl<'a> Settings<'a> {
+impl<'a> ValueSettings<'a> {
     /// Creates an empty collection for an FMU.
     #[must_use]
     pub fn new(description: &'a Description) -> Self {
@@ -146,7 +146,7 @@ impl<'a> Settings<'a> {
         for (variable, range) in whole(description, name, values.len(), settable)? {
             let values = &values[range];
             check_settable(variable)?;
-            if variable.kind == Kind::String {
+            if variable.kind == VariableType::String {
                 let texts = values.iter().map(|value| match value {
                     Set::Text(text) => Ok(text.clone()),
                     other => Err(wrong(variable, other, "a text")),
@@ -185,10 +185,10 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// If the variables can't be set together.
     pub fn finish(self) -> Result<Starts, InstanceError> {
-        let mut numbers: Vec<(Group, Vec<f64>)> = Vec::new();
+        let mut numbers: Vec<(VariableGroup, Vec<f64>)> = Vec::new();
         for (variable, values) in self.numbers {
-            let one = Group::of(self.description, variable)?;
-            let same = |(group, _): &&mut (Group, Vec<f64>)| {
+            let one = VariableGroup::of(self.description, variable)?;
+            let same = |(group, _): &&mut (VariableGroup, Vec<f64>)| {
                 group.kind == one.kind && group.access == one.access
             };
             match numbers.iter_mut().find(same) {
@@ -203,7 +203,7 @@ impl<'a> Settings<'a> {
         numbers.sort_by_key(|(group, _)| group.access != Access::Configuration);
         let texts = self.texts.into_iter();
         let texts =
-            texts.map(|(variable, texts)| Ok((Group::of(self.description, variable)?, texts)));
+            texts.map(|(variable, texts)| Ok((VariableGroup::of(self.description, variable)?, texts)));
         Ok(Starts { numbers, texts: texts.collect::<Result<_, InstanceError>>()? })
     }
 }
@@ -283,15 +283,15 @@ fn number(
     value: &Set,
 ) -> Result<f64, SettingError> {
     let number = match (variable.kind, value) {
-        (Kind::Boolean, Set::Flag(flag)) => return Ok(f64::from(u8::from(*flag))),
-        (Kind::Boolean, other) => return Err(wrong(variable, other, "true or false")),
-        (Kind::Binary | Kind::Clock | Kind::String, other) => {
+        (VariableType::Boolean, Set::Flag(flag)) => return Ok(f64::from(u8::from(*flag))),
+        (VariableType::Boolean, other) => return Err(wrong(variable, other, "true or false")),
+        (VariableType::Binary | VariableType::Clock | VariableType::String, other) => {
             return Err(wrong(variable, other, "another variable: such can't be set here"));
         }
-        (Kind::Enumeration, value) => return item(description, variable, value),
-        (Kind::Float64 | Kind::Float32, Set::Number(number)) => *number,
-        (Kind::Float64 | Kind::Float32, Set::Text(text)) => quantity(description, variable, text)?,
-        (Kind::Float64 | Kind::Float32, other) => {
+        (VariableType::Enumeration, value) => return item(description, variable, value),
+        (VariableType::Float64 | VariableType::Float32, Set::Number(number)) => *number,
+        (VariableType::Float64 | VariableType::Float32, Set::Text(text)) => quantity(description, variable, text)?,
+        (VariableType::Float64 | VariableType::Float32, other) => {
             return Err(wrong(variable, other, "a number, or a quantity with its unit"));
         }
         (kind, Set::Number(number)) => {
@@ -356,7 +356,7 @@ fn quantity(
             found: text.to_owned(),
         });
     }
-    let Some(dimension) = Dimension::of(found) else {
+    let Some(dimension) = UnitDimension::of(found) else {
         return Err(SettingError::NoDimension { found: text.to_owned() });
     };
     // Treated as a channel into the FMU.
@@ -367,16 +367,16 @@ fn quantity(
 }
 
 /// Returns the range of a whole-number type that f64 holds exactly.
-fn limits(kind: Kind) -> (f64, f64) {
+fn limits(kind: VariableType) -> (f64, f64) {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     match kind {
-        Kind::Int8 => (i8::MIN.into(), i8::MAX.into()),
-        Kind::UInt8 => (0.0, u8::MAX.into()),
-        Kind::Int16 => (i16::MIN.into(), i16::MAX.into()),
-        Kind::UInt16 => (0.0, u16::MAX.into()),
-        Kind::Int32 => (i32::MIN.into(), i32::MAX.into()),
-        Kind::UInt32 => (0.0, u32::MAX.into()),
-        Kind::UInt64 => (0.0, EXACT),
+        VariableType::Int8 => (i8::MIN.into(), i8::MAX.into()),
+        VariableType::UInt8 => (0.0, u8::MAX.into()),
+        VariableType::Int16 => (i16::MIN.into(), i16::MAX.into()),
+        VariableType::UInt16 => (0.0, u16::MAX.into()),
+        VariableType::Int32 => (i32::MIN.into(), i32::MAX.into()),
+        VariableType::UInt32 => (0.0, u32::MAX.into()),
+        VariableType::UInt64 => (0.0, EXACT),
         _ => (-EXACT, EXACT),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bind::{BindError, Bound};
 use super::settings::Starts;
-use octant_fmu_host::instance::{Instance, InstanceError, Outcome};
+use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
 use octant_scenario::{Problem, ScenarioError};
 
 /// Reasons why an FMU of a scenario can't be used, or stopped working.
@@ -143,7 +143,7 @@ impl Stepper {
         if stepped.terminate {
             return Ok(false);
         }
-        if stepped.outcome == Outcome::Discarded {
+        if stepped.outcome == StepOutcome::Discarded {
             let said = octant_fmu_host::instance::said(self.instance.as_mut());
             return Err(StepError::Refused { time_s, step_s, said });
         }

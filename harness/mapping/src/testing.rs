@@ -2,19 +2,19 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use octant_fmu::component::Component;
+use octant_fmu::component::ModelComponent;
 use octant_fmu::table::{self, Model};
-use octant_fmu::values::Values;
+use octant_fmu::values::CellValues;
 use octant_fmu_host::description::{
-    BaseUnit, Causality, Description, Dimension, Experiment, Initial, Interface, Kind, Standard,
-    Structure, Unit, Variability, Variable,
+    BaseUnit, Causality, Description, ArrayDimension, DefaultExperiment, Initial, Interface, VariableType, Standard,
+    ModelStructure, UnitDefinition, Variability, Variable,
 };
 use octant_fmu_host::instance::{
-    Group, Instance, InstanceError, Message, Outcome, Stepped, Update,
+    VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update,
 };
 
 /// Builds a variable with usual attributes.
-pub fn variable(name: &str, reference: u32, kind: Kind, causality: Causality) -> Variable {
+pub fn variable(name: &str, reference: u32, kind: VariableType, causality: Causality) -> Variable {
     let fixed = matches!(causality, Causality::Parameter | Causality::StructuralParameter);
     Variable {
         name: name.to_owned(),
@@ -63,7 +63,7 @@ impl With for Variable {
     }
 
     fn array(mut self, elements: u64) -> Self {
-        self.dimensions = vec![Dimension::Fixed(elements)];
+        self.dimensions = vec![ArrayDimension::Fixed(elements)];
         self
     }
 }
@@ -84,25 +84,25 @@ pub fn description(name: &str, variables: Vec<Variable>) -> Description {
         model_exchange: None,
         scheduled_execution: false,
         log_categories: Vec::new(),
-        default_experiment: Experiment::default(),
+        default_experiment: DefaultExperiment::default(),
         units: Vec::new(),
         enumerations: Vec::new(),
         variables,
-        structure: Structure::default(),
+        structure: ModelStructure::default(),
         event_indicators: 0,
         tolerated: Vec::new(),
     }
 }
 
 /// Step of a test model: gets its cells by value reference and the time at the step's end.
-pub type Behaviour = Box<dyn FnMut(&mut [f64], f64) -> Result<bool, String> + Send>;
+pub type StepBehaviour = Box<dyn FnMut(&mut [f64], f64) -> Result<bool, String> + Send>;
 
 /// Model made of a closure. Its cells are numbers; those of an array follow each other from the
 /// value reference on.
 pub struct Scripted {
     description: Description,
     pub(crate) cells: Vec<f64>,
-    behaviour: Behaviour,
+    behaviour: StepBehaviour,
 }
 
 impl Scripted {
@@ -115,7 +115,7 @@ impl Scripted {
     }
 
     /// Returns the places of a group's elements.
-    fn places(&self, group: &Group) -> Vec<usize> {
+    fn places(&self, group: &VariableGroup) -> Vec<usize> {
         let of = |reference: &u32| {
             let variable = self.description.by_reference(*reference);
             let count = variable.map_or(1, |v| self.description.elements(v).unwrap_or(1));
@@ -127,19 +127,19 @@ impl Scripted {
 }
 
 /// One of our own models, presented as FMI 3.0.
-pub struct Own<C: Component> {
+pub struct OwnModel<C: ModelComponent> {
     description: Description,
-    values: Values,
+    values: CellValues,
     component: Option<C>,
-    messages: Vec<Message>,
+    messages: Vec<FmuMessage>,
 }
 
-impl<C: Component> Own<C> {
+impl<C: ModelComponent> OwnModel<C> {
     /// Creates an instance.
     pub fn boxed() -> Box<dyn Instance> {
         Box::new(Self {
             description: of_model(C::MODEL),
-            values: Values::new(C::MODEL),
+            values: CellValues::new(C::MODEL),
             component: None,
             messages: Vec::new(),
         })
@@ -149,22 +149,22 @@ impl<C: Component> Own<C> {
 /// Builds the description of one of our own models.
 fn of_model(model: &Model) -> Description {
     let mut slot = 1;
-    let one = |of: &table::Variable| {
+    let one = |of: &table::DeclaredVariable| {
         let kind = match of.kind {
-            table::Kind::Real => Kind::Float64,
-            table::Kind::Integer => Kind::Int32,
-            table::Kind::Count => Kind::UInt64,
-            table::Kind::Boolean => Kind::Boolean,
-            table::Kind::Enumeration(_) => Kind::Enumeration,
-            table::Kind::Binary(_) => Kind::Binary,
-            table::Kind::Clock(_) => Kind::Clock,
+            table::ElementType::Real => VariableType::Float64,
+            table::ElementType::Integer => VariableType::Int32,
+            table::ElementType::Count => VariableType::UInt64,
+            table::ElementType::Boolean => VariableType::Boolean,
+            table::ElementType::Enumeration(_) => VariableType::Enumeration,
+            table::ElementType::Binary(_) => VariableType::Binary,
+            table::ElementType::Clock(_) => VariableType::Clock,
         };
         let causality = match of.causality {
-            table::Causality::Parameter => Causality::Parameter,
-            table::Causality::CalculatedParameter => Causality::CalculatedParameter,
-            table::Causality::Input => Causality::Input,
-            table::Causality::Output => Causality::Output,
-            table::Causality::Local => Causality::Local,
+            table::DeclaredCausality::Parameter => Causality::Parameter,
+            table::DeclaredCausality::CalculatedParameter => Causality::CalculatedParameter,
+            table::DeclaredCausality::Input => Causality::Input,
+            table::DeclaredCausality::Output => Causality::Output,
+            table::DeclaredCausality::Local => Causality::Local,
         };
         let mut variable = variable(of.name, slot, kind, causality);
         slot += of.slots() as u32;
@@ -175,7 +175,7 @@ fn of_model(model: &Model) -> Description {
         variable
     };
     let variables: Vec<Variable> = model.variables.iter().map(one).collect();
-    let mut units: Vec<Unit> = Vec::new();
+    let mut units: Vec<UnitDefinition> = Vec::new();
     for quantity in model.variables.iter().filter_map(|variable| variable.quantity) {
         let of = quantity.unit;
         if !units.iter().any(|unit| unit.name == of.name) {
@@ -184,7 +184,7 @@ fn of_model(model: &Model) -> Description {
                 factor: of.factor,
                 offset: 0.0,
             });
-            units.push(Unit { name: of.name.to_owned(), base, display: Vec::new() });
+            units.push(UnitDefinition { name: of.name.to_owned(), base, display: Vec::new() });
         }
     }
     Description {
@@ -194,7 +194,7 @@ fn of_model(model: &Model) -> Description {
     }
 }
 
-impl<C: Component> Own<C> {
+impl<C: ModelComponent> OwnModel<C> {
     fn fail(&self, function: &str, reason: String) -> InstanceError {
         InstanceError::Failed {
             fmu: self.description.model_name.clone(),
@@ -204,7 +204,7 @@ impl<C: Component> Own<C> {
         }
     }
 
-    fn slots(&self, group: &Group) -> Vec<usize> {
+    fn slots(&self, group: &VariableGroup) -> Vec<usize> {
         let of = |reference: &u32| {
             let variable = self.description.by_reference(*reference);
             let count = variable.map_or(1, |v| self.description.elements(v).unwrap_or(1));
@@ -217,7 +217,7 @@ impl<C: Component> Own<C> {
     fn take_remark(&mut self) {
         if let Some(text) = self.component.as_mut().and_then(C::remark) {
             let (status, category) = ("ok".to_owned(), "logEvents".to_owned());
-            self.messages.push(Message { status, category, text });
+            self.messages.push(FmuMessage { status, category, text });
         }
     }
 }
@@ -225,19 +225,19 @@ impl<C: Component> Own<C> {
 /// Functions that no test calls.
 macro_rules! not_asked_for {
     () => {
-        fn set_strings(&mut self, _: &Group, _: &[String]) -> Result<(), InstanceError> {
+        fn set_strings(&mut self, _: &VariableGroup, _: &[String]) -> Result<(), InstanceError> {
             unimplemented!("no test sets texts")
         }
 
-        fn get_strings(&mut self, _: &Group) -> Result<Vec<String>, InstanceError> {
+        fn get_strings(&mut self, _: &VariableGroup) -> Result<Vec<String>, InstanceError> {
             unimplemented!("no test gets texts")
         }
 
-        fn set_binaries(&mut self, _: &Group, _: &[Vec<u8>]) -> Result<(), InstanceError> {
+        fn set_binaries(&mut self, _: &VariableGroup, _: &[Vec<u8>]) -> Result<(), InstanceError> {
             unimplemented!("no test sets bytes")
         }
 
-        fn get_binaries(&mut self, _: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+        fn get_binaries(&mut self, _: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
             unimplemented!("no test gets bytes")
         }
 
@@ -287,7 +287,7 @@ macro_rules! not_asked_for {
     };
 }
 
-impl<C: Component> Instance for Own<C> {
+impl<C: ModelComponent> Instance for OwnModel<C> {
     not_asked_for!();
 
     fn enter_initialization(
@@ -305,26 +305,26 @@ impl<C: Component> Instance for Own<C> {
         Ok(false)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             match group.kind {
-                Kind::Float64 => self.values.set_real(slot, *value),
-                Kind::Int32 | Kind::Enumeration => self.values.set_integer(slot, *value as i32),
-                Kind::UInt64 => self.values.set_count(slot, *value as u64),
-                Kind::Boolean => self.values.set_boolean(slot, *value != 0.0),
+                VariableType::Float64 => self.values.set_real(slot, *value),
+                VariableType::Int32 | VariableType::Enumeration => self.values.set_integer(slot, *value as i32),
+                VariableType::UInt64 => self.values.set_count(slot, *value as u64),
+                VariableType::Boolean => self.values.set_boolean(slot, *value != 0.0),
                 other => panic!("no variable is a {other:?}"),
             }
         }
         Ok(())
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             *value = match group.kind {
-                Kind::Float64 => self.values.real(slot),
-                Kind::Int32 | Kind::Enumeration => f64::from(self.values.integer(slot)),
-                Kind::UInt64 => self.values.count(slot) as f64,
-                Kind::Boolean => f64::from(u8::from(self.values.boolean(slot))),
+                VariableType::Float64 => self.values.real(slot),
+                VariableType::Int32 | VariableType::Enumeration => f64::from(self.values.integer(slot)),
+                VariableType::UInt64 => self.values.count(slot) as f64,
+                VariableType::Boolean => f64::from(u8::from(self.values.boolean(slot))),
                 other => panic!("no variable is a {other:?}"),
             };
         }
@@ -339,11 +339,11 @@ impl<C: Component> Instance for Own<C> {
         stepped.map_err(|error| self.fail("step", error.to_string()))?;
         self.take_remark();
         let time_s = time_s + step_s;
-        Ok(Stepped { time_s, outcome: Outcome::Done, event: false, terminate: false })
+        Ok(Stepped { time_s, outcome: StepOutcome::Done, event: false, terminate: false })
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {
-        self.values = Values::new(C::MODEL);
+        self.values = CellValues::new(C::MODEL);
         self.component = None;
         Ok(())
     }
@@ -356,7 +356,7 @@ impl<C: Component> Instance for Own<C> {
         Ok(())
     }
 
-    fn messages(&mut self) -> Vec<Message> {
+    fn messages(&mut self) -> Vec<FmuMessage> {
         std::mem::take(&mut self.messages)
     }
 }
@@ -377,14 +377,14 @@ impl Instance for Scripted {
         Ok(false)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         for (place, value) in self.places(group).into_iter().zip(values) {
             self.cells[place] = *value;
         }
         Ok(())
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         for (place, value) in self.places(group).into_iter().zip(values) {
             *value = self.cells[place];
         }
@@ -396,7 +396,7 @@ impl Instance for Scripted {
         let goes_on = (self.behaviour)(&mut self.cells, end_s).map_err(|what| {
             InstanceError::Process { fmu: self.description.model_name.clone(), what }
         })?;
-        let outcome = Outcome::Done;
+        let outcome = StepOutcome::Done;
         Ok(Stepped { time_s: end_s, outcome, event: false, terminate: !goes_on })
     }
 
@@ -409,7 +409,7 @@ impl Instance for Scripted {
         Ok(())
     }
 
-    fn messages(&mut self) -> Vec<Message> {
+    fn messages(&mut self) -> Vec<FmuMessage> {
         Vec::new()
     }
 }

@@ -6,14 +6,14 @@ use serde::Serialize;
 
 /// Thresholds of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Limits {
+pub struct ChangeThresholds {
     /// Probability of any false positive among all tests.
     pub alpha: f64,
     /// Smallest change of the mean that counts, as a fraction of the baseline's root mean square.
     pub least: f64,
 }
 
-impl Default for Limits {
+impl Default for ChangeThresholds {
     fn default() -> Self {
         Self { alpha: 0.05, least: 0.01 }
     }
@@ -91,7 +91,7 @@ pub struct Tested {
 pub(super) fn tested(
     values: &[(Option<f64>, Option<f64>)],
     sense: f64,
-    limits: Limits,
+    limits: ChangeThresholds,
 ) -> Option<Tested> {
     // A measure that only one night has is as bad as possible in the other.
     let far = sense * f64::INFINITY;
@@ -173,25 +173,25 @@ mod tests {
         // Six of sixteen are refused, and the others improved slightly.
         let values =
             pairs(16, |k| (Some(drawn(k)), (k >= 6).then(|| drawn(k) - 1e-6 * drawn(k + 3))));
-        let found = tested(&values, 1.0, Limits::default()).unwrap();
+        let found = tested(&values, 1.0, ChangeThresholds::default()).unwrap();
         assert_eq!((found.pairs, found.lost, found.gained), (16, 6, 0));
         // The refused ones give the direction, but the majority contradicts it: not significant.
         assert_eq!(found.change, Change::Changed);
         let values = pairs(16, |k| (Some(drawn(k)), (k >= 12).then(|| drawn(k))));
-        let found = tested(&values, 1.0, Limits::default()).unwrap();
+        let found = tested(&values, 1.0, ChangeThresholds::default()).unwrap();
         assert_eq!((found.change, found.lost), (Change::Worse, 12));
         // Twelve equal signs: 2 · 2^-12.
         assert!((found.p - 2.0 * 0.5f64.powi(12)).abs() < 1e-12, "{}", found.p);
         // For a margin, less is worse.
-        let margin = tested(&values, -1.0, Limits::default()).unwrap();
+        let margin = tested(&values, -1.0, ChangeThresholds::default()).unwrap();
         assert_eq!(margin.change, Change::Worse);
         // A calibration that is published again is better.
         let back: Vec<_> = values.iter().map(|(a, b)| (*b, *a)).collect();
-        assert_eq!(tested(&back, 1.0, Limits::default()).unwrap().change, Change::Better);
+        assert_eq!(tested(&back, 1.0, ChangeThresholds::default()).unwrap().change, Change::Better);
         // If both nights refused, there is no difference, and the pair can't be tested.
         let none = pairs(16, |k| if k < 8 { (None, None) } else { (Some(1.0), Some(1.0)) });
-        let found = tested(&none, 1.0, Limits::default()).unwrap();
+        let found = tested(&none, 1.0, ChangeThresholds::default()).unwrap();
         assert_eq!((found.change, found.pairs, found.lost), (Change::Same, 8, 0));
-        assert!(tested(&none[..8], 1.0, Limits::default()).is_none());
+        assert!(tested(&none[..8], 1.0, ChangeThresholds::default()).is_none());
     }
 }

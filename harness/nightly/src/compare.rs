@@ -3,14 +3,14 @@
 //! A case of both nights has the same instrument and the same noise: a difference comes from the
 //! program, or from a changed scenario. Whether it is a regression is decided over all pairs, by
 //! Wilcoxon's signed-rank test for measures and McNemar's for passes; all of these tests together
-//! have a false-positive probability of one in twenty (`Limits::alpha`, Holm). Cases without a pair
+//! have a false-positive probability of one in twenty (`ChangeThresholds::alpha`, Holm). Cases without a pair
 //! aren't compared: another seed is another instrument, and its noise is no change.
 //!
 //! A measure that a case had in one night and lacks in the other, because its calibration was
 //! refused or it ended as an error, is beyond every number there, and counts in the test with the
 //! highest rank.
 
-pub use super::change::{Change, Limits, Tested};
+pub use super::change::{Change, ChangeThresholds, Tested};
 
 use super::change::tested;
 use super::night::{CampaignNight, Night, Program};
@@ -29,7 +29,7 @@ pub const SCHEMA: u32 = 1;
 
 /// Case with another verdict than in the baseline.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Turned {
+pub struct TurnedCase {
     /// The campaign, or `suite`.
     pub campaign: String,
     /// The case.
@@ -69,7 +69,7 @@ pub struct Pairing {
 
 /// Comparison of a night with its baseline.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct NightComparison {
     /// Night of the baseline.
     pub baseline: String,
     /// True if the same program ran both.
@@ -78,7 +78,7 @@ pub struct Comparison {
     /// to the unit; null if they are the same.
     pub numerics_changed: Option<String>,
     /// Thresholds of a change.
-    pub limits: Limits,
+    pub limits: ChangeThresholds,
     /// Campaigns of both nights.
     pub pairings: Vec<Pairing>,
     /// Campaigns and parts of the suite that only the baseline has.
@@ -92,16 +92,16 @@ pub struct Comparison {
     /// Requirements whose verdict is better.
     pub requirements_better: Vec<String>,
     /// Cases that are worse than in the baseline.
-    pub newly_failing: Vec<Turned>,
+    pub newly_failing: Vec<TurnedCase>,
     /// Cases that are better than in the baseline.
-    pub newly_passing: Vec<Turned>,
+    pub newly_passing: Vec<TurnedCase>,
     /// Cases with another result from the same program.
     pub flaky: Vec<String>,
 }
 
 /// A night with the rows of its campaigns, by name.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<'a> {
+pub struct NightSide<'a> {
     /// The night.
     pub night: &'a Night,
     /// Rows of its campaigns.
@@ -112,13 +112,13 @@ pub struct Side<'a> {
 /// campaign again.
 #[must_use]
 pub fn compare(
-    before: Side<'_>,
-    now: Side<'_>,
-    limits: Limits,
+    before: NightSide<'_>,
+    now: NightSide<'_>,
+    limits: ChangeThresholds,
     rerun: &dyn Fn(&str, &str) -> String,
-) -> Comparison {
+) -> NightComparison {
     let same_program = now.night.program.is_same(&before.night.program);
-    let mut all = Comparison {
+    let mut all = NightComparison {
         baseline: before.night.id.clone(),
         same_program,
         numerics_changed: numerics_changed(&before.night.program, &now.night.program),
@@ -174,7 +174,7 @@ fn numerics_changed(before: &Program, now: &Program) -> Option<String> {
     })
 }
 
-impl Comparison {
+impl NightComparison {
     /// Computes the detectable changes of the tests. The first step of Holm's procedure divides the
     /// level by the number of tests: a change found at that level is found whatever the other tests
     /// give.
@@ -260,7 +260,7 @@ impl Comparison {
             let requirements = turned(worse);
             let itself = if worse { new.verdict > old.verdict } else { new.verdict < old.verdict };
             if itself || !requirements.is_empty() {
-                list.push(Turned {
+                list.push(TurnedCase {
                     campaign: campaign.to_owned(),
                     case: new.case.clone(),
                     scenario: new.scenario.clone(),
@@ -335,7 +335,7 @@ impl Comparison {
     fn suite(&mut self, before: &[SuiteResult], now: &[SuiteResult]) {
         for result in now {
             let old = before.iter().find(|old| old.name == result.name);
-            let turned = || Turned {
+            let turned = || TurnedCase {
                 campaign: "suite".to_owned(),
                 case: result.name.clone(),
                 scenario: result.scenario.display().to_string(),

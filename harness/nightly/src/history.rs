@@ -1,9 +1,9 @@
 //! `history.parquet`: the numbers of all nights, one row per measure and scenario.
 
-use super::compare::Comparison;
+use super::compare::NightComparison;
 use super::night::Night;
 use super::results::CaseRow;
-use octant_campaign::table::{Kind, Table, TableError, Value, Values, write};
+use octant_campaign::table::{ColumnKind, ExistingTable, TableError, ColumnValue, ColumnValues, write};
 use octant_statistics::sample::{mean, percentile, rms};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,27 +13,27 @@ use std::path::{Path, PathBuf};
 const OF: &str = "nightly";
 
 /// Columns.
-const COLUMNS: [(&str, Kind); 20] = [
-    ("night", Kind::Text),
-    ("started", Kind::Text),
-    ("verdict", Kind::Text),
-    ("baseline", Kind::Text),
-    ("octant", Kind::Text),
-    ("commit", Kind::Text),
-    ("changed", Kind::Boolean),
-    ("program_sha256", Kind::Text),
-    ("host", Kind::Text),
-    ("campaign", Kind::Text),
-    ("plan", Kind::Text),
-    ("scenario", Kind::Text),
-    ("measure", Kind::Text),
-    ("count", Kind::Integer),
-    ("mean", Kind::Number),
-    ("rms", Kind::Number),
-    ("median", Kind::Number),
-    ("p95", Kind::Number),
-    ("max", Kind::Number),
-    ("change", Kind::Text),
+const COLUMNS: [(&str, ColumnKind); 20] = [
+    ("night", ColumnKind::Text),
+    ("started", ColumnKind::Text),
+    ("verdict", ColumnKind::Text),
+    ("baseline", ColumnKind::Text),
+    ("octant", ColumnKind::Text),
+    ("commit", ColumnKind::Text),
+    ("changed", ColumnKind::Boolean),
+    ("program_sha256", ColumnKind::Text),
+    ("host", ColumnKind::Text),
+    ("campaign", ColumnKind::Text),
+    ("plan", ColumnKind::Text),
+    ("scenario", ColumnKind::Text),
+    ("measure", ColumnKind::Text),
+    ("count", ColumnKind::Integer),
+    ("mean", ColumnKind::Number),
+    ("rms", ColumnKind::Number),
+    ("median", ColumnKind::Number),
+    ("p95", ColumnKind::Number),
+    ("max", ColumnKind::Number),
+    ("change", ColumnKind::Text),
 ];
 
 /// All nights so far.
@@ -43,11 +43,11 @@ pub struct History {
 }
 
 /// Row: a value, or null, for each column.
-type Row = Vec<Option<Value>>;
+type Row = Vec<Option<ColumnValue>>;
 
 /// Line of the trend: one measure over the nights.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct TrendLine {
     /// The campaign.
     pub campaign: String,
     /// The scenario.
@@ -55,12 +55,12 @@ pub struct Line {
     /// The measure.
     pub measure: String,
     /// Nights.
-    pub points: Vec<Point>,
+    pub points: Vec<TrendPoint>,
 }
 
 /// A measure in a night.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct TrendPoint {
     /// Index of the night.
     pub night: usize,
     /// Median over its cases.
@@ -87,7 +87,7 @@ impl History {
         if !path.exists() {
             return Ok(Self::default());
         }
-        let table = Table::open(&path)?;
+        let table = ExistingTable::open(&path)?;
         let form = |reason: String| TableError::Form { path: path.clone(), reason };
         if table.plan != OF {
             return Err(form("it is a table of a campaign: expected a history".to_owned()));
@@ -97,7 +97,7 @@ impl History {
             let values = values.filter(|values| values.kind() == *kind);
             values.ok_or_else(|| form(format!("it has no column {name} of its kind")))
         });
-        let columns = columns.collect::<Result<Vec<Values>, _>>()?;
+        let columns = columns.collect::<Result<Vec<ColumnValues>, _>>()?;
         let row = |row| columns.iter().map(|values| values.at(row)).collect();
         Ok(Self { rows: (0..table.rows).map(row).collect() })
     }
@@ -108,11 +108,11 @@ impl History {
         night: &Night,
         verdict: &str,
         rows: &BTreeMap<String, Vec<CaseRow>>,
-        comparison: Option<&Comparison>,
+        comparison: Option<&NightComparison>,
     ) {
-        let name = Some(Value::Text(night.id.as_str().into()));
+        let name = Some(ColumnValue::Text(night.id.as_str().into()));
         self.rows.retain(|row| row.first() != Some(&name));
-        let text = |text: &str| Some(Value::Text(text.into()));
+        let text = |text: &str| Some(ColumnValue::Text(text.into()));
         let git = night.program.git.as_ref();
         let head: Row = vec![
             name,
@@ -121,7 +121,7 @@ impl History {
             comparison.and_then(|comparison| text(&comparison.baseline)),
             text(&night.program.octant),
             git.and_then(|git| text(&git.commit)),
-            git.map(|git| Value::Boolean(git.dirty)),
+            git.map(|git| ColumnValue::Boolean(git.dirty)),
             text(&night.program.sha256),
             text(&night.host.name),
         ];
@@ -134,7 +134,7 @@ impl History {
                 })
             });
             let number =
-                |number: Option<f64>| number.filter(|number| number.is_finite()).map(Value::Number);
+                |number: Option<f64>| number.filter(|number| number.is_finite()).map(ColumnValue::Number);
             let max = values.iter().copied().fold(None, |max: Option<f64>, value| {
                 Some(max.map_or(value, |max| max.max(value)))
             });
@@ -144,7 +144,7 @@ impl History {
                 plan.as_deref().and_then(text),
                 text(&scenario),
                 text(&measure),
-                i64::try_from(values.len()).ok().map(Value::Integer),
+                i64::try_from(values.len()).ok().map(ColumnValue::Integer),
                 number(mean(&values)),
                 number(rms(&values)),
                 number(percentile(&values, 0.5)),
@@ -163,7 +163,7 @@ impl History {
     pub fn write(&self, folder: &Path) -> Result<(), TableError> {
         let columns = COLUMNS.map(|(name, kind)| (name.to_owned(), kind));
         write(&file(folder), OF, &columns, |index| {
-            let mut values = Values::new(columns[index].1);
+            let mut values = ColumnValues::new(columns[index].1);
             for row in &self.rows {
                 values.push(row.get(index).cloned().flatten());
             }
@@ -174,7 +174,7 @@ impl History {
     fn text(row: &Row, column: &str) -> String {
         let index = COLUMNS.iter().position(|(name, _)| *name == column);
         match index.and_then(|index| row.get(index)) {
-            Some(Some(Value::Text(text))) => text.to_string(),
+            Some(Some(ColumnValue::Text(text))) => text.to_string(),
             _ => String::new(),
         }
     }
@@ -182,7 +182,7 @@ impl History {
     fn number(row: &Row, column: &str) -> f64 {
         let index = COLUMNS.iter().position(|(name, _)| *name == column);
         match index.and_then(|index| row.get(index)) {
-            Some(Some(Value::Number(number))) => *number,
+            Some(Some(ColumnValue::Number(number))) => *number,
             _ => f64::NAN,
         }
     }
@@ -199,23 +199,23 @@ impl History {
 
     /// Returns the lines of the trend.
     #[must_use]
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<TrendLine> {
         let nights: Vec<String> =
             self.nights().iter().filter_map(|night| night.get("night").cloned()).collect();
-        let mut lines: BTreeMap<[String; 3], Vec<Point>> = BTreeMap::new();
+        let mut lines: BTreeMap<[String; 3], Vec<TrendPoint>> = BTreeMap::new();
         for row in &self.rows {
             let Some(night) = nights.iter().position(|n| *n == Self::text(row, "night")) else {
                 continue;
             };
             let key = ["campaign", "scenario", "measure"].map(|name| Self::text(row, name));
-            lines.entry(key).or_default().push(Point {
+            lines.entry(key).or_default().push(TrendPoint {
                 night,
                 median: Self::number(row, "median"),
                 p95: Self::number(row, "p95"),
                 change: Self::text(row, "change"),
             });
         }
-        let line = |([campaign, scenario, measure], points): ([String; 3], _)| Line {
+        let line = |([campaign, scenario, measure], points): ([String; 3], _)| TrendLine {
             campaign,
             scenario,
             measure,

@@ -5,7 +5,7 @@ use super::file::{versioned, write};
 use super::suite::SuiteResult;
 use octant_base::hash::sha256;
 use octant_evidence::RunFacts;
-use octant_evidence::manifest::{Git, Host, Manifest};
+use octant_evidence::manifest::{Git, Machine, Manifest};
 use octant_requirements::Verdict;
 use octant_score::numerics::in_words;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub struct Night {
     /// Program of the night.
     pub program: Program,
     /// Machine that began it.
-    pub host: Host,
+    pub host: Machine,
     /// BLAKE3 of the suite with its scenarios, hexadecimal; null if it runs none.
     pub suite_blake3: Option<String>,
     /// Results of the suite's cases.

@@ -1,6 +1,6 @@
 //! Renders a night: `nightly.json`, and `nightly.md` for readers and for the summary of a CI job.
 
-use super::compare::{Change, Comparison, Tested, Turned};
+use super::compare::{Change, NightComparison, Tested, TurnedCase};
 use super::night::{CampaignNight, Night, Program};
 use super::suite::SuiteResult;
 use octant_base::number::{counted, plain, significant};
@@ -14,7 +14,7 @@ const TOLD: usize = 20;
 
 /// Content of `nightly.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct NightReport {
     /// Version of this form: [`super::compare::SCHEMA`].
     pub schema: u32,
     /// The night.
@@ -40,16 +40,16 @@ pub struct Report {
     /// Number of cases of the suite.
     pub suite_cases: usize,
     /// Comparison with the baseline; null without one.
-    pub comparison: Option<Comparison>,
+    pub comparison: Option<NightComparison>,
 }
 
-impl Report {
+impl NightReport {
     /// Judges a night. `is_first` tells that it is known to have no baseline.
     #[must_use]
     pub fn new(
         night: &Night,
         baseline: Option<&Night>,
-        comparison: Option<Comparison>,
+        comparison: Option<NightComparison>,
         is_first: bool,
     ) -> Self {
         let mut report = Self {
@@ -77,7 +77,7 @@ impl Report {
         self.reasons.push(reason);
     }
 
-    fn judge(&mut self, comparison: Option<&Comparison>, is_first: bool) {
+    fn judge(&mut self, comparison: Option<&NightComparison>, is_first: bool) {
         let differing: Vec<String> = (self.campaigns.iter())
             .flat_map(|c| c.differing.iter().map(move |case| format!("{}: case {case}", c.name)))
             .collect();
@@ -127,7 +127,7 @@ impl Report {
         if !failing.is_empty() {
             // A case that newly ends as an error points to the bench or the program, which is worse
             // than a fail.
-            let errors = |t: &&Turned| t.now.is_none() || t.now == Some(Verdict::Error);
+            let errors = |t: &&TurnedCase| t.now.is_none() || t.now == Some(Verdict::Error);
             let count = failing.iter().filter(errors).count();
             let verdict = if count > 0 { Verdict::Error } else { Verdict::Fail };
             let errors = match count {
@@ -214,7 +214,7 @@ impl Report {
         for campaign in &self.campaigns {
             let verdict = campaign.verdict.map_or("broken off", Verdict::name);
             let of =
-                |c: &Comparison| c.pairings.iter().find(|p| p.campaign == campaign.name).cloned();
+                |c: &NightComparison| c.pairings.iter().find(|p| p.campaign == campaign.name).cloned();
             let pairing = self.comparison.as_ref().and_then(of);
             let row = pairing.map_or("– | – | – | –".to_owned(), |p| {
                 format!("{} | {} | {} | {}", p.cases, p.pairs, p.changed_inputs, p.changed_results)
@@ -253,14 +253,14 @@ impl Report {
 }
 
 /// Lists scenarios in which something changed and no test could have found it, with their pairs.
-fn blind(comparison: &Comparison) -> BTreeMap<String, usize> {
+fn blind(comparison: &NightComparison) -> BTreeMap<String, usize> {
     let is_blind = |test: &&Tested| test.change == Change::Changed && test.detectable.is_none();
     let blind = comparison.tests.iter().filter(is_blind);
     blind.map(|test| (format!("{}: {}", test.campaign, test.scenario), test.pairs)).collect()
 }
 
 /// Describes the detectable changes, by number of pairs.
-fn power_in_words(comparison: &Comparison) -> Vec<String> {
+fn power_in_words(comparison: &NightComparison) -> Vec<String> {
     let mut by_pairs: BTreeMap<usize, Option<f64>> = BTreeMap::new();
     for test in comparison.tests.iter().filter(|test| test.detectable_sigma.is_some()) {
         by_pairs.insert(test.pairs, test.detectable_sigma);
@@ -276,7 +276,7 @@ fn power_in_words(comparison: &Comparison) -> Vec<String> {
     by_pairs.into_iter().filter_map(one).collect()
 }
 
-fn against(text: &mut String, comparison: &Comparison) {
+fn against(text: &mut String, comparison: &NightComparison) {
     tests(text, "Worse", comparison, Change::Worse);
     turned(text, "Newly worse cases", &comparison.newly_failing);
     tests(text, "Better", comparison, Change::Better);
@@ -311,7 +311,7 @@ fn against(text: &mut String, comparison: &Comparison) {
 }
 
 /// Renders the detectable changes of each scenario: the measures of a navigation, and passes.
-fn powers(text: &mut String, comparison: &Comparison) {
+fn powers(text: &mut String, comparison: &NightComparison) {
     if comparison.tests.is_empty() {
         return;
     }
@@ -344,7 +344,7 @@ fn powers(text: &mut String, comparison: &Comparison) {
     more(text, told.len());
 }
 
-fn tests(text: &mut String, title: &str, comparison: &Comparison, change: Change) {
+fn tests(text: &mut String, title: &str, comparison: &NightComparison, change: Change) {
     let found: Vec<&Tested> = comparison.found(change).collect();
     if found.is_empty() {
         return;
@@ -373,7 +373,7 @@ fn tests(text: &mut String, title: &str, comparison: &Comparison, change: Change
     more(text, found.len());
 }
 
-fn turned(text: &mut String, title: &str, list: &[Turned]) {
+fn turned(text: &mut String, title: &str, list: &[TurnedCase]) {
     if list.is_empty() {
         return;
     }

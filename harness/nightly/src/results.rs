@@ -1,9 +1,9 @@
 //! Reads the results of a campaign's cases from its tables.
 
 use octant_campaign::merge::merged;
-use octant_campaign::table::{Table, TableError, Value, Values};
+use octant_campaign::table::{ExistingTable, TableError, ColumnValue, ColumnValues};
 use octant_requirements::{Comparison, Verdict};
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use octant_score::rederive::stands;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -38,7 +38,7 @@ pub struct CaseRow {
     /// Requirements with their verdicts and margins.
     pub checks: BTreeMap<String, (Verdict, Option<f64>)>,
     /// All columns of its row.
-    pub row: Vec<(String, Value)>,
+    pub row: Vec<(String, ColumnValue)>,
 }
 
 /// Reads the tables of a campaign in a folder.
@@ -48,16 +48,16 @@ pub struct CaseRow {
 pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
     let (of_checks, of_cases) = (merged(folder, "checks"), merged(folder, "cases"));
     let mut checks = checks(&of_checks)?;
-    let table = Table::open(&of_cases)?;
+    let table = ExistingTable::open(&of_cases)?;
     let columns = columns(&table)?;
     let mut all = Vec::with_capacity(table.rows);
     for row in 0..table.rows {
-        let row: Vec<(String, Value)> = columns
+        let row: Vec<(String, ColumnValue)> = columns
             .iter()
             .filter_map(|(name, values)| Some((name.clone(), values.at(row)?)))
             .collect();
         let text = |name: &str| match row.iter().find(|(other, _)| other == name) {
-            Some((_, Value::Text(text))) => text.to_string(),
+            Some((_, ColumnValue::Text(text))) => text.to_string(),
             _ => String::new(),
         };
         let case = text("case");
@@ -96,14 +96,14 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
 type Checks = BTreeMap<String, (Verdict, Option<f64>)>;
 
 fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
-    let table = Table::open(path)?;
+    let table = ExistingTable::open(path)?;
     let columns = columns(&table)?;
     let at = |name: &str, row: usize| {
         columns.iter().find(|(other, _)| other == name).and_then(|(_, values)| values.at(row))
     };
     let mut all: BTreeMap<String, Checks> = BTreeMap::new();
     for row in 0..table.rows {
-        let (Some(Value::Text(case)), Some(Value::Text(requirement)), Some(Value::Text(name))) =
+        let (Some(ColumnValue::Text(case)), Some(ColumnValue::Text(requirement)), Some(ColumnValue::Text(name))) =
             (at("case", row), at("requirement", row), at("verdict", row))
         else {
             return Err(TableError::Form {
@@ -112,7 +112,7 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
             });
         };
         let margin = match at("margin", row) {
-            Some(Value::Number(margin)) => Some(margin),
+            Some(ColumnValue::Number(margin)) => Some(margin),
             _ => None,
         };
         let verdict = verdict(&name).ok_or_else(|| TableError::Form {
@@ -120,13 +120,13 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
             reason: format!("row {row} has verdict {name:?}"),
         })?;
         let number = |name: &str| match at(name, row) {
-            Some(Value::Number(number)) => Some(number),
+            Some(ColumnValue::Number(number)) => Some(number),
             _ => None,
         };
         // A verdict in the table is accepted only if value and limit support it.
         let sign = Comparison::ALL
             .into_iter()
-            .find(|known| at("comparison", row) == Some(Value::Text(known.sign().into())));
+            .find(|known| at("comparison", row) == Some(ColumnValue::Text(known.sign().into())));
         let known = sign.zip(number("limit"));
         if !known.is_some_and(|(sign, limit)| stands(verdict, sign, number("value"), limit)) {
             return Err(TableError::Form {
@@ -143,7 +143,7 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
     Ok(all)
 }
 
-fn columns(table: &Table) -> Result<Vec<(String, Values)>, TableError> {
+fn columns(table: &ExistingTable) -> Result<Vec<(String, ColumnValues)>, TableError> {
     let read = |(name, _): &(String, _)| Ok(table.column(name)?.map(|v| (name.clone(), v)));
     table.columns.iter().filter_map(|column| read(column).transpose()).collect()
 }
@@ -154,7 +154,7 @@ fn verdict(name: &str) -> Option<Verdict> {
 
 /// Builds the key that pairs cases of two nights. The id can't be used: it changes with the
 /// scenario.
-fn pair(row: &[(String, Value)]) -> String {
+fn pair(row: &[(String, ColumnValue)]) -> String {
     let told = row.iter().filter(|(name, _)| {
         ["scenario", "seed", "replicate"].contains(&name.as_str()) || name.starts_with("factor.")
     });
@@ -163,10 +163,10 @@ fn pair(row: &[(String, Value)]) -> String {
 
 /// Collects the measures of a case, and the root mean square of the errors of each group of
 /// parameters.
-fn measures(row: &[(String, Value)]) -> BTreeMap<String, f64> {
+fn measures(row: &[(String, ColumnValue)]) -> BTreeMap<String, f64> {
     let number = |path: &str| {
         row.iter().find(|(name, _)| name == path).and_then(|(_, value)| match value {
-            Value::Number(number) => Some(*number),
+            ColumnValue::Number(number) => Some(*number),
             _ => None,
         })
     };
@@ -174,7 +174,7 @@ fn measures(row: &[(String, Value)]) -> BTreeMap<String, f64> {
         .iter()
         .filter_map(|path| Some(((*path).to_owned(), number(path)?)))
         .collect();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let errors: Option<Vec<f64>> = NAMES[group.range()]
             .iter()
             .map(|name| number(&format!("calibration.parameters.{name}.error")))

@@ -6,7 +6,7 @@ use octant_base::child::{ChildEnded, finish};
 use octant_base::pool::in_order;
 use octant_campaign::process::{self, TRIES};
 use octant_requirements::Verdict;
-use octant_scenario::suite::{Case, Suite};
+use octant_scenario::suite::{SuiteCase, Suite};
 use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -109,7 +109,7 @@ pub fn run(
 
 /// Returns the result of a case, stored or new; `None` if it was aborted.
 fn one(
-    case: &Case,
+    case: &SuiteCase,
     name: &str,
     folder: &Path,
     program: &Path,

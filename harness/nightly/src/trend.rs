@@ -1,8 +1,8 @@
 //! `trend.html`: every measure over the nights, one file without network access.
 
-use super::history::{History, Line, Point};
+use super::history::{History, TrendLine, TrendPoint};
 use maud::{Markup, html};
-use octant_report::chart::{Chart, Line as Drawn, Role};
+use octant_report::chart::{Chart, ChartLine as Drawn, ChartRole};
 use octant_report::page::page;
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[must_use]
 pub fn render(history: &History, baseline: Option<&str>) -> String {
     let nights = history.nights();
-    let mut groups: BTreeMap<(String, String), Vec<Line>> = BTreeMap::new();
+    let mut groups: BTreeMap<(String, String), Vec<TrendLine>> = BTreeMap::new();
     for line in history.lines() {
         groups.entry((line.campaign.clone(), line.scenario.clone())).or_default().push(line);
     }
@@ -60,16 +60,16 @@ fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> M
     }
 }
 
-fn chart(line: &Line, baseline: Option<usize>) -> Markup {
+fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
     let mut chart = Chart::new(&line.measure, "night", &line.measure);
     chart.hours = false;
     chart.height = 170.0;
-    let of = |value: fn(&Point) -> f64| -> Vec<[f64; 2]> {
+    let of = |value: fn(&TrendPoint) -> f64| -> Vec<[f64; 2]> {
         line.points.iter().map(|point| [(point.night + 1) as f64, value(point)]).collect()
     };
     chart.lines = vec![
-        Drawn { label: "95th percentile".into(), role: Role::Baseline, points: of(|p| p.p95) },
-        Drawn { label: "median".into(), role: Role::Primary, points: of(|p| p.median) },
+        Drawn { label: "95th percentile".into(), role: ChartRole::Baseline, points: of(|p| p.p95) },
+        Drawn { label: "median".into(), role: ChartRole::Primary, points: of(|p| p.median) },
     ];
     let reference =
         baseline.and_then(|night| line.points.iter().find(|point| point.night == night));

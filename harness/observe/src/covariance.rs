@@ -1,15 +1,15 @@
 //! Covariance analysis of a procedure: predicts the result of its filter without a run.
 //!
-//! The filter's own covariance gives its gains. The true errors of all 39 states ([`Truth`]) are
+//! The filter's own covariance gives its gains. The true errors of all 39 states ([`EnsembleTruth`]) are
 //! carried along and updated by those gains in Joseph form, so that a filter with too few states
 //! (six positions without G) is judged by its actual errors and not by the covariance that it
 //! believes. After the calibration the true errors are carried through free navigation with the
 //! vertical channel held, which gives the predicted drift.
 
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{TrueErrors, Truth, Unseen};
+use super::truth::{TrueErrors, EnsembleTruth, Unseen};
 use nalgebra::{Matrix3, Vector3};
-use octant_calibration::config::{AidingMode, Config, ErrorModel, Estimator, Kalman};
+use octant_calibration::config::{AidingMode, CoreConfig, ErrorModel, Estimator, Kalman};
 use octant_calibration::covariance::{
     Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
 };
@@ -26,7 +26,7 @@ const DRIFT_EVERY_S: f64 = 600.0;
 
 /// Predicted one-sigma drift at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drift {
+pub struct PredictedDrift {
     /// Time since the start of navigation, h.
     pub hours: f64,
     /// σ of the latitude error, arcmin.
@@ -43,7 +43,7 @@ pub struct Prediction {
     /// True covariance of the filter's errors.
     pub achieved: Covariance,
     /// Drift in navigation, a point every ten minutes.
-    pub drift: Vec<Drift>,
+    pub drift: Vec<PredictedDrift>,
 }
 
 /// Position error of an ensemble at one time.
@@ -61,7 +61,7 @@ pub struct PositionError {
 
 /// Predicted result of an ensemble.
 #[derive(Clone, Debug)]
-pub struct Reached {
+pub struct PredictedResult {
     /// Covariance that the filter believes at the end of the calibration.
     pub believed: Covariance,
     /// Mean of the true errors: parameters true − estimated, all others computed − true.
@@ -93,11 +93,11 @@ pub enum AnalysisError {
 /// # Errors
 /// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
 pub fn predict(
-    config: &Config,
+    config: &CoreConfig,
     c_nc: &Matrix3<f64>,
     true_sigmas: &[f64; STATE_COUNT],
 ) -> Result<Prediction, AnalysisError> {
-    let truth = Truth {
+    let truth = EnsembleTruth {
         covariance: Covariance::from_sigmas(true_sigmas),
         mean: [0.0; STATE_COUNT],
         noise: noise_of(config),
@@ -110,7 +110,7 @@ pub fn predict(
         start_s: 0.0,
         non_orthogonality_rad: 0.0,
     };
-    let Reached { believed, achieved, drift, .. } = reach(config, c_nc, &truth)?;
+    let PredictedResult { believed, achieved, drift, .. } = reach(config, c_nc, &truth)?;
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let drift = drift.iter().map(|at| at.sigmas(&earth)).collect();
     Ok(Prediction { believed, achieved, drift })
@@ -118,10 +118,10 @@ pub fn predict(
 
 impl PositionError {
     /// Returns the standard deviations, arcmin.
-    fn sigmas(&self, earth: &Ellipsoid) -> Drift {
+    fn sigmas(&self, earth: &Ellipsoid) -> PredictedDrift {
         let [north, east] = arcmin_m(earth);
         let [n, e] = self.variances_m2;
-        Drift {
+        PredictedDrift {
             hours: self.hours,
             latitude_arcmin: libm::sqrt(n.max(0.0)) / north,
             longitude_arcmin: libm::sqrt(e.max(0.0)) / east,
@@ -135,7 +135,7 @@ pub(super) fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
 }
 
 /// Returns the white noise that the filter assumes: gyros, rad²/s, and accelerometers, (m/s)²/s.
-fn noise_of(config: &Config) -> (f64, f64) {
+fn noise_of(config: &CoreConfig) -> (f64, f64) {
     let square = |density: f64| density * density;
     (square(config.noise.angle_random_walk), square(config.noise.velocity_random_walk))
 }
@@ -145,10 +145,10 @@ fn noise_of(config: &Config) -> (f64, f64) {
 /// # Errors
 /// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
 pub fn reach(
-    config: &Config,
+    config: &CoreConfig,
     c_nc: &Matrix3<f64>,
-    truth: &Truth,
-) -> Result<Reached, AnalysisError> {
+    truth: &EnsembleTruth,
+) -> Result<PredictedResult, AnalysisError> {
     let Some(calibration) = &config.calibration else { return Err(AnalysisError::NotKalman) };
     let Estimator::Kalman(kalman) = &calibration.estimator else {
         return Err(AnalysisError::NotKalman);
@@ -179,7 +179,7 @@ pub fn reach(
             .max(1.0);
         drift = navigate(platform, &mut errors, end_s, duration_s, step_s);
     }
-    Ok(Reached { believed, mean, achieved, drift })
+    Ok(PredictedResult { believed, mean, achieved, drift })
 }
 
 fn calibrate(

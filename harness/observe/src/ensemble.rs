@@ -3,13 +3,13 @@
 //! Linear covariance analysis: one pass instead of many runs (D. K. Geller, *Linear covariance
 //! techniques for orbital rendezvous analysis and autonomous onboard mission planning*, Journal of
 //! Guidance, Control, and Dynamics 29, 2006). The filter keeps its own prior and noise; the plant's
-//! draws and effects are in [`Truth`].
+//! draws and effects are in [`EnsembleTruth`].
 
-use super::covariance::{AnalysisError, PositionError, Reached, arcmin_m, reach, state_name};
+use super::covariance::{AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name};
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{Swing, Truth, Unseen, Wander};
+use super::truth::{Swing, EnsembleTruth, Unseen, Wander};
 use nalgebra::{Matrix3, Vector3};
-use octant_calibration::config::{Config, ErrorModel, Estimator};
+use octant_calibration::config::{CoreConfig, ErrorModel, Estimator};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
 use octant_calibration::schedule::Cursor;
 use octant_calibration::sequence::Sequence;
@@ -19,9 +19,9 @@ use octant_earth::units::{ARCSEC, NAUTICAL_MILE_M};
 use octant_plant::config as plant;
 use octant_run::method::{SetupError, label};
 use octant_sample::GimbalAngles;
-use octant_sample::parameters::Group;
-use octant_scenario::resolve::{Draws, Seeded};
-use octant_scenario::{Alignment, Distribution, Dockside, Method, Motion, Scenario};
+use octant_sample::parameters::ParameterGroup;
+use octant_scenario::resolve::{DrawnValues, Seeded};
+use octant_scenario::{AlignmentSpec, ParameterDistribution, DocksideSpec, Method, MotionSpec, Scenario};
 use octant_source::configure::configurations;
 use octant_statistics::normal;
 use octant_statistics::radius::Plane;
@@ -44,7 +44,7 @@ pub struct Ensemble {
     /// Length of the calibration, h.
     pub calibration_h: f64,
     /// Errors of all 39 states at the end of the calibration.
-    pub states: Vec<State>,
+    pub states: Vec<ErrorState>,
     /// Position error in navigation, a point every ten minutes.
     pub drift: Vec<DriftBand>,
     /// Effects of the scenario that are not in the prediction, in plain words.
@@ -53,7 +53,7 @@ pub struct Ensemble {
 
 /// One error over the ensemble, in its unit: parameters estimated − true, all others computed − true.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub struct ErrorState {
     /// Name.
     pub name: String,
     /// Unit of all values.
@@ -74,16 +74,16 @@ pub struct DriftBand {
     /// Time since the start of navigation, h.
     pub hours: f64,
     /// Latitude error, arcmin.
-    pub latitude_arcmin: Band,
+    pub latitude_arcmin: ErrorBand,
     /// Longitude error, arcmin.
-    pub longitude_arcmin: Band,
+    pub longitude_arcmin: ErrorBand,
     /// Radial error, nmi.
     pub radial_nmi: RadialBand,
 }
 
 /// A signed error over the ensemble.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Band {
+pub struct ErrorBand {
     /// Mean.
     pub mean: f64,
     /// σ about the mean.
@@ -144,19 +144,19 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
         return Err(AnalysisError::NotKalman.into());
     };
     let mean = match &scenario.motion {
-        Motion::Static(mean) => *mean,
-        Motion::Dockside(ship) => ship.mean,
+        MotionSpec::Static(mean) => *mean,
+        MotionSpec::Dockside(ship) => ship.mean,
     };
     let c = c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad);
     let truth = truth(scenario, &config, &calibration.sequence, &c)?;
-    let Reached { believed, mean, achieved, drift } = reach(&config, &c, &truth)?;
+    let PredictedResult { believed, mean, achieved, drift } = reach(&config, &c, &truth)?;
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let states = (0..STATE_COUNT).map(|state| {
         let (unit, si) = state_unit(state);
         let parameter = state >= PARAMETERS;
-        let estimated = !parameter || kalman.estimated[Group::of(state - PARAMETERS) as usize];
+        let estimated = !parameter || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize];
         let sign = if parameter { -1.0 } else { 1.0 };
-        State {
+        ErrorState {
             name: state_name(state),
             unit: unit.to_owned(),
             prior: truth.covariance.sigma(state) / si,
@@ -186,7 +186,7 @@ pub fn state_unit(state: usize) -> (&'static str, f64) {
         s if s < DR => ("m/s", 1.0),
         s if s < PARAMETERS => ("m", 1.0),
         s => {
-            let group = Group::of(s - PARAMETERS);
+            let group = ParameterGroup::of(s - PARAMETERS);
             (group.unit(), group.si_per_unit())
         }
     }
@@ -199,7 +199,7 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
         let mean = at.mean_m[axis] / unit_m;
         let sigma = libm::sqrt(at.variances_m2[axis].max(0.0)) / unit_m;
         let percentile = |p: f64| mean + sigma * normal::quantile(p);
-        Band { mean, sigma, p5: percentile(0.05), p50: mean, p95: percentile(0.95) }
+        ErrorBand { mean, sigma, p5: percentile(0.05), p50: mean, p95: percentile(0.95) }
     };
     let square = NAUTICAL_MILE_M * NAUTICAL_MILE_M;
     let plane = Plane {
@@ -218,30 +218,30 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
 /// Collects the draws and effects of a scenario's plant.
 fn truth(
     scenario: &Scenario,
-    config: &Config,
+    config: &CoreConfig,
     sequence: &Sequence,
     c: &Matrix3<f64>,
-) -> Result<Truth, EnsembleError> {
+) -> Result<EnsembleTruth, EnsembleError> {
     let square = |density: f64| density * density;
     let (mut sigmas, mut mean) = ([0.0; STATE_COUNT], [0.0; STATE_COUNT]);
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let first = PARAMETERS + group.range().start;
         let known = &config.initial_parameters.to_array()[group.range()];
         for (i, known) in known.iter().enumerate() {
             let (drawn, sigma) = match &scenario.parameters[group as usize] {
-                Distribution::Normal(sigma) => (0.0, *sigma),
-                Distribution::Uniform(half_width) => (0.0, half_width / libm::sqrt(3.0)),
-                Distribution::Constant(values) => (values.get(i).copied().unwrap_or(0.0), 0.0),
+                ParameterDistribution::Normal(sigma) => (0.0, *sigma),
+                ParameterDistribution::Uniform(half_width) => (0.0, half_width / libm::sqrt(3.0)),
+                ParameterDistribution::Constant(values) => (values.get(i).copied().unwrap_or(0.0), 0.0),
             };
             sigmas[first + i] = sigma;
             mean[first + i] = drawn - known;
         }
     }
-    if let Alignment::Given { tilt_rad, azimuth_rad, velocity_mps, .. } = scenario.alignment {
+    if let AlignmentSpec::Given { tilt_rad, azimuth_rad, velocity_mps, .. } = scenario.alignment {
         sigmas[PHI..DV].copy_from_slice(&[tilt_rad, tilt_rad, azimuth_rad]);
         sigmas[DV..DR].fill(velocity_mps);
     }
-    if let Alignment::Given { attitude_error_rad, velocity_error_mps, .. } = scenario.alignment {
+    if let AlignmentSpec::Given { attitude_error_rad, velocity_error_mps, .. } = scenario.alignment {
         for (first, given) in [(PHI, attitude_error_rad), (DV, velocity_error_mps)] {
             if let Some(given) = given {
                 sigmas[first..first + 3].fill(0.0);
@@ -253,8 +253,8 @@ fn truth(
     let noise = (square(imu.angle_random_walk), square(imu.velocity_random_walk));
     let mut covariance = Covariance::from_sigmas(&sigmas);
     let mut start_s = 0.0;
-    if let Alignment::Coarse { duration_s } = scenario.alignment {
-        if matches!(scenario.motion, Motion::Dockside(_)) {
+    if let AlignmentSpec::Coarse { duration_s } = scenario.alignment {
+        if matches!(scenario.motion, MotionSpec::Dockside(_)) {
             return Err(EnsembleError::CoarseAtSea);
         }
         start_s = duration_s;
@@ -268,27 +268,27 @@ fn truth(
     let extensions = &imu.extensions;
     let mut wanders = Vec::new();
     for (group, process) in [
-        (Group::GyroBias, &extensions.gyro_gauss_markov),
-        (Group::AccelBias, &extensions.accel_gauss_markov),
+        (ParameterGroup::GyroBias, &extensions.gyro_gauss_markov),
+        (ParameterGroup::AccelBias, &extensions.accel_gauss_markov),
     ] {
         let wander =
             |p: &plant::GaussMarkov| Wander::gauss_markov(group, p.sigma, p.correlation_time_s);
         wanders.extend(process.iter().map(wander));
     }
     if extensions.gyro_rate_random_walk > 0.0 {
-        let walk = Wander::random_walk(Group::GyroBias, extensions.gyro_rate_random_walk);
+        let walk = Wander::random_walk(ParameterGroup::GyroBias, extensions.gyro_rate_random_walk);
         wanders.push(Wander { variance: walk.driving * start_s, ..walk });
     }
     let (mooring, sway) = match &scenario.motion {
-        Motion::Static(_) => (Vec::new(), Vec::new()),
-        Motion::Dockside(ship) => swings(scenario, ship),
+        MotionSpec::Static(_) => (Vec::new(), Vec::new()),
+        MotionSpec::Dockside(ship) => swings(scenario, ship),
     };
     let (reference_sigma, unseen) = match scenario.aiding.kind {
         plant::AidingKind::ZeroVelocity { sigma_mps } => (sigma_mps, Unseen::Velocity),
         plant::AidingKind::Velocity { sigma_mps } => (sigma_mps, Unseen::Nothing),
         plant::AidingKind::DockPosition { sigma_m } => (sigma_m, Unseen::Position),
     };
-    Ok(Truth {
+    Ok(EnsembleTruth {
         covariance,
         mean,
         noise,
@@ -305,7 +305,7 @@ fn truth(
 
 /// Returns a ship's displacements: those that are the same in every run, and those with drawn
 /// phases.
-fn swings(scenario: &Scenario, ship: &Dockside) -> (Vec<Swing>, Vec<Swing>) {
+fn swings(scenario: &Scenario, ship: &DocksideSpec) -> (Vec<Swing>, Vec<Swing>) {
     let (s, c) = libm::sincos(ship.mean.heading_rad);
     let directions = [Vector3::new(c, s, 0.0), Vector3::new(-s, c, 0.0), Vector3::z()];
     let offset = Swing {
@@ -315,7 +315,7 @@ fn swings(scenario: &Scenario, ship: &Dockside) -> (Vec<Swing>, Vec<Swing>) {
     };
     let (mut same, mut drawn) = (vec![offset], Vec::new());
     // Components of a spectrum are drawn with their periods: those of one seed represent all.
-    let draws = Draws::of(scenario, &Seeded(scenario.seed));
+    let draws = DrawnValues::of(scenario, &Seeded(scenario.seed));
     for (direction, motion) in directions.iter().zip(3..) {
         let given = &ship.components[motion];
         for (i, sinusoid) in draws.motion[motion].iter().enumerate() {
@@ -389,9 +389,9 @@ impl Coarse {
 /// Lists the effects of a scenario that are not in the prediction.
 fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let extensions = &scenario.imu.extensions;
-    let even = scenario.parameters.iter().any(|d| matches!(d, Distribution::Uniform(_)));
-    let spectrum = matches!(&scenario.motion, Motion::Dockside(ship) if ship.spectrum.is_some());
-    let dockside = matches!(scenario.motion, Motion::Dockside(_));
+    let even = scenario.parameters.iter().any(|d| matches!(d, ParameterDistribution::Uniform(_)));
+    let spectrum = matches!(&scenario.motion, MotionSpec::Dockside(ship) if ship.spectrum.is_some());
+    let dockside = matches!(scenario.motion, MotionSpec::Dockside(_));
     let quantized =
         extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
     let all: [(bool, &str); 12] = [

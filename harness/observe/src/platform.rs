@@ -1,9 +1,9 @@
 //! Platform of an analysis: it stands at a site and turns as planned.
 
 use nalgebra::{Matrix3, Vector3};
-use octant_calibration::config::{Config, ErrorModel};
+use octant_calibration::config::{CoreConfig, ErrorModel};
 use octant_calibration::covariance::Transition;
-use octant_calibration::error_model::Interval;
+use octant_calibration::error_model::MotionInterval;
 use octant_calibration::schedule::{Cursor, turned_rad};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_cb;
@@ -16,7 +16,7 @@ pub(super) const SAMPLE_S: f64 = 1e-6;
 
 /// A platform that stands at a site and turns as planned.
 pub(super) struct Platform<'a> {
-    config: &'a Config,
+    config: &'a CoreConfig,
     c_nc: Matrix3<f64>,
     /// Angle by which the gimbal axes deviate from a right angle, rad.
     non_orthogonality_rad: f64,
@@ -33,7 +33,7 @@ impl<'a> Platform<'a> {
     /// previous one ended opens with a move, whose errors from scale factors and misalignments are
     /// carried like any others.
     pub(super) fn new(
-        config: &'a Config,
+        config: &'a CoreConfig,
         c_nc: Matrix3<f64>,
         non_orthogonality_rad: f64,
         home: GimbalAngles,
@@ -96,7 +96,7 @@ impl<'a> Platform<'a> {
             .fold(limit_s, f64::min)
     }
 
-    fn interval(&self, t_s: f64, h: f64) -> Interval {
+    fn interval(&self, t_s: f64, h: f64) -> MotionInterval {
         let [azimuth, roll] = self.gimbals(t_s + 0.5 * h);
         let (before, after) = (self.gimbals(t_s), self.gimbals(t_s + h));
         let c_cb = self.c_cb(azimuth, roll);
@@ -104,7 +104,7 @@ impl<'a> Platform<'a> {
         let force_n = Vector3::new(0.0, 0.0, -self.earth.gravity_mps2 * h);
         let turned_case = Vector3::x() * (after[1] - before[1]);
         let turned_body = Vector3::z() * (after[0] - before[0]);
-        Interval {
+        MotionInterval {
             interval_s: h,
             c_nb,
             delta_theta: c_nb.transpose() * self.earth.earth_rate() * h

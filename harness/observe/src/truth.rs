@@ -13,14 +13,14 @@ use octant_calibration::covariance::{
 };
 use octant_calibration::filter::add_process_noise;
 use octant_plant::config::Temperature;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// Errors of all states: parameters are true − estimated, the others computed − true.
 pub(super) type Errors = [f64; STATE_COUNT];
 
 /// True properties of an ensemble.
 #[derive(Clone, Debug)]
-pub struct Truth {
+pub struct EnsembleTruth {
     /// Covariance of the errors at the start.
     pub covariance: Covariance,
     /// Mean of the errors at the start.
@@ -61,7 +61,7 @@ pub enum Unseen {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wander {
     /// Gyro or accelerometer biases.
-    pub group: Group,
+    pub group: ParameterGroup,
     /// Variance at the start.
     pub variance: f64,
     /// Correlation time, s; infinite: a random walk.
@@ -73,14 +73,14 @@ pub struct Wander {
 impl Wander {
     /// Creates a first-order Gauss-Markov process in its stationary distribution.
     #[must_use]
-    pub fn gauss_markov(group: Group, sigma: f64, correlation_time_s: f64) -> Self {
+    pub fn gauss_markov(group: ParameterGroup, sigma: f64, correlation_time_s: f64) -> Self {
         let variance = sigma * sigma;
         Self { group, variance, correlation_time_s, driving: 2.0 * variance / correlation_time_s }
     }
 
     /// Creates a random walk that starts at zero.
     #[must_use]
-    pub fn random_walk(group: Group, density: f64) -> Self {
+    pub fn random_walk(group: ParameterGroup, density: f64) -> Self {
         let driving = density * density;
         Self { group, variance: 0.0, correlation_time_s: f64::INFINITY, driving }
     }
@@ -148,10 +148,10 @@ impl Answer {
             let plateau = temperature.plateau_k;
             let change = if risen.abs() < plateau.abs() { risen } else { plateau };
             for (group, per_k) in [
-                (Group::GyroBias, temperature.gyro_bias_per_k),
-                (Group::GyroScale, temperature.gyro_scale_per_k),
-                (Group::AccelBias, temperature.accel_bias_per_k),
-                (Group::AccelScale, temperature.accel_scale_per_k),
+                (ParameterGroup::GyroBias, temperature.gyro_bias_per_k),
+                (ParameterGroup::GyroScale, temperature.gyro_scale_per_k),
+                (ParameterGroup::AccelBias, temperature.accel_bias_per_k),
+                (ParameterGroup::AccelScale, temperature.accel_scale_per_k),
             ] {
                 for (axis, per_k) in per_k.into_iter().enumerate() {
                     driven[first_of(group) + axis] += change * per_k;
@@ -192,7 +192,7 @@ impl Answer {
     }
 }
 
-fn first_of(group: Group) -> usize {
+fn first_of(group: ParameterGroup) -> usize {
     PARAMETERS + group.range().start
 }
 
@@ -220,7 +220,7 @@ pub(super) struct TrueErrors {
 }
 
 impl TrueErrors {
-    pub(super) fn new(truth: &Truth) -> Self {
+    pub(super) fn new(truth: &EnsembleTruth) -> Self {
         let wandering = |process: &Wander| {
             let process = *process;
             (0..3).map(move |axis| Wandering {

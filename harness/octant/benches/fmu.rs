@@ -8,9 +8,9 @@ use criterion::{
     BenchmarkGroup, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
 use octant_base::control::Control;
-use octant_fmu_host::description::{Causality, Kind};
-use octant_fmu_host::instance::{Instance, Options, Place, Plan};
-use octant_run::{Recording, run_method};
+use octant_fmu_host::description::{Causality, VariableType};
+use octant_fmu_host::instance::{Instance, OpenOptions, ProcessPlace, AccessPlan};
+use octant_run::{StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -25,11 +25,11 @@ fn fmus() -> (tempfile::TempDir, [PathBuf; 2]) {
 
 /// Steps at 200 Hz, setting all inputs and reading all outputs: each step is one epoch of a static
 /// base.
-fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place: Place) {
+fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place: ProcessPlace) {
     let program = Some(PathBuf::from(env!("CARGO_BIN_EXE_octant")));
-    let options = Options { place, program, ..Options::default() };
+    let options = OpenOptions { place, program, ..OpenOptions::default() };
     let mut fmu = octant_fmu_host::open(path, &options).unwrap();
-    let number = |kind| !matches!(kind, Kind::String | Kind::Binary | Kind::Clock);
+    let number = |kind| !matches!(kind, VariableType::String | VariableType::Binary | VariableType::Clock);
     let all = |causality| {
         let description = fmu.description();
         let variables: Vec<_> = description
@@ -37,7 +37,7 @@ fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place
             .iter()
             .filter(|variable| variable.causality == causality && number(variable.kind))
             .collect();
-        Plan::new(description, &variables).unwrap()
+        AccessPlan::new(description, &variables).unwrap()
     };
     let (inputs, outputs) = (all(Causality::Input), all(Causality::Output));
     let mut values = vec![0.0; inputs.elements];
@@ -58,7 +58,7 @@ fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place
 
 /// Fills in a valid sample: gravity and the Earth's rate, as measured on a table that is switched
 /// off.
-fn fill(fmu: &dyn Instance, plan: &Plan, values: &mut [f64]) {
+fn fill(fmu: &dyn Instance, plan: &AccessPlan, values: &mut [f64]) {
     let description = fmu.description();
     let inputs =
         description.variables.iter().filter(|variable| variable.causality == Causality::Input);
@@ -83,7 +83,7 @@ fn calibration(group: &mut BenchmarkGroup<WallTime>, name: &str, endpoint: &str)
     group.throughput(Throughput::Elements(scenario.samples().unwrap()));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
-            run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap()
+            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
         });
     });
 }
@@ -91,7 +91,7 @@ fn calibration(group: &mut BenchmarkGroup<WallTime>, name: &str, endpoint: &str)
 fn bench(criterion: &mut Criterion) {
     let (_folder, [fmi2, fmi3]) = fmus();
     let mut group = criterion.benchmark_group("exchange");
-    for (place, words) in [(Place::ThisProcess, "this process"), (Place::OwnProcess, "own process")]
+    for (place, words) in [(ProcessPlace::ThisProcess, "this process"), (ProcessPlace::OwnProcess, "own process")]
     {
         exchange(&mut group, &format!("FMI 2.0, {words}"), &fmi2, place);
         exchange(&mut group, &format!("FMI 3.0, {words}"), &fmi3, place);

@@ -7,7 +7,7 @@ mod epochs;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use epochs::{PERIOD_NS, Step, push, stream};
-use octant_recorder::{Frame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
+use octant_recorder::{EpochFrame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use std::hint::black_box;
 
 const EPOCHS: u64 = 200 * 600;
@@ -92,7 +92,7 @@ fn loop_thread(steps: &[Step]) {
             for _ in 0..(blocks - 2) * block / few.len() {
                 for step in few {
                     let frame =
-                        Frame { clean: &step.clean, faulted: &step.faulted, output: &step.output };
+                        EpochFrame { clean: &step.clean, faulted: &step.faulted, output: &step.output };
                     recorder.push(black_box(frame)).unwrap();
                 }
             }

@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use octant_base::control::Control;
-use octant_run::{Recording, run_method};
+use octant_run::{StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
@@ -17,7 +17,7 @@ fn bench(criterion: &mut Criterion) {
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.bench_function("calibration 4 h, navigation 24 h", |bencher| {
         bencher.iter(|| {
-            run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap()
+            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
         });
     });
     group.finish();

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::note;
 use clap::Args;
-use octant_scenario::{Dimension, quantity_of};
+use octant_scenario::{UnitDimension, quantity_of};
 use std::path::{Path, PathBuf};
 
 /// Arguments of every command that takes a scenario.
@@ -20,7 +20,7 @@ pub(crate) struct ScenarioArguments {
 /// Parses a time on the command line: a number of seconds, or a quantity.
 pub(crate) fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
     let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let quantity = || quantity_of(text).ok().filter(|quantity| quantity.is(Dimension::TIME));
+    let quantity = || quantity_of(text).ok().filter(|quantity| quantity.is(UnitDimension::TIME));
     number.or_else(|| quantity().map(|quantity| quantity.si)).ok_or_else(|| {
         Failure::input(format!("{name}: found {text:?}, expected a time such as 10 or \"10 s\""))
     })

@@ -7,9 +7,9 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
-use octant_run::paired::{Side, paired};
+use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
-use octant_score::compare::Comparison;
+use octant_score::compare::MethodComparison;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -32,8 +32,8 @@ pub(super) struct Arguments {
 }
 
 /// Returns both sides: the reference method, and the method under comparison.
-fn sides(arguments: &Arguments) -> Result<(Side, Side), Failure> {
-    let side = |scenario, method| Side { scenario, method };
+fn sides(arguments: &Arguments) -> Result<(MethodSide, MethodSide), Failure> {
+    let side = |scenario, method| MethodSide { scenario, method };
     let second = load(&arguments.scenario, &[])?;
     if let Some(against) = &arguments.against {
         let first = Scenario::load(against, &[]).map_err(Failure::input)?;
@@ -69,7 +69,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(if compared { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
-fn write_results(arguments: &Arguments, comparison: &Comparison) -> Result<(), Failure> {
+fn write_results(arguments: &Arguments, comparison: &MethodComparison) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))

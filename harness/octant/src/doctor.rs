@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
-use octant_realtime::host::{Finding, Grade, look};
-use octant_realtime::latency::{Found, Trial, measure};
+use octant_realtime::host::{HostFinding, Grade, look};
+use octant_realtime::latency::{LatencyResult, Trial, measure};
 use octant_realtime::schedule::Wish;
 use octant_requirements::Verdict;
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 /// Diagnosis of the host.
 #[derive(Debug, Serialize)]
 struct Diagnosis {
-    findings: Vec<Finding>,
+    findings: Vec<HostFinding>,
     latency: Vec<Measured>,
 }
 
@@ -36,7 +36,7 @@ struct Diagnosis {
 struct Measured {
     way: String,
     #[serde(flatten)]
-    found: Found,
+    found: LatencyResult,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -98,7 +98,7 @@ fn text(diagnosis: &Diagnosis) -> String {
             "{:28} {:8.1} {:8.1} {:8.1} {:8.1}",
             "", of.p50_us, of.p99_us, of.p999_us, of.max_us
         );
-        if let octant_realtime::schedule::Outcome::Refused { .. } = found.granted.scheduling {
+        if let octant_realtime::schedule::RequestOutcome::Refused { .. } = found.granted.scheduling {
             let _ = writeln!(out, "    {}", found.granted.scheduling.text());
         }
     }

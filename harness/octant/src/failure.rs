@@ -30,7 +30,7 @@ impl Failure {
 
 impl From<octant_run::method::MethodError> for Failure {
     fn from(error: octant_run::method::MethodError) -> Self {
-        use octant_endpoint::OpenError;
+        use octant_endpoint::EndpointOpenError;
         use octant_link::harness::SessionError;
         use octant_mapping::stepper::UseError;
         use octant_run::RunError;
@@ -45,8 +45,8 @@ impl From<octant_run::method::MethodError> for Failure {
                     | SourceError::TableStopped { .. },
                 )
                 | SetupError::Endpoint(
-                    OpenError::Use(UseError::Gone { .. })
-                    | OpenError::Live(
+                    EndpointOpenError::Use(UseError::Gone { .. })
+                    | EndpointOpenError::Live(
                         SessionError::Port(_)
                         | SessionError::NoAnswer { .. }
                         | SessionError::Bye { .. }

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::fault_picture::{Window, picture as draw};
 use crate::fault_words::{acts, lasts};
 use crate::side_by_side::side_by_side;
-use octant_faults::catalogue::{Acts, Kind};
+use octant_faults::catalogue::{Acts, FaultKind};
 use octant_scenario::{Scenario, fault_example, fault_parameters};
 use std::path::Path;
 
@@ -28,7 +28,7 @@ const STAGE_S: f64 = 240.0;
 const SHOWN_MAX_S: f64 = 45.0;
 
 /// Renders the page of a kind as Markdown; its picture is the file of the same name beside it.
-pub(super) fn markdown(kind: &'static Kind) -> String {
+pub(super) fn markdown(kind: &'static FaultKind) -> String {
     let name = kind.name;
     let mut out = format!("# {name}\n\n{}\n\n", kind.summary);
     if has_picture(kind) {
@@ -67,12 +67,12 @@ pub(super) fn markdown(kind: &'static Kind) -> String {
 
 /// Returns whether a kind has a picture: a fault of the wire alters frames, and one of the host
 /// only their timing, so there is no sample to draw.
-pub(super) fn has_picture(kind: &Kind) -> bool {
+pub(super) fn has_picture(kind: &FaultKind) -> bool {
     !matches!(kind.acts, Acts::Wire | Acts::Host)
 }
 
 /// Draws the picture of a kind: its example, simulated.
-pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
+pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
     if !has_picture(kind) {
         return Err(Failure::input(format!(
             "found kind {}, which acts {}: expected a kind that acts on samples, to draw a picture",

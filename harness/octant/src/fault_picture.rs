@@ -4,7 +4,7 @@
 use crate::side_by_side::{SideBySide, Step};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
-use octant_faults::catalogue::{Acts, Family, Kind};
+use octant_faults::catalogue::{Acts, Family, FaultKind};
 use octant_report::chart::{multiples_of, nice_ticks, round, span, thinned};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{Aiding, Epoch, Reference};
@@ -255,7 +255,7 @@ struct Frame {
 /// Draws the effect of a kind of fault; `None` if nothing differs.
 #[must_use]
 pub(crate) fn picture(
-    kind: &Kind,
+    kind: &FaultKind,
     runs: &SideBySide,
     window: Window,
     period_s: f64,
@@ -291,7 +291,7 @@ pub(crate) fn picture(
 }
 
 /// Draws the numbers of the samples that arrive, and their count.
-fn delivery(kind: &Kind, runs: &SideBySide, frame: &Frame) -> Markup {
+fn delivery(kind: &FaultKind, runs: &SideBySide, frame: &Frame) -> Markup {
     let (mut numbers, mut counts) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     for (side, steps) in [&runs.clean, &runs.faulted].into_iter().enumerate() {
         for number in frame.window.from..=frame.window.to {
@@ -319,7 +319,7 @@ fn delivery(kind: &Kind, runs: &SideBySide, frame: &Frame) -> Markup {
     svg(kind, &[upper, lower])
 }
 
-fn two_panels(kind: &Kind, series: &Series) -> Markup {
+fn two_panels(kind: &FaultKind, series: &Series) -> Markup {
     let difference = series.difference();
     let all: Vec<[f64; 2]> = series.clean.iter().chain(&series.faulted).copied().collect();
     let (unit, si) = unit(series.quantity, &all);
@@ -451,7 +451,7 @@ circle.clean{fill:#fff;stroke:#c4500a;stroke-width:1.4}circle.faulted,circle.dif
 path.clean{stroke:#f0a04b}path.faulted,path.difference{stroke:#5cb8ee}\
 circle.clean{fill:#14181d;stroke:#f0a04b}circle.faulted,circle.difference{fill:#5cb8ee}}";
 
-fn svg(kind: &Kind, panels: &[Panel<'_>]) -> Markup {
+fn svg(kind: &FaultKind, panels: &[Panel<'_>]) -> Markup {
     let dots = panels.first().is_some_and(|panel| panel.dots);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) }

@@ -5,7 +5,7 @@ use crate::fault_words::{acts, lasts};
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::names::suggestion;
-use octant_faults::catalogue::{Family, Kind, Lasts, Parameter};
+use octant_faults::catalogue::{Family, FaultKind, Lasts, FaultParameter};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
 use octant_requirements::Verdict;
@@ -110,17 +110,17 @@ struct ParameterRow {
 }
 
 impl Row {
-    fn of(kind: &'static Kind) -> Self {
+    fn of(kind: &'static FaultKind) -> Self {
         Self::new(&Page::of(kind))
     }
 
-    fn of_connection(kind: &'static connection::Kind) -> Self {
+    fn of_connection(kind: &'static connection::ConnectionFaultKind) -> Self {
         Self::new(&Page::of_connection(kind))
     }
 
     fn new(page: &Page) -> Self {
         let takes = octant_scenario::fault_parameters(page.name);
-        let parameter = |parameter: &'static Parameter| ParameterRow {
+        let parameter = |parameter: &'static FaultParameter| ParameterRow {
             name: parameter.name,
             takes: takes
                 .iter()
@@ -152,7 +152,7 @@ struct Page {
     lasts: Lasts,
     summary: &'static str,
     model: &'static str,
-    parameters: &'static [Parameter],
+    parameters: &'static [FaultParameter],
     /// Place of its entry.
     written_in: &'static str,
 }
@@ -161,7 +161,7 @@ struct Page {
 const CONNECTION: &str = "connection of FMUs";
 
 impl Page {
-    fn of(kind: &'static Kind) -> Self {
+    fn of(kind: &'static FaultKind) -> Self {
         Self {
             name: kind.name,
             family: kind.family.name(),
@@ -174,7 +174,7 @@ impl Page {
         }
     }
 
-    fn of_connection(kind: &'static connection::Kind) -> Self {
+    fn of_connection(kind: &'static connection::ConnectionFaultKind) -> Self {
         Self {
             name: kind.name,
             family: CONNECTION,

@@ -17,8 +17,8 @@ mod with_server {
     use octant_base::interrupt;
     use octant_requirements::Verdict;
     use octant_watch::follow::Follow;
-    use octant_watch::foxglove::{ServeError, Server};
-    use octant_watch::place::Place;
+    use octant_watch::foxglove::{FoxgloveServeError, FoxgloveServer};
+    use octant_watch::place::RunPlace;
     use octant_watch::plain;
     use std::path::Path;
     use std::sync::Arc;
@@ -29,8 +29,8 @@ mod with_server {
     /// Interval of the polls: the recording grows four times a second.
     const LOOK: Duration = Duration::from_millis(100);
 
-    fn start(address: &str) -> Result<Server, Failure> {
-        let server = Server::start(address).map_err(|error: ServeError| {
+    fn start(address: &str) -> Result<FoxgloveServer, Failure> {
+        let server = FoxgloveServer::start(address).map_err(|error: FoxgloveServeError| {
             let message = format!("failed to {error}");
             if error.is_bench() { Failure::bench(message) } else { Failure::input(message) }
         })?;
@@ -63,7 +63,7 @@ mod with_server {
 
     /// Server beside a run.
     pub(crate) struct Live {
-        server: Option<Server>,
+        server: Option<FoxgloveServer>,
         done: Arc<AtomicBool>,
         thread: Option<JoinHandle<()>>,
     }
@@ -77,7 +77,7 @@ mod with_server {
 
         /// Serves the run that is written in this folder, on a thread of its own, from outside.
         pub(crate) fn follow(&mut self, folder: &Path) -> Result<(), Failure> {
-            let place = Place::of(folder).map_err(|e| Failure::bench(format!("failed to {e}")))?;
+            let place = RunPlace::of(folder).map_err(|e| Failure::bench(format!("failed to {e}")))?;
             let Some(mut server) = self.server.take() else { return Ok(()) };
             let (mut follow, done) = (Follow::new(place), Arc::clone(&self.done));
             let work = move || {

@@ -7,9 +7,9 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
 use octant_run::drive::Ended;
-use octant_run::minimise::{Outcome, Step, minimise};
-use octant_run::{MethodRun, Recording, assemble, run_method};
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_run::minimise::{SetOutcome, SearchStep, minimise};
+use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use octant_score::summary::Summary;
 use serde::Serialize;
@@ -74,7 +74,7 @@ struct Minimised {
     /// Ids of the smallest set.
     minimal: Vec<String>,
     /// Every set that was tried, by numbers into `faults`, in order.
-    trail: Vec<Step>,
+    trail: Vec<SearchStep>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -93,14 +93,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // At most two to the power of the number of faults can be tried; delta debugging needs far
     // fewer.
     let control = Control::default();
-    let draws = Draws::of(&scenario, &Seeded(seed));
+    let draws = DrawnValues::of(&scenario, &Seeded(seed));
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let (minimal, trail) = with_progress(std::slice::from_ref(&control), None, sample_s, || {
         let twins = twins(&scenario, seed, &control)?;
         minimise(ids.len(), |set| outcome(&scenario, seed, set, &twins, &broken, &control))
     })?;
     let Some(minimal) = minimal else {
-        let whole = trail.first().is_some_and(|step| step.outcome == Outcome::Breaks);
+        let whole = trail.first().is_some_and(|step| step.outcome == SetOutcome::Breaks);
         return Err(Failure::input(format!(
             "failed to minimise {}: {} {}",
             arguments.run.display(),
@@ -147,7 +147,7 @@ fn twins(
 ) -> Result<Vec<Arc<MethodRun>>, Failure> {
     let clean = scenario.without_faults();
     methods(scenario)
-        .map(|method| Ok(Arc::new(run(&clean, method, seed, Recording::Hash, control)?)))
+        .map(|method| Ok(Arc::new(run(&clean, method, seed, StreamKeeping::Hash, control)?)))
         .collect()
 }
 
@@ -155,7 +155,7 @@ fn run(
     scenario: &Scenario,
     method: Method,
     seed: u64,
-    recording: Recording<'_>,
+    recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, Failure> {
     let run = run_method(scenario, method, seed, recording, control)?;
@@ -176,22 +176,22 @@ fn outcome(
     twins: &[Arc<MethodRun>],
     broken: &Broken,
     control: &Control,
-) -> Result<Outcome, Failure> {
+) -> Result<SetOutcome, Failure> {
     let some = scenario.with_faults(|i| set.contains(&i));
     if some.station(seed).is_err() {
-        return Ok(Outcome::Impossible);
+        return Ok(SetOutcome::Impossible);
     }
     let mut runs = Vec::with_capacity(twins.len());
     for (method, twin) in methods(scenario).zip(twins) {
-        let mut run = run(&some, method, seed, Recording::None, control)?;
+        let mut run = run(&some, method, seed, StreamKeeping::None, control)?;
         run.twin = (!set.is_empty()).then(|| Arc::clone(twin));
         runs.push(run);
     }
     let mut runs = runs.into_iter();
-    let Some(primary) = runs.next() else { return Ok(Outcome::Impossible) };
+    let Some(primary) = runs.next() else { return Ok(SetOutcome::Impossible) };
     let run = assemble(&some, seed, primary, runs.next())
         .map_err(|error| Failure::bench(format!("failed to judge a set of faults: {error}")))?;
-    Ok(if broken.holds(&run.summary) { Outcome::Breaks } else { Outcome::Holds })
+    Ok(if broken.holds(&run.summary) { SetOutcome::Breaks } else { SetOutcome::Holds })
 }
 
 fn summary_of(run: &Path) -> Result<Summary, Failure> {
@@ -250,9 +250,9 @@ fn text(result: &Minimised, folder: &Path) -> String {
         let ids: Vec<&str> = step.faults.iter().map(|i| result.faults[*i].as_str()).collect();
         let set = if ids.is_empty() { "no fault".to_owned() } else { ids.join(", ") };
         let came = match step.outcome {
-            Outcome::Breaks => "breaks",
-            Outcome::Holds => "holds",
-            Outcome::Impossible => "can't be run: a fault waits for one that is not in the set",
+            SetOutcome::Breaks => "breaks",
+            SetOutcome::Holds => "holds",
+            SetOutcome::Impossible => "can't be run: a fault waits for one that is not in the set",
         };
         out += &format!("  {came}: {set}\n");
     }

@@ -9,15 +9,15 @@ use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
 use octant_base::interrupt;
 use octant_campaign::case;
-use octant_campaign::execute::{Done, Event, Options, Shard, execute};
+use octant_campaign::execute::{CaseDone, ExecutionEvent, ExecuteOptions, Shard, execute};
 use octant_campaign::plan::Plan;
 use octant_campaign::{merge, results, status};
-use octant_evidence::manifest::{Host, operator};
+use octant_evidence::manifest::{Machine, operator};
 use octant_nightly::accept::{self, Baseline, accept as accept_night};
-use octant_nightly::compare::{Limits, Side, compare};
+use octant_nightly::compare::{ChangeThresholds, NightSide, compare};
 use octant_nightly::history::History;
 use octant_nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_name};
-use octant_nightly::render::Report;
+use octant_nightly::render::NightReport;
 use octant_nightly::suite::{self, SuiteResult};
 use octant_nightly::trend;
 use octant_requirements::Verdict;
@@ -121,17 +121,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     night.ended = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
     let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
-    let limits = Limits { alpha: arguments.alpha, least: arguments.least };
+    let limits = ChangeThresholds { alpha: arguments.alpha, least: arguments.least };
     let rerun = |campaign: &str, case: &str| {
         format!("octant campaign case {} {case}", folder.join(campaign).display())
     };
     let against = |baseline: &Baseline| {
-        let before = Side { night: &baseline.night, rows: &baseline.rows };
-        compare(before, Side { night: &night, rows: &rows }, limits, &rerun)
+        let before = NightSide { night: &baseline.night, rows: &baseline.rows };
+        compare(before, NightSide { night: &night, rows: &rows }, limits, &rerun)
     };
     let comparison = baseline.as_ref().map(against);
     let before = baseline.as_ref().map(|b| &b.night);
-    let report = Report::new(&night, before, comparison, arguments.first);
+    let report = NightReport::new(&night, before, comparison, arguments.first);
     all.put(&night, report.verdict.name(), &rows, report.comparison.as_ref());
     all.write(history).map_err(|error| Failure::bench(error).failed())?;
     let json = report.to_json().map_err(|error| Failure::bench(error).failed())?;
@@ -261,7 +261,7 @@ fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failur
         started: humantime::format_rfc3339_seconds(now).to_string(),
         ended: None,
         program,
-        host: Host::this(),
+        host: Machine::this(),
         suite_blake3: inputs.suite_blake3.clone(),
         suite: Vec::new(),
         campaigns: campaigns.collect(),
@@ -322,8 +322,8 @@ fn run_all(
     }
     for (name, plan) in &inputs.plans {
         let into = folder.join(name);
-        let tell = |event: &Event| {
-            if let Event::Done(Done { index, verdict, reason, .. }) = event
+        let tell = |event: &ExecutionEvent| {
+            if let ExecutionEvent::Done(CaseDone { index, verdict, reason, .. }) = event
                 && *verdict > Verdict::Inconclusive
             {
                 let case = plan.cases.get(*index).map_or("", |case| case.id.as_str());
@@ -331,7 +331,7 @@ fn run_all(
                 note!("{name}: case {case}: {}: {reason}", verdict.name());
             }
         };
-        let mut options = Options {
+        let mut options = ExecuteOptions {
             folder: &into,
             program: &inputs.program,
             jobs: inputs.jobs,
@@ -361,7 +361,7 @@ fn conclude(
     folder: &Path,
     program: &Path,
     cancel: &AtomicBool,
-) -> Result<status::Status, Failure> {
+) -> Result<status::CampaignStatus, Failure> {
     let failed = |error: octant_campaign::table::TableError| Failure::bench(error).failed();
     let end = match &plan.stop {
         Some(rule) => {
@@ -377,7 +377,7 @@ fn conclude(
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let again = folder.with_file_name(format!(".{name}.again"));
     remove(&again)?;
-    let options = Options {
+    let options = ExecuteOptions {
         folder: &again,
         program,
         jobs: 1,

@@ -7,17 +7,17 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::number::significant;
-use octant_calibration::config::{Config, Estimator, StaticIntervals};
+use octant_calibration::config::{CoreConfig, Estimator, StaticIntervals};
 use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
-use octant_observe::covariance::{AnalysisError, Drift, predict, state_name};
+use octant_observe::covariance::{AnalysisError, PredictedDrift, predict, state_name};
 use octant_observe::ensemble::state_unit;
 use octant_observe::static_rank;
 use octant_requirements::Verdict;
 use octant_run::method::label;
-use octant_sample::parameters::Group;
-use octant_scenario::{Distribution, Method, Motion, Scenario};
+use octant_sample::parameters::ParameterGroup;
+use octant_scenario::{ParameterDistribution, Method, MotionSpec, Scenario};
 use octant_source::configure::configurations;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -110,8 +110,8 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
         ));
     }
     let mean = match &scenario.motion {
-        Motion::Static(mean) => *mean,
-        Motion::Dockside(ship) => ship.mean,
+        MotionSpec::Static(mean) => *mean,
+        MotionSpec::Dockside(ship) => ship.mean,
     };
     let stops: Vec<(f64, f64)> =
         calibration.sequence.stops().iter().map(|s| (s.azimuth_rad, s.roll_rad)).collect();
@@ -123,7 +123,7 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
         Ok(prediction) => {
             let estimated = |state: usize| match &calibration.estimator {
                 Estimator::Kalman(kalman) => {
-                    state < PARAMETERS || kalman.estimated[Group::of(state - PARAMETERS) as usize]
+                    state < PARAMETERS || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize]
                 }
                 _ => true,
             };
@@ -157,7 +157,7 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
     })
 }
 
-fn row(drift: &Drift) -> DriftRow {
+fn row(drift: &PredictedDrift) -> DriftRow {
     DriftRow {
         hours: drift.hours,
         latitude_sigma_arcmin: drift.latitude_arcmin,
@@ -167,7 +167,7 @@ fn row(drift: &Drift) -> DriftRow {
 
 /// Returns the true standard deviations, from the scenario's draws. A constant counts with its
 /// magnitude.
-fn true_sigmas(scenario: &Scenario, config: &Config) -> [f64; STATE_COUNT] {
+fn true_sigmas(scenario: &Scenario, config: &CoreConfig) -> [f64; STATE_COUNT] {
     let mut sigmas = [0.0; STATE_COUNT];
     if let Some(calibration) = &config.calibration
         && let Estimator::Kalman(kalman) = &calibration.estimator
@@ -175,13 +175,13 @@ fn true_sigmas(scenario: &Scenario, config: &Config) -> [f64; STATE_COUNT] {
         // Attitude, velocity and position start with errors of the size of the prior.
         sigmas = prior_sigmas(kalman);
     }
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let range = group.range();
         let group_sigmas = &mut sigmas[PARAMETERS..][range.clone()];
         match &scenario.parameters[group as usize] {
-            Distribution::Normal(sigma) => group_sigmas.fill(*sigma),
-            Distribution::Uniform(half_width) => group_sigmas.fill(half_width / 3f64.sqrt()),
-            Distribution::Constant(values) => {
+            ParameterDistribution::Normal(sigma) => group_sigmas.fill(*sigma),
+            ParameterDistribution::Uniform(half_width) => group_sigmas.fill(half_width / 3f64.sqrt()),
+            ParameterDistribution::Constant(values) => {
                 for (i, sigma) in group_sigmas.iter_mut().enumerate() {
                     *sigma = values.get(i).or(values.first()).map_or(0.0, |v| v.abs());
                 }

@@ -13,12 +13,12 @@ use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
-use octant_report::{Provenance, ReportData};
+use octant_report::{ReportProvenance, ReportData};
 use octant_requirements::Verdict;
-use octant_run::done::Plan;
+use octant_run::done::PlannedWork;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use octant_scenario::Scenario;
 use octant_score::numerics::differs;
 use octant_score::rederive;
@@ -127,7 +127,7 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
     let mut epochs = Epochs::new(recording);
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
-    let mut watcher = Watcher::new(Plan::lasting(scenario));
+    let mut watcher = Watcher::new(PlannedWork::lasting(scenario));
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };
@@ -166,12 +166,12 @@ fn truth(summary: &Summary) -> Option<Parameters> {
     let calibration = summary.calibration.as_ref()?;
     let mut all = [0.0; NAMES.len()];
     for (i, name) in NAMES.iter().enumerate() {
-        all[i] = calibration.parameters.get(*name)?.r#true? * Group::of(i).si_per_unit();
+        all[i] = calibration.parameters.get(*name)?.r#true? * ParameterGroup::of(i).si_per_unit();
     }
     Some(Parameters::from_array(&all))
 }
 
 /// Reads the provenance of a run from its manifest.
-pub(super) fn provenance(manifest: &Manifest) -> Provenance {
-    Provenance { entries: manifest.entries(), rerun: manifest.rerun.clone() }
+pub(super) fn provenance(manifest: &Manifest) -> ReportProvenance {
+    ReportProvenance { entries: manifest.entries(), rerun: manifest.rerun.clone() }
 }

@@ -6,14 +6,14 @@ use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
 use octant_base::control::Control;
-use octant_cosim::experiment::Said;
-use octant_cosim::order::Order;
-use octant_cosim::run::{PrepareError, Prepared, Request};
-use octant_cosim::summary::{Ended, FmuResult};
+use octant_cosim::experiment::GivenSettings;
+use octant_cosim::order::SteppingOrder;
+use octant_cosim::run::{PrepareError, PreparedSystem, Request};
+use octant_cosim::summary::{SystemEnded, FmuResult};
 use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
-use octant_fmu_host::instance::Place;
+use octant_fmu_host::instance::ProcessPlace;
 use octant_requirements::Verdict;
-use octant_scenario::quantity::{Dimension, parse};
+use octant_scenario::quantity::{UnitDimension, parse};
 use octant_score::junit::junit_of;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -27,7 +27,7 @@ pub(super) struct SystemArguments {
     faults: Option<PathBuf>,
     /// Order of the FMUs: jacobi, or gauss-seidel=plant,calibrator.
     #[arg(long, value_name = "ORDER")]
-    order: Option<Order>,
+    order: Option<SteppingOrder>,
     /// Communication step, such as "5 ms".
     #[arg(long, value_name = "TIME")]
     step: Option<String>,
@@ -64,8 +64,8 @@ impl SystemArguments {
         given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
     }
 
-    fn said(&self) -> Result<Said, Failure> {
-        Ok(Said {
+    fn said(&self) -> Result<GivenSettings, Failure> {
+        Ok(GivenSettings {
             start_s: time("--start", self.start.as_deref())?,
             stop_s: time("--stop", self.stop.as_deref())?,
             step_s: time("--step", self.step.as_deref())?,
@@ -76,7 +76,7 @@ impl SystemArguments {
 fn time(option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
     match parse(text) {
-        Ok(quantity) if quantity.is(Dimension::TIME) => Ok(Some(quantity.si)),
+        Ok(quantity) if quantity.is(UnitDimension::TIME) => Ok(Some(quantity.si)),
         _ => Err(Failure::input(format!(
             "{option}: found {text:?}, expected a time such as \"10 min\""
         ))),
@@ -106,8 +106,8 @@ pub(super) fn command(
     folder: impl FnOnce() -> Result<RunFolder, Failure>,
 ) -> Result<Verdict, Failure> {
     let key = crate::signing::signing_key()?;
-    let place = if arguments.in_process { Place::ThisProcess } else { Place::OwnProcess };
-    let prepared = Prepared::new(Request {
+    let place = if arguments.in_process { ProcessPlace::ThisProcess } else { ProcessPlace::OwnProcess };
+    let prepared = PreparedSystem::new(Request {
         path: shared.path.to_owned(),
         said: arguments.said()?,
         order: arguments.order.clone(),
@@ -171,13 +171,13 @@ pub(super) fn command(
     };
     Manifest::write(folder.path(), &facts)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;
-    let place = if matches!(summary.ended, Ended::Interrupted { .. }) {
+    let place = if matches!(summary.ended, SystemEnded::Interrupted { .. }) {
         // An unfinished run keeps the name of a partial folder.
         folder.path().to_owned()
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
-    if let Ended::Failed { reason, .. } = &summary.ended {
+    if let SystemEnded::Failed { reason, .. } = &summary.ended {
         // With --json stdout is for programs, and the folder of a failed job may be gone.
         note!("octant: {reason}");
         note!("octant: the run broke off; the recorded part is in {}", place.display());

@@ -7,10 +7,10 @@ use octant_recorder::Event;
 use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
 use octant_run::method::planned_of;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use octant_score::parameters::{nees, score, worst_normalized_error};
-use octant_score::summary::{HeightChannel, Navigation, ParameterScore};
+use octant_score::summary::{HeightChannel, NavigationScore, ParameterScore};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ struct Scores {
     nees: BTreeMap<String, f64>,
     worst_normalized_error: Option<f64>,
     parameters: BTreeMap<String, ParameterScore>,
-    navigation: Option<Navigation>,
+    navigation: Option<NavigationScore>,
     /// First rule that the unit's answers broke; the scores cover the time before it.
     misbehaved: Option<String>,
 }
@@ -76,7 +76,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ),
         None => None,
     };
-    let draws = Draws::of(&scenario, &Seeded(seed));
+    let draws = DrawnValues::of(&scenario, &Seeded(seed));
     let truth = true_parameters(path, &scenario)?.then_some(draws.parameters);
     let parameters = watcher
         .last_parameters

@@ -9,8 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::interrupt;
 use octant_campaign::plan;
 use octant_requirements::Verdict;
-use octant_selftest::judge::Judged;
-use octant_selftest::record::{CaseRecord, FILE_NAME, Record, write};
+use octant_selftest::judge::CaseVerdict;
+use octant_selftest::record::{CaseRecord, FILE_NAME, SelftestRecord, write};
 use octant_selftest::{answers, cases, run};
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -63,7 +63,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let tell = |case: &CaseRecord| {
         bar.inc(1);
         bar.set_message(case.id);
-        if case.verdict == Judged::Alarm {
+        if case.verdict == CaseVerdict::Alarm {
             let line = format!("ALARM: {}: {}", case.id, case.found);
             if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
         }
@@ -71,7 +71,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
     bar.finish_and_clear();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
-    let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
+    let record = SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;
     let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
     for path in arguments.out.iter().chain(&of_campaign) {
@@ -83,7 +83,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 /// Returns the verdict of the exit status; a status that isn't a verdict's becomes a failure with a
 /// message.
-fn conclude(record: &Record) -> Result<Verdict, Failure> {
+fn conclude(record: &SelftestRecord) -> Result<Verdict, Failure> {
     let verdict = Verdict::ALL.into_iter().find(|v| v.exit_code() == record.exit_code());
     verdict.ok_or_else(|| Failure {
         status: record.exit_code(),

@@ -12,7 +12,7 @@ use octant_realtime::schedule::{self, Wish};
 use octant_requirements::Verdict;
 use octant_run::method::{MethodError, SetupError, core_of};
 use octant_scenario::{Method, Scenario};
-use octant_wire::message::Pacing;
+use octant_wire::message::StepPacing;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -57,7 +57,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let mut notice = |notice: &Notice| {
         note!("octant: {notice}");
         match notice {
-            Notice::Began { pacing: Pacing::RealTime, .. } => {
+            Notice::Began { pacing: StepPacing::RealTime, .. } => {
                 let wish = Wish { priority: Some(79), lock_memory: false, cpu: None };
                 granted = Some(schedule::apply(&wish));
             }

@@ -5,7 +5,7 @@ use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
 use octant_recorder::Recorder;
-use octant_run::done::Plan;
+use octant_run::done::PlannedWork;
 use octant_run::drive::{Line, drive_in_time};
 use octant_run::method::{MethodError, SetupError, faulted};
 use octant_run::watch::Watcher;
@@ -68,7 +68,7 @@ fn watched(
     let mut source = WatchedSource { source, seen: Rc::clone(&seen) };
     let endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
     let mut endpoint = WatchedEndpoint { endpoint, seen: Rc::clone(&seen) };
-    let plan = Plan::of(scenario, Method::Primary, &core, Tells::ALL, None);
+    let plan = PlannedWork::of(scenario, Method::Primary, &core, Tells::ALL, None);
     let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(plan));
     let control = Control::default();
     let mut faulted = faulted(scenario, seed)?;

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
-use octant_campaign::sweep::{Axis, SweepError, cells_of, indices, sweep};
+use octant_campaign::sweep::{SweepAxis, SweepError, cells_of, indices, sweep};
 use octant_campaign::sweep_page;
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
@@ -120,7 +120,7 @@ fn the_fault(scenario: &Scenario, arguments: &Arguments) -> Result<String, Failu
 }
 
 /// Parses `KEY=V1,V2,...`.
-fn axis(text: &str) -> Result<Axis, Failure> {
+fn axis(text: &str) -> Result<SweepAxis, Failure> {
     let wrong = || {
         Failure::input(format!(
             "failed to read --over {text:?}: expected KEY=VALUE,VALUE,... such as \
@@ -134,7 +134,7 @@ fn axis(text: &str) -> Result<Axis, Failure> {
     if key.trim().is_empty() || values.iter().any(String::is_empty) {
         return Err(wrong());
     }
-    Ok(Axis { key: key.trim().to_owned(), values })
+    Ok(SweepAxis { key: key.trim().to_owned(), values })
 }
 
 /// Returns the command line that makes the sweep again.

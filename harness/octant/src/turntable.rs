@@ -5,10 +5,10 @@ use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_requirements::Verdict;
-use octant_scenario::{Dimension, Scenario, quantity_of};
+use octant_scenario::{UnitDimension, Scenario, quantity_of};
 use octant_turntable::simulate::listen;
 use octant_turntable::{
-    Axis, AxisLimits, Dialect, Error, Limits, Move, Plan, Settings, Status, check_port, look,
+    TableAxis, AxisLimits, Dialect, Error, TableLimits, Move, TablePlan, DriverSettings, TableStatus, check_port, look,
     move_by_hand, press, run_guard, stop_by_hand,
 };
 use serde_json::json;
@@ -97,7 +97,7 @@ enum AxisName {
     Roll,
 }
 
-impl From<AxisName> for Axis {
+impl From<AxisName> for TableAxis {
     fn from(name: AxisName) -> Self {
         match name {
             AxisName::Azimuth => Self::Azimuth,
@@ -117,7 +117,7 @@ fn failure(error: &Error) -> Failure {
 }
 
 /// Returns the plan of a table, and whether its limits are known.
-fn plan(table: &str, dialect: Option<&Path>) -> Result<(Plan, bool), Failure> {
+fn plan(table: &str, dialect: Option<&Path>) -> Result<(TablePlan, bool), Failure> {
     if table.starts_with("tcp:") || table.starts_with("serial:") {
         check_port(table).map_err(Failure::input)?;
         // Without limits no angle is commanded.
@@ -128,11 +128,11 @@ fn plan(table: &str, dialect: Option<&Path>) -> Result<(Plan, bool), Failure> {
             acceleration_radps2: 1.0,
         };
         let dialect = dialect.unwrap_or(Path::new(Dialect::BUILT_IN));
-        let plan = Plan {
+        let plan = TablePlan {
             port: table.to_owned(),
             dialect: Dialect::load(dialect).map_err(|error| failure(&error))?,
-            settings: Settings {
-                limits: Limits { axes: [axis; 2] },
+            settings: DriverSettings {
+                limits: TableLimits { axes: [axis; 2] },
                 reply_within: Duration::from_millis(500),
                 watchdog: None,
             },
@@ -159,7 +159,7 @@ fn plan(table: &str, dialect: Option<&Path>) -> Result<(Plan, bool), Failure> {
 }
 
 /// Parses an angle or a rate on the command line.
-fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Failure> {
+fn quantity(name: &str, text: &str, dimension: UnitDimension) -> Result<f64, Failure> {
     let found = quantity_of(text).ok().filter(|quantity| quantity.is(dimension));
     found.map(|quantity| quantity.si).ok_or_else(|| {
         Failure::input(format!(
@@ -169,19 +169,19 @@ fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Failure
     })
 }
 
-fn moved(plan: &Plan, moves: &[Move]) -> Result<Status, Failure> {
+fn moved(plan: &TablePlan, moves: &[Move]) -> Result<TableStatus, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let mut guard = octant_base::child::command(program);
     move_by_hand(plan, moves, guard.args(["turntable", "guard"])).map_err(|error| failure(&error))
 }
 
-fn told(status: &Status, as_json: bool) -> Result<(), Failure> {
+fn told(status: &TableStatus, as_json: bool) -> Result<(), Failure> {
     let words = |value: Option<bool>, yes: &'static str, no: &'static str| {
         value.map_or("", |value| if value { yes } else { no })
     };
     if as_json {
-        let axis = |axis: Axis| {
+        let axis = |axis: TableAxis| {
             let found = status.of(axis);
             json!({
                 "angle_deg": found.angle_rad.to_degrees(),
@@ -192,9 +192,9 @@ fn told(status: &Status, as_json: bool) -> Result<(), Failure> {
                 "fault": found.fault,
             })
         };
-        return print_json(&json!({ "azimuth": axis(Axis::Azimuth), "roll": axis(Axis::Roll) }));
+        return print_json(&json!({ "azimuth": axis(TableAxis::Azimuth), "roll": axis(TableAxis::Roll) }));
     }
-    for axis in Axis::ALL {
+    for axis in TableAxis::ALL {
         let found = status.of(axis);
         let rate = found
             .rate_radps
@@ -223,14 +223,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
         Action::Home { table, axis, json } => {
             let (plan, _) = plan(&table.table, table.dialect.as_deref())?;
-            let axes = axis.map_or(Axis::ALL.to_vec(), |axis| vec![axis.into()]);
+            let axes = axis.map_or(TableAxis::ALL.to_vec(), |axis| vec![axis.into()]);
             let moves: Vec<Move> = axes.into_iter().map(Move::Home).collect();
             told(&moved(&plan, &moves)?, *json)?;
         }
         Action::Goto { table, axis, angle, rate, json } => {
-            let angle_rad = quantity("ANGLE", angle, Dimension::ANGLE)?;
+            let angle_rad = quantity("ANGLE", angle, UnitDimension::ANGLE)?;
             let rate = rate.as_deref();
-            let rate = rate.map(|rate| quantity("--rate", rate, Dimension::ANGULAR_RATE));
+            let rate = rate.map(|rate| quantity("--rate", rate, UnitDimension::ANGULAR_RATE));
             let (plan, limited) = plan(&table.table, table.dialect.as_deref())?;
             if !limited {
                 return Err(Failure::input(format!(

@@ -11,7 +11,7 @@ use octant_evidence::attestation;
 use octant_evidence::disposition;
 use octant_evidence::files;
 use octant_evidence::inside::{self, Inside};
-use octant_evidence::manifest::{self, Difference, Manifest};
+use octant_evidence::manifest::{self, FolderDifference, Manifest};
 use octant_evidence::signature;
 use octant_requirements::Verdict;
 use serde::Serialize;
@@ -166,7 +166,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         differences.push("the folder is a .partial: its run didn't finish".to_owned());
     }
     let found = manifest.verify(folder).map_err(|error| Failure::bench(error).failed())?;
-    differences.extend(found.iter().map(Difference::to_string));
+    differences.extend(found.iter().map(FolderDifference::to_string));
     let there = std::fs::symlink_metadata(folder.join(signature::FILE_NAME)).is_ok();
     if manifest.signature.is_none() && there && signed_by.is_none() {
         differences.push(format!("{} was added: the manifest names no key", signature::FILE_NAME));
@@ -180,7 +180,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let second = second(arguments, &manifest, &mut differences)?;
     // A folder with a FIFO in it is reported, and its contents are not opened.
-    let opened = !found.iter().any(|difference| matches!(difference, Difference::NoFile(..)));
+    let opened = !found.iter().any(|difference| matches!(difference, FolderDifference::NoFile(..)));
     let inside = match &manifest.campaign {
         _ if !opened => Inside::default(),
         Some(facts) => campaign::inside::look(folder, facts),

@@ -8,7 +8,7 @@ use crate::terminal::print;
 use clap::Args;
 use octant_requirements::Verdict;
 use octant_watch::follow::{Follow, Stage};
-use octant_watch::place::Place;
+use octant_watch::place::RunPlace;
 use octant_watch::plain;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -46,8 +46,8 @@ pub(super) struct Arguments {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let place = match &arguments.run {
-        Some(run) => Place::of(run),
-        None => Place::newest(Path::new(RUNS)),
+        Some(run) => RunPlace::of(run),
+        None => RunPlace::newest(Path::new(RUNS)),
     };
     let place = place.map_err(|error| Failure::input(format!("failed to {error}")))?;
     let follow = Follow::new(place);

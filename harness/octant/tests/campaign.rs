@@ -3,10 +3,10 @@
 
 use crate::common::program::{OCTANT, program};
 use octant_campaign::case::{self, CaseResult};
-use octant_campaign::execute::{Event, Options, Outcome, Shard, execute};
+use octant_campaign::execute::{ExecutionEvent, ExecuteOptions, ExecutionSummary, Shard, execute};
 use octant_campaign::merge::{self, MergeError};
-use octant_campaign::plan::{Plan, Written};
-use octant_campaign::table::{Table, Value};
+use octant_campaign::plan::{Plan, PlanWritten};
+use octant_campaign::table::{ExistingTable, ColumnValue};
 use octant_campaign::{results, status};
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ impl Bench {
 }
 
 /// Runs a part of a plan, and writes its tables.
-fn run(plan: &Plan, folder: &Path, shard: Shard, jobs: usize) -> Outcome {
+fn run(plan: &Plan, folder: &Path, shard: Shard, jobs: usize) -> ExecutionSummary {
     let outcome = begin(plan, folder, shard, jobs, &AtomicBool::new(false), false).unwrap();
     let cases = (0..plan.cases.len()).filter(|index| shard.has(*index));
     results::tables(plan, folder, cases, |table| merge::part(folder, shard, table)).unwrap();
@@ -97,9 +97,9 @@ fn begin(
     jobs: usize,
     cancel: &AtomicBool,
     again: bool,
-) -> Result<Outcome, String> {
+) -> Result<ExecutionSummary, String> {
     let program = Path::new(OCTANT);
-    let options = Options { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
+    let options = ExecuteOptions { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
 }
 
@@ -132,7 +132,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     loop {
         let cancel = AtomicBool::new(false);
         let program = Path::new(OCTANT);
-        let options = Options {
+        let options = ExecuteOptions {
             folder: &torn,
             program,
             jobs: 2,
@@ -141,8 +141,8 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
             again: false,
             cancel: &cancel,
         };
-        let tell = |event: &Event| {
-            cancel.fetch_or(matches!(event, Event::Done(_)), Ordering::Relaxed);
+        let tell = |event: &ExecutionEvent| {
+            cancel.fetch_or(matches!(event, ExecutionEvent::Done(_)), Ordering::Relaxed);
         };
         let outcome = execute(&plan, &options, &tell).unwrap();
         rounds += 1;
@@ -152,23 +152,23 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
         assert!(outcome.run <= 2, "{outcome:?}");
     }
     assert!(rounds >= 3, "{rounds}");
-    assert_eq!(run(&plan, &torn, Shard::WHOLE, 2), Outcome { skipped: 6, ..Outcome::default() });
+    assert_eq!(run(&plan, &torn, Shard::WHOLE, 2), ExecutionSummary { skipped: 6, ..ExecutionSummary::default() });
     assert!(merged(&plan, &torn) == expected, "interrupted");
 
     // The tables agree with the cases.
-    let table = Table::open(&merge::merged(&whole, "cases")).unwrap();
+    let table = ExistingTable::open(&merge::merged(&whole, "cases")).unwrap();
     assert_eq!((table.rows, table.plan.as_str()), (6, plan.id.as_str()));
     let column = |name: &str| table.column(name).unwrap().unwrap();
     for (row, case) in plan.cases.iter().enumerate() {
-        assert_eq!(column("case").at(row), Some(Value::Text(case.id.as_str().into())));
+        assert_eq!(column("case").at(row), Some(ColumnValue::Text(case.id.as_str().into())));
         let result = CaseResult::read(&case::file(&whole, &case.id)).unwrap();
         let summary = result.summary.unwrap();
         let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
-        assert_eq!(column("navigation.radial_error_nmi.max").at(row), Some(Value::Number(radial)));
-        assert_eq!(column("stream_hash").at(row), Some(Value::Text(summary.stream_hash.into())));
+        assert_eq!(column("navigation.radial_error_nmi.max").at(row), Some(ColumnValue::Number(radial)));
+        assert_eq!(column("stream_hash").at(row), Some(ColumnValue::Text(summary.stream_hash.into())));
         let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".to_owned());
         let fired = column("faults.spike-1.fired").at(row);
-        assert_eq!(fired, spiked.then_some(Value::Boolean(true)));
+        assert_eq!(fired, spiked.then_some(ColumnValue::Boolean(true)));
     }
     let state = status::of(&plan, &whole, Shard::WHOLE).unwrap();
     assert_eq!((state.verdict(), state.open), (Verdict::Pass, 0), "{}", state.text());
@@ -189,7 +189,7 @@ fn errors_of_cases_stay_until_they_are_run_again() {
 }
 
 /// Makes a campaign of two scenarios, the second of which misbehaves, with limits.
-fn one_of_two(other: &str, limits: &str) -> (Bench, Plan, Outcome) {
+fn one_of_two(other: &str, limits: &str) -> (Bench, Plan, ExecutionSummary) {
     let campaign = CAMPAIGN.split("[[factors]]").next().unwrap();
     let second = "[[scenarios]]\nid = \"other\"\nfile = \"other.toml\"\n";
     let campaign = campaign.replace("replicates = 3", "replicates = 1");
@@ -239,8 +239,8 @@ fn a_case_that_wants_too_much_memory_is_one_error_and_the_others_pass() {
 fn a_campaign_that_grows_keeps_its_cases_and_results() {
     let bench = Bench::new(CAMPAIGN);
     let (plan, folder) = (bench.plan(), bench.at("out"));
-    assert_eq!(plan.write(&folder, false).unwrap(), Written::New);
-    assert_eq!(plan.write(&folder, false).unwrap(), Written::There);
+    assert_eq!(plan.write(&folder, false).unwrap(), PlanWritten::New);
+    assert_eq!(plan.write(&folder, false).unwrap(), PlanWritten::There);
     let file = folder.join("plan.json");
     assert_eq!(Plan::read(&file).unwrap(), plan);
 
@@ -255,7 +255,7 @@ fn a_campaign_that_grows_keeps_its_cases_and_results() {
     }
     let error = grown.write(&folder, false).unwrap_err().to_string();
     assert!(error.contains("a plan with 6 of these 15 cases is there"), "{error}");
-    assert_eq!(grown.write(&folder, true).unwrap(), Written::Extended(9));
+    assert_eq!(grown.write(&folder, true).unwrap(), PlanWritten::Extended(9));
     let error = plan.write(&folder, true).unwrap_err().to_string();
     assert!(error.contains("9 of 15 cases are not in this one"), "{error}");
 
@@ -291,7 +291,7 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     run(&plan, &folder, Shard::WHOLE, 2);
     let id = &plan.cases[0].id;
     let bytes = std::fs::read(case::file(&folder, id)).unwrap();
-    assert_eq!(case::keep(&folder, id, &bytes).unwrap(), case::Kept::Same);
+    assert_eq!(case::keep(&folder, id, &bytes).unwrap(), case::StoreOutcome::Same);
 
     // The same case again, with another result.
     let text = String::from_utf8(bytes).unwrap();
@@ -300,7 +300,7 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     other["summary_blake3"] = case::hash_of_summary(&other["summary"]).into();
     let other = format!("{other}\n");
     let kept = case::keep(&folder, id, other.as_bytes()).unwrap();
-    assert!(matches!(kept, case::Kept::Differs(_)), "{kept:?}");
+    assert!(matches!(kept, case::StoreOutcome::Differs(_)), "{kept:?}");
     assert_eq!(std::fs::read_to_string(case::file(&folder, id)).unwrap(), text, "the first stays");
     let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
     assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
@@ -391,7 +391,7 @@ fn every_case_is_told_once() {
     let (there, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let cancel = AtomicBool::new(false);
     let program = Path::new(OCTANT);
-    let options = Options {
+    let options = ExecuteOptions {
         folder: &folder,
         program,
         jobs: 3,
@@ -400,9 +400,9 @@ fn every_case_is_told_once() {
         again: false,
         cancel: &cancel,
     };
-    let tell = |event: &Event| match event {
-        Event::There(count) => _ = there.fetch_add(*count, Ordering::Relaxed),
-        Event::Done(one) => done.lock().unwrap().push(one.index),
+    let tell = |event: &ExecutionEvent| match event {
+        ExecutionEvent::There(count) => _ = there.fetch_add(*count, Ordering::Relaxed),
+        ExecutionEvent::Done(one) => done.lock().unwrap().push(one.index),
     };
     execute(&plan, &options, &tell).unwrap();
     let mut told = std::mem::take(&mut *done.lock().unwrap());
@@ -449,7 +449,7 @@ fn it_ends_where_enough_is_known_wherever_it_ran() {
 #[test]
 fn a_rule_counts_what_is_not_shown_as_broken() {
     use octant_campaign::independence::Shown;
-    use octant_campaign::stop::{Decision, decide};
+    use octant_campaign::stop::{StopDecision, decide};
     let stop = "[stop]\nrequirement = \"NAV-1\"\nevery = 10\n";
     let plan =
         Bench::new(&format!("{CAMPAIGN}{stop}").replace("replicates = 3", "replicates = 200"))
@@ -466,21 +466,21 @@ fn a_rule_counts_what_is_not_shown_as_broken() {
         })
     };
     // 40 evaluations at 95 %: 0.00125 each; 0.95^n falls below it at n = 131 draws of two cases.
-    assert_eq!(decided(&|_| Some(Verdict::Pass)), Decision::Shown { end: 270 });
+    assert_eq!(decided(&|_| Some(Verdict::Pass)), StopDecision::Shown { end: 270 });
     // Draws with the same streams are one draw, whatever their seeds.
     let same = |index: usize| Some(Shown { passed: true, stream: Some((index % 2).to_string()) });
-    assert_eq!(decided_of(&same), Decision::Open { next: 400 });
-    assert_eq!(decided(&|_| Some(Verdict::Inconclusive)), Decision::Refuted { end: 10 });
-    assert_eq!(decided(&|_| Some(Verdict::Error)), Decision::Refuted { end: 10 });
-    assert_eq!(decided(&|_| None), Decision::Open { next: 10 });
+    assert_eq!(decided_of(&same), StopDecision::Open { next: 400 });
+    assert_eq!(decided(&|_| Some(Verdict::Inconclusive)), StopDecision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| Some(Verdict::Error)), StopDecision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| None), StopDecision::Open { next: 10 });
     assert_eq!(
         decided(&|index| (index != 15).then_some(Verdict::Pass)),
-        Decision::Open { next: 20 }
+        StopDecision::Open { next: 20 }
     );
     // One failure in twenty draws is exactly the allowed rate, which is never shown.
     let one_in_20 =
         |index: usize| Some(if index.is_multiple_of(40) { Verdict::Fail } else { Verdict::Pass });
-    assert_eq!(decided(&one_in_20), Decision::Open { next: 400 });
+    assert_eq!(decided(&one_in_20), StopDecision::Open { next: 400 });
 }
 
 /// Requirements of a file, some of them on all cases together.
@@ -523,7 +523,7 @@ verification = \"inspection\"
     assert_eq!(of("NAV-3").verdict, Verdict::Inconclusive, "{}", state.text());
     assert_eq!((state.besides, state.verdict()), (Verdict::Pass, Verdict::Inconclusive));
     assert!(state.text().contains("not verified by runs: DOC-1"), "{}", state.text());
-    let checks = Table::open(&merge::part(&folder, Shard::WHOLE, "checks")).unwrap();
+    let checks = ExistingTable::open(&merge::part(&folder, Shard::WHOLE, "checks")).unwrap();
     assert_eq!(checks.rows, 18);
 
     // The trace, and its form for StrictDoc.

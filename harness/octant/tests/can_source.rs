@@ -2,11 +2,11 @@
 
 use octant_link::port::{Bytes, Pty};
 use octant_sample::{DeviceTime, GimbalAngles, GimbalCommand, Sample, Status};
-use octant_scenario::{Scenario, Source as Kind};
+use octant_scenario::{Scenario, SourceSpec as Kind};
 use octant_source::{Epoch, LiveSource, Source};
 use octant_wire::Message;
-use octant_wire::can::{Format, segments};
-use octant_wire::message::{Role, SampleMessage, Step};
+use octant_wire::can::{CanVersion, segments};
+use octant_wire::message::{EndRole, SampleMessage, StepNumber};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -36,10 +36,10 @@ fn sample(number: u64) -> Sample {
 
 /// Renders the frames of a sample as the adapter sends them.
 fn lines(number: u64) -> String {
-    let step = Step::new((number & 0x7FFF) as u16);
+    let step = StepNumber::new((number & 0x7FFF) as u16);
     let message = Message::Sample(SampleMessage { step, aided: false, sample: sample(number) });
     let mut text = String::new();
-    for frame in segments(&message, Role::Instrument, Format::Classic).unwrap() {
+    for frame in segments(&message, EndRole::Instrument, CanVersion::Classic).unwrap() {
         write!(text, "t{:03X}{:X}", frame.id(), frame.data().len()).unwrap();
         for byte in frame.data() {
             write!(text, "{byte:02X}").unwrap();
@@ -138,7 +138,7 @@ fn what_does_not_go_together_is_refused_with_its_place() {
         let files = "database = \"unit.dbc\"\nmapping = \"unit.toml\"\n";
         let scenario = scenario(folder.path(), "can:can0", files).unwrap();
         let draws =
-            octant_scenario::resolve::Draws::of(&scenario, &octant_scenario::resolve::Seeded(1));
+            octant_scenario::resolve::DrawnValues::of(&scenario, &octant_scenario::resolve::Seeded(1));
         scenario.to_resolved_toml(1, &draws)
     };
     // The file is in another folder.

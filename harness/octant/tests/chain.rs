@@ -6,7 +6,7 @@ use crate::common::program::{ends, octant_in, program};
 use octant_campaign::case;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{Table, Value as Cell, Values, write};
+use octant_campaign::table::{ExistingTable, ColumnValue as Cell, ColumnValues, write};
 use octant_campaign::{merge, results};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -122,13 +122,13 @@ fn a_limit_that_differs_from_the_plan_is_refused() {
 
 /// Changes cells of a table.
 fn edited(path: &Path, column: &str, change: impl Fn(usize, Option<Cell>) -> Option<Cell>) {
-    let table = Table::open(path).unwrap();
-    let all: Vec<Values> = table
+    let table = ExistingTable::open(path).unwrap();
+    let all: Vec<ColumnValues> = table
         .columns
         .iter()
         .map(|(name, kind)| {
             let values = table.column(name).unwrap().unwrap();
-            let mut new = Values::new(*kind);
+            let mut new = ColumnValues::new(*kind);
             for row in 0..table.rows {
                 let value = values.at(row);
                 new.push(if name == column { change(row, value) } else { value });

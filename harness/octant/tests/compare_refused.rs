@@ -4,7 +4,7 @@
 use crate::common::program::program;
 use octant_base::control::Control;
 use octant_report::compare as page;
-use octant_run::paired::{Side, paired};
+use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
 use octant_score::compare::{Maxima, PairedRun, Refusals, compare};
 use std::path::Path;
@@ -30,7 +30,7 @@ const SEEDS: u64 = 8;
 #[test]
 fn refused_seeds_are_a_rate_and_the_rest_is_compared() {
     let scenario = Scenario::parse(SCENARIO, "refused.toml", Path::new(""), &[]).unwrap();
-    let side = |method| Side { scenario: scenario.clone(), method };
+    let side = |method| MethodSide { scenario: scenario.clone(), method };
     let seeds: Vec<u64> = (1..=SEEDS).collect();
     let controls: Vec<Control> = (0..2 * SEEDS).map(|_| Control::default()).collect();
     let found = paired(&side(Method::Baseline), &side(Method::Primary), &seeds, &controls).unwrap();

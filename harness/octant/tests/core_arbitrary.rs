@@ -80,7 +80,7 @@ enum Method {
     Turntable,
 }
 
-fn config(method: Method, gate: u8, coarse: bool) -> Config {
+fn config(method: Method, gate: u8, coarse: bool) -> CoreConfig {
     let mut case = Case::table_1(1, if coarse { SIX } else { EIGHT });
     case.calibration_h = 0.25;
     case.navigation_h = 0.5;

@@ -7,17 +7,17 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIX};
-use octant_calibration::state_machine::Refusal;
+use octant_calibration::state_machine::CalibrationRefusal;
 use octant_calibration::table::CalibrationTable;
 use octant_earth::frames::phi_of;
 use octant_earth::units::*;
 use octant_plant::config as plant;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use octant_sample::{Health, Mode, Parameters, Reference, Status};
 
 const SECOND: u64 = 1_000_000_000 / PERIOD_NS;
 
-fn kalman(config: &mut Config) -> &mut Kalman {
+fn kalman(config: &mut CoreConfig) -> &mut Kalman {
     match &mut config.calibration.as_mut().unwrap().estimator {
         Estimator::Kalman(kalman) => kalman,
         _ => unreachable!(),
@@ -113,7 +113,7 @@ fn four_hours_of_eight_positions_keep_their_published_times() {
 
 #[test]
 fn a_state_switched_off_stays_zero() {
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let case = Case { calibration_h: 0.25, ..Case::table_1(3, SIX) };
         let mut config = case.core();
         kalman(&mut config).estimated[group as usize] = false;
@@ -415,6 +415,6 @@ fn without_a_reference_a_calibration_is_refused() {
         run.step_altered(|sample, _| Some((sample, None)));
         assert!(run.output.sequence < 1801 * SECOND);
     }
-    assert!(matches!(run.core.refusal(), Some(Refusal::AidingLost { .. })));
+    assert!(matches!(run.core.refusal(), Some(CalibrationRefusal::AidingLost { .. })));
     assert_eq!(run.core.parameters(), &Parameters::default());
 }

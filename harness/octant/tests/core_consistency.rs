@@ -9,11 +9,11 @@ use octant_calibration::positions::{Degrees, EIGHT, SIX};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use octant_sample::{Mode, Parameters};
 
 /// Sets the given attitude and velocity to the truth at time 0, with the error that the case draws.
-fn hand_over(plant: &plant::Config, core: &mut Config) {
+fn hand_over(plant: &plant::PlantConfig, core: &mut CoreConfig) {
     let truth = octant_plant::Plant::new(plant).unwrap().truth();
     if let Alignment::Given { q_nb, velocity_mps } = &mut core.alignment {
         let [w, i, j, k] = truth.q_nb;
@@ -35,7 +35,7 @@ fn position_error_arcmin(run: &ClosedLoop) -> [f64; 2] {
 fn squares(run: &ClosedLoop, truth: &Parameters) -> [(f64, f64); 7] {
     let (truth, estimate) = (truth.to_array(), run.core.parameters().to_array());
     let sigma = run.core.sigma();
-    Group::ALL.map(|group| {
+    ParameterGroup::ALL.map(|group| {
         let n = group.range().len() as f64;
         group.range().fold((0.0, 0.0), |(nees, square), i| {
             let error = estimate[i] - truth[i];
@@ -107,7 +107,7 @@ fn a_moored_ship_is_calibrated_with_the_position_of_the_dock() {
     assert!((2.0..3.0).contains(&nis), "{nis}");
     // Limits of the static ensemble, with 20 % for the sway.
     let limits = [8e-4, 2.0, 0.7, f64::INFINITY, 1.0, 2.0, 0.7].map(|limit| 1.2 * limit);
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let mean = |pick: fn(&(f64, f64)) -> f64| {
             all.iter().map(|(_, _, squares)| pick(&squares[group as usize])).sum::<f64>() / n
         };
@@ -135,7 +135,7 @@ fn a_calibration_from_coarse_alignment_is_consistent() {
     println!("coarse alignment: NIS {nis:.3}");
     // The first measurements don't fit: bias and tilt come from the same samples.
     assert!((nis - 3.0).abs() < 0.1, "{nis}");
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let nees = all.iter().map(|(_, _, s)| s[group as usize].0).sum::<f64>() / n;
         println!("{:20} NEES {nees:.2}", group.name());
         // 24 degrees of freedom: 99.9 % within 0.34 and 2.13.
@@ -195,7 +195,7 @@ fn the_other_estimators_end_in_navigation() {
             _ => "external turntable",
         };
         println!("{name} {method}: {mode:?} {refusal:?}, 12 h {worst:.3?} arcmin");
-        for group in Group::ALL {
+        for group in ParameterGroup::ALL {
             let (nees, square) = squares[group as usize];
             println!(
                 "  {:20} NEES {nees:8.2} rms {:.2e} {}",

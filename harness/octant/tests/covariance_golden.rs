@@ -9,8 +9,8 @@ use octant_earth::{Matrix3, UnitQuaternion, Vector3};
 use octant_observe::covariance::{predict, state_name};
 use octant_sample::Parameters;
 
-fn config(positions: &[(f64, f64, f64)], hours: f64, g_dph_per_g: f64) -> Config {
-    Config {
+fn config(positions: &[(f64, f64, f64)], hours: f64, g_dph_per_g: f64) -> CoreConfig {
+    CoreConfig {
         sample_period_ns: 5_000_000,
         site: Site { latitude_rad: 30.5 * DEG, longitude_rad: 0.0, height_m: 0.0 },
         alignment: Alignment::Given {

@@ -4,7 +4,7 @@ use crate::watch::{known, shows};
 use octant_evidence::{Existing, RunFolder};
 use octant_watch::dashboard::{self, Page};
 use octant_watch::follow::{Follow, Stage};
-use octant_watch::place::Place;
+use octant_watch::place::RunPlace;
 use octant_watch::plain;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -21,7 +21,7 @@ fn the_dashboard_shows_a_known_state() {
     let folder = RunFolder::create(&here.path().join("known"), Existing::Refuse).unwrap();
     // The recording is complete, so that all of it is in the file; the run isn't.
     known(&folder).finish().unwrap();
-    let mut follow = Follow::new(Place::of(folder.path()).unwrap());
+    let mut follow = Follow::new(RunPlace::of(folder.path()).unwrap());
     while follow.look(|_, _, _| {}).unwrap() {}
     assert_eq!(follow.stage, Stage::Recorded, "its writer holds the lock, and has no verdict yet");
     let state = &follow.state;

@@ -14,7 +14,7 @@ use octant_sample::parameters::NAMES;
 use octant_scenario::{Method, Scenario};
 use octant_score::judge::judge;
 use octant_score::summary::{
-    Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
+    CalibrationScore, ErrorScore, HealthCounts, HeightChannel, NavigationScore, ParameterScore, RadialScore,
     SCHEMA, Summary,
 };
 use std::collections::BTreeMap;
@@ -99,7 +99,7 @@ impl Bench {
             faults: Vec::new(),
             altered_streams: None,
             method: "eight".to_owned(),
-            calibration: Some(Calibration {
+            calibration: Some(CalibrationScore {
                 positions: "eight".to_owned(),
                 estimator: "kalman".to_owned(),
                 duration_h: 0.4,
@@ -110,7 +110,7 @@ impl Bench {
                 refused: None,
                 health: HealthCounts::default(),
             }),
-            navigation: Some(Navigation {
+            navigation: Some(NavigationScore {
                 duration_h: 1.0,
                 height: HeightChannel::Held,
                 latitude_error_arcmin: score,

@@ -9,7 +9,7 @@ use octant_earth::frames::phi_of;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_observe::ensemble::{Ensemble, ensemble, state_unit};
 use octant_plant::Plant;
-use octant_plant::config::{AidingKind, Config};
+use octant_plant::config::{AidingKind, PlantConfig};
 use octant_sample::{GimbalCommand, Mode};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
@@ -46,12 +46,12 @@ fn attitude(q: [f64; 4]) -> UnitQuaternion<f64> {
 }
 
 /// Makes a run with its drift by the hour.
-fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut Config)) -> Run {
+fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut PlantConfig)) -> Run {
     run_every(scenario, seed, 3600, change)
 }
 
 /// Makes a run with its drift at intervals of `every_s` seconds.
-fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut Config)) -> Run {
+fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut PlantConfig)) -> Run {
     let (mut plant, config, draws) = configurations(scenario, Method::Primary, seed).unwrap();
     change(&mut plant);
     let mut plant = Plant::new(&plant).unwrap();
@@ -100,7 +100,7 @@ fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut 
 }
 
 /// Removes the plant's noise, and keeps its draws.
-fn silent(plant: &mut Config) {
+fn silent(plant: &mut PlantConfig) {
     plant.imu.angle_random_walk = 0.0;
     plant.imu.velocity_random_walk = 0.0;
     match &mut plant.aiding.kind {

@@ -8,7 +8,7 @@ use octant_earth::frames::phi_of;
 use octant_earth::units::*;
 use octant_plant::Plant;
 use octant_sample::GimbalCommand;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// Runs to the last sample before the end of the calibration, when the filter still exists.
 fn calibrate(case: &Case) -> (Plant, Core) {
@@ -51,7 +51,7 @@ fn twenty_seeds_are_consistent() {
         let filter = core.filter().unwrap();
         nis += core.diagnostics().quality.nis_mean / seeds as f64;
         let (truth, estimate) = (truth.to_array(), core.parameters().to_array());
-        for group in Group::ALL {
+        for group in ParameterGroup::ALL {
             let n = group.range().len() as f64 * seeds as f64;
             for i in group.range() {
                 let error = estimate[i] - truth[i];
@@ -80,9 +80,9 @@ fn twenty_seeds_are_consistent() {
             dv_nees += (dv / filter.covariance().sigma(DV + axis)).powi(2) / n;
         }
     }
-    let rms = |group: Group| (square[group as usize]).sqrt() / group.si_per_unit();
+    let rms = |group: ParameterGroup| (square[group as usize]).sqrt() / group.si_per_unit();
     println!("NIS {nis:.3}, NEES phi {phi_nees:.2}, velocity {dv_nees:.2}");
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         println!(
             "{:22} NEES {:.2}  rms {:.3e} {}",
             group.name(),
@@ -98,7 +98,7 @@ fn twenty_seeds_are_consistent() {
     );
 
     assert!((nis - 3.0).abs() <= 0.05, "NIS {nis}");
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let bounds = match group.range().len() {
             3 => 0.5..1.7,
             6 => 0.6..1.5,
@@ -111,12 +111,12 @@ fn twenty_seeds_are_consistent() {
             nees[group as usize]
         );
     }
-    assert!(rms(Group::GyroBias) <= 8e-4);
-    assert!(rms(Group::GyroScale) <= 2.0);
-    assert!(rms(Group::AccelScale) <= 2.0);
-    assert!(rms(Group::GyroMisalignment) <= 0.7);
-    assert!(rms(Group::AccelMisalignment) <= 0.7);
-    assert!(rms(Group::AccelBias) <= 1.0);
+    assert!(rms(ParameterGroup::GyroBias) <= 8e-4);
+    assert!(rms(ParameterGroup::GyroScale) <= 2.0);
+    assert!(rms(ParameterGroup::AccelScale) <= 2.0);
+    assert!(rms(ParameterGroup::GyroMisalignment) <= 0.7);
+    assert!(rms(ParameterGroup::AccelMisalignment) <= 0.7);
+    assert!(rms(ParameterGroup::AccelBias) <= 1.0);
     assert!(tilt.sqrt() <= ARCSEC);
     assert!(azimuth.sqrt() <= 15.0 * ARCSEC);
 }
@@ -124,15 +124,15 @@ fn twenty_seeds_are_consistent() {
 /// Compares six positions without G states and eight with them, 20 seeds, by a shipped scenario. At
 /// 50 Hz, a quarter of the work: drift doesn't depend on the rate. `tests/claims` has the same
 /// cells at 200 Hz.
-fn claim(scenario: &str) -> octant_score::compare::Comparison {
+fn claim(scenario: &str) -> octant_score::compare::MethodComparison {
     use octant_base::control::Control;
-    use octant_run::paired::{Side, paired};
+    use octant_run::paired::{MethodSide, paired};
     use octant_scenario::{Method, Scenario};
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenarios/");
     let rate = ["imu.rate=50 Hz".to_owned()];
     let path = format!("{path}{scenario}");
     let scenario = Scenario::load(std::path::Path::new(&path), &rate).unwrap();
-    let side = |method| Side { scenario: scenario.clone(), method };
+    let side = |method| MethodSide { scenario: scenario.clone(), method };
     let seeds: Vec<u64> = (1..=20).collect();
     let controls: Vec<Control> = (0..40).map(|_| Control::default()).collect();
     let comparison =
@@ -144,7 +144,7 @@ fn claim(scenario: &str) -> octant_score::compare::Comparison {
 /// Compares with the figures of an independent Monte Carlo (arcmin): latitude and longitude at 24 h
 /// and 72 h. Twenty seeds of other draws differ by 20 to 25 %; one sigma of an rms over 20 is 16 %,
 /// three of the difference of two such are 67 %, and no figure may be off by more than half.
-fn assert_near(comparison: &octant_score::compare::Comparison, six: [f64; 4], eight: [f64; 4]) {
+fn assert_near(comparison: &octant_score::compare::MethodComparison, six: [f64; 4], eight: [f64; 4]) {
     assert_eq!(comparison.cells.len(), 4);
     for (i, cell) in comparison.cells.iter().enumerate() {
         for (ours, reference) in [(cell.first, six[i]), (cell.second, eight[i])] {

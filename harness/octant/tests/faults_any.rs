@@ -7,9 +7,9 @@ mod draw;
 use octant_base::control::Control;
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::Trigger;
-use octant_faults::{Receipt, Spec};
+use octant_faults::{Receipt, FaultSpec};
 use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader};
-use octant_run::{Recording, assemble, run_method};
+use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Fault, Method, Place, Scenario};
 use proptest::prelude::*;
 use std::path::Path;
@@ -21,7 +21,7 @@ const SCENARIO: &str = "schema = 1\n\
     stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]\n\
     [procedure.navigation]\nduration = \"3 s\"\n[record]\nsamples = \"full\"\n";
 
-fn scenario(specs: &[Spec]) -> Scenario {
+fn scenario(specs: &[FaultSpec]) -> Scenario {
     let mut scenario = Scenario::parse(SCENARIO, "f.toml", Path::new(""), &[]).unwrap();
     assert_eq!(scenario.samples(), Some(EPOCHS));
     scenario.faults = specs
@@ -33,7 +33,7 @@ fn scenario(specs: &[Spec]) -> Scenario {
 
 /// Returns whether a kind's effect is visible between clean and faulted stream; this depends on the
 /// kind alone. (Samples of a unit without power are lost.)
-fn shows(spec: &Spec) -> bool {
+fn shows(spec: &FaultSpec) -> bool {
     matches!(spec.kind.acts, Acts::Samples | Acts::Delivery | Acts::Unit)
 }
 
@@ -58,14 +58,14 @@ fn first_altered(path: &Path) -> Option<u64> {
     None
 }
 
-fn receipts(specs: &[Spec], seed: u64) -> Option<(Vec<Receipt>, Option<u64>)> {
+fn receipts(specs: &[FaultSpec], seed: u64) -> Option<(Vec<Receipt>, Option<u64>)> {
     let scenario = scenario(specs);
     if scenario.station(seed).is_err() {
         return None;
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recording.mcap");
-    let recording = Recording::File(&path);
+    let recording = StreamKeeping::File(&path);
     let run = run_method(&scenario, Method::Primary, seed, recording, &Control::default()).unwrap();
     let receipts = run.receipts.clone();
     let run = assemble(&scenario, seed, run, None).unwrap();
@@ -120,7 +120,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("recording.mcap");
         let run = run_method(
-            &scenario, Method::Primary, seed, Recording::File(&path), &Control::default(),
+            &scenario, Method::Primary, seed, StreamKeeping::File(&path), &Control::default(),
         ).unwrap();
         prop_assert_eq!(&run.receipts, &receipts, "the same run twice");
         let mut reader = Epochs::new(Reader::open(&path).unwrap());

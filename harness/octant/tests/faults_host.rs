@@ -5,7 +5,7 @@ use octant_base::control::Control;
 use octant_recorder::Event;
 use octant_recorder::reader::{self, Item};
 use octant_run::method::{MethodError, SetupError};
-use octant_run::{Recording, run_method};
+use octant_run::{StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;
@@ -213,7 +213,7 @@ fn where_nothing_would_happen_it_is_refused() {
     ] {
         let text = text("1 s", "200 Hz", &fault(kind, "0.5 s", ""));
         let scenario = Scenario::parse(&text, "s.toml", here, &[]).unwrap();
-        for recording in [Recording::Hash, Recording::HashAlone, Recording::None] {
+        for recording in [StreamKeeping::Hash, StreamKeeping::HashAlone, StreamKeeping::None] {
             let control = Control::default();
             match run_method(&scenario, Method::Primary, 1, recording, &control) {
                 Err(MethodError::Setup(SetupError::Fault { id, reason })) => {

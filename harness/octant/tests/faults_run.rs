@@ -4,17 +4,17 @@
 use crate::common::program::{octant_in, program};
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, InProcess};
-use octant_faults::catalogue::{Acts, Example, Family, Kind, Lasts};
-use octant_faults::rule::{Context, DeliveryRule, Rule, UnitEvent, UnitRule};
-use octant_faults::station::Spec;
+use octant_faults::catalogue::{Acts, Example, Family, FaultKind, Lasts};
+use octant_faults::rule::{Context, DeliveryRule, FaultRule, UnitEvent, UnitRule};
+use octant_faults::station::FaultSpec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Station, Values};
 use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
 use octant_requirements::Verdict;
-use octant_run::done::Plan;
+use octant_run::done::PlannedWork;
 use octant_run::{
-    Ended, Faulted, Host, Line, MethodRun, Recording, Watcher, assemble, drive_in_time, run_method,
+    Ended, Faulted, RunHost, Line, MethodRun, StreamKeeping, Watcher, assemble, drive_in_time, run_method,
 };
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
@@ -55,7 +55,7 @@ fn run(scenario: &Scenario) -> Run {
     let file = tempfile::tempdir().unwrap();
     let path = file.path().join("recording.mcap");
     let control = Control::default();
-    let recording = Recording::File(&path);
+    let recording = StreamKeeping::File(&path);
     let method = run_method(scenario, Method::Primary, 1, recording, &control).unwrap();
     Run { method, epochs: epochs_of(&path), file }
 }
@@ -211,7 +211,7 @@ fn faults_fire_by_hand_and_act_on_both_methods() {
     let scenario = Scenario::parse(&text, "f.toml", Path::new(""), &[]).unwrap();
     let control = Control::default();
     let [primary, baseline] = [Method::Primary, Method::Baseline]
-        .map(|method| run_method(&scenario, method, 1, Recording::Hash, &control).unwrap());
+        .map(|method| run_method(&scenario, method, 1, StreamKeeping::Hash, &control).unwrap());
     assert_eq!(primary.receipts, baseline.receipts);
     assert_eq!(primary.receipts[0].first_sample, Some(20_001));
     let run = assemble(&scenario, 1, primary, Some(baseline)).unwrap();
@@ -291,13 +291,13 @@ macro_rules! test_kind {
         };
     };
 }
-test_kind!(DELIVERY, Acts::Delivery, Rule::Delivery(Box::new(Deliver { kept: None })));
-test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit { event: Some(UnitEvent::Restart) })));
-test_kind!(POWER, Acts::Unit, Rule::Unit(Box::new(Unit { event: None })));
+test_kind!(DELIVERY, Acts::Delivery, FaultRule::Delivery(Box::new(Deliver { kept: None })));
+test_kind!(RESTART, Acts::Unit, FaultRule::Unit(Box::new(Unit { event: Some(UnitEvent::Restart) })));
+test_kind!(POWER, Acts::Unit, FaultRule::Unit(Box::new(Unit { event: None })));
 test_kind!(STORED, Acts::Unit, {
     let mut offset = Parameters::default();
     offset.gyro_bias[0] = 1e-6;
-    Rule::Unit(Box::new(Unit { event: Some(UnitEvent::RestartWith { offset }) }))
+    FaultRule::Unit(Box::new(Unit { event: Some(UnitEvent::RestartWith { offset }) }))
 });
 
 struct Driven {
@@ -311,10 +311,10 @@ struct Driven {
 }
 
 /// Drives the lock-step scenario with a fault of a test kind, as a run does.
-fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> Driven {
+fn drive_with(kind: &'static FaultKind, first: u64, epochs: u64, policy: Policy) -> Driven {
     let scenario = scenario("");
     let (plant, core, draws) = configurations(&scenario, Method::Primary, 1).unwrap();
-    let spec = Spec {
+    let spec = FaultSpec {
         id: "t".to_owned(),
         kind,
         values: Values::default(),
@@ -326,7 +326,7 @@ fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> D
         },
     };
     let station = Station::new(&[spec], &scenario.fault_setup(1)).unwrap();
-    let mut faulted = Faulted { station, fires: Vec::new(), host: Host::default() };
+    let mut faulted = Faulted { station, fires: Vec::new(), host: RunHost::default() };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recording.mcap");
     let options = RecorderOptions {
@@ -337,7 +337,7 @@ fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> D
     let mut recorder = Recorder::to_file(&path, &options).unwrap();
     let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
     let mut endpoint = InProcess::new(&core).unwrap();
-    let mut watcher = Watcher::new(Plan::lasting(&scenario));
+    let mut watcher = Watcher::new(PlannedWork::lasting(&scenario));
     let control = Control::default();
     let line = Line { source: &mut source, faulted: Some(&mut faulted), endpoint: &mut endpoint };
     let ended = drive_in_time(line, &mut recorder, &mut watcher, &control).unwrap();

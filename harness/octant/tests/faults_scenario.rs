@@ -2,10 +2,10 @@
 
 use octant_earth::units::DEG_PER_HOUR;
 use octant_faults::catalogue::{Acts, Dimension};
-use octant_faults::trigger::{Comparison, Repeat, Signal, Trigger};
+use octant_faults::trigger::{ThresholdSide, Repeat, Signal, Trigger};
 use octant_faults::{Channels, Station, Value, kinds};
 use octant_sample::Mode;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Place, Problem, Scenario, fault_example};
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn every_form_of_a_trigger_is_read_into_epochs() {
             "when = \"nis above 25\"",
             Trigger::Condition {
                 signal: Signal::Nis,
-                comparison: Comparison::Above,
+                comparison: ThresholdSide::Above,
                 value: 25.0,
                 delay: 0,
             },
@@ -114,7 +114,7 @@ fn the_resolved_scenario_has_the_same_faults() {
     );
     let scenario = read(&text);
     let resolved =
-        |scenario: &Scenario| scenario.to_resolved_toml(1, &Draws::of(scenario, &Seeded(1)));
+        |scenario: &Scenario| scenario.to_resolved_toml(1, &DrawnValues::of(scenario, &Seeded(1)));
     let first = resolved(&scenario);
     // Defaults are written out, in the order in which faults act.
     assert!(first.contains("trigger = { position = 4, after = \"0 s\", phase = \"calibration\" }"));
@@ -374,7 +374,7 @@ fn a_manual_fault_is_fired_from_the_command_line() {
     let fired = load(&["a=10 s"]).unwrap();
     assert_eq!((&fired.faults[0].fires[..], fired.warnings().len()), (&[2001][..], 0));
     // The resolved scenario states it, and makes the same run.
-    let resolved = fired.to_resolved_toml(1, &Draws::of(&fired, &Seeded(1)));
+    let resolved = fired.to_resolved_toml(1, &DrawnValues::of(&fired, &Seeded(1)));
     assert_eq!(read(&resolved).faults[0].fires, [2001]);
     for (fire, expected) in [
         ("a", "--fire a: expected ID=TIME"),

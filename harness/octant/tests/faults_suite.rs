@@ -1,8 +1,8 @@
 //! Every kind of fault in a short scenario: each ends as its suite expects, and each fault fired.
 
 use octant_base::control::Control;
-use octant_run::{MethodRun, Recording, assemble, run_method};
-use octant_scenario::suite::{Case, Suite};
+use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
+use octant_scenario::suite::{SuiteCase, Suite};
 use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ fn suite() -> Suite {
 
 #[test]
 fn every_case_has_its_kind_and_requires_something() {
-    for Case { scenario: path, .. } in suite().cases {
+    for SuiteCase { scenario: path, .. } in suite().cases {
         let scenario = Scenario::load(&path, &[]).unwrap();
         let name = path.file_stem().unwrap();
         assert!(scenario.faults.iter().any(|f| name == f.spec.kind.name), "{}", path.display());
@@ -40,19 +40,19 @@ impl Twins {
             octant_source::configure::configurations(&clean, Method::Primary, clean.seed).unwrap();
         let key = format!("{plant:?} {core:?} {:?}", clean.samples());
         let slot = Arc::clone(self.0.lock().unwrap().entry(key).or_default());
-        let run = || Arc::new(run(&clean, Recording::Hash));
+        let run = || Arc::new(run(&clean, StreamKeeping::Hash));
         Arc::clone(slot.get_or_init(run))
     }
 }
 
-fn run(scenario: &Scenario, recording: Recording<'_>) -> MethodRun {
+fn run(scenario: &Scenario, recording: StreamKeeping<'_>) -> MethodRun {
     run_method(scenario, Method::Primary, scenario.seed, recording, &Control::default()).unwrap()
 }
 
 /// Lists the problems of a case.
-fn problems(case: &Case, twins: &Twins) -> Vec<String> {
+fn problems(case: &SuiteCase, twins: &Twins) -> Vec<String> {
     let scenario = Scenario::load(&case.scenario, &[]).unwrap();
-    let mut faulted = run(&scenario, Recording::None);
+    let mut faulted = run(&scenario, StreamKeeping::None);
     faulted.twin = Some(twins.of(&scenario));
     let summary = assemble(&scenario, scenario.seed, faulted, None).unwrap().summary;
     let mut problems: Vec<String> = summary

@@ -7,14 +7,14 @@
     reason = "everywhere the same: handles are those of instances, arrays as long as is said"
 )]
 
-use octant_calibration::{Config, Core};
+use octant_calibration::{CoreConfig, Core};
 use octant_fmi::fmi2::{CO_SIMULATION, OK};
 use octant_fmu::c::fmi2::*;
 use octant_fmu::c::fmi3::*;
-use octant_fmu::c::{Standard, token};
+use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::start_values;
 use octant_fmu::calibrator::table::MODEL;
-use octant_fmu::table::Kind;
+use octant_fmu::table::ElementType;
 use octant_sample::canonical::{OUTPUT_BYTES, PARAMETERS_BYTES};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
@@ -30,7 +30,7 @@ use std::ptr::{null, null_mut};
 
 /// Importer that follows one of the two standards.
 struct Unit {
-    standard: Standard,
+    standard: ServedStandard,
     /// True if inputs are set in event mode.
     events: bool,
     handle: *mut core::ffi::c_void,
@@ -41,8 +41,8 @@ impl Drop for Unit {
     fn drop(&mut self) {
         unsafe {
             match self.standard {
-                Standard::Fmi2 => fmi2FreeInstance(self.handle),
-                Standard::Fmi3 => fmi3FreeInstance(self.handle),
+                ServedStandard::Fmi2 => fmi2FreeInstance(self.handle),
+                ServedStandard::Fmi3 => fmi3FreeInstance(self.handle),
             }
         }
     }
@@ -53,13 +53,13 @@ const fn slot(name: &str) -> u32 {
 }
 
 impl Unit {
-    fn instantiate(standard: Standard, events: bool) -> Self {
+    fn instantiate(standard: ServedStandard, events: bool) -> Self {
         let token = CString::new(token(&MODEL, standard)).unwrap();
         let (name, token, none) = (c"unit".as_ptr(), token.as_ptr(), null());
         let handle = unsafe {
             match standard {
-                Standard::Fmi2 => fmi2Instantiate(name, CO_SIMULATION, token, none, null(), 0, 0),
-                Standard::Fmi3 => fmi3InstantiateCoSimulation(
+                ServedStandard::Fmi2 => fmi2Instantiate(name, CO_SIMULATION, token, none, null(), 0, 0),
+                ServedStandard::Fmi3 => fmi3InstantiateCoSimulation(
                     name,
                     token,
                     none,
@@ -79,22 +79,22 @@ impl Unit {
         Self { standard, events, handle, step: 0 }
     }
 
-    fn new(standard: Standard, events: bool, config: &Config) -> Self {
+    fn new(standard: ServedStandard, events: bool, config: &CoreConfig) -> Self {
         let unit = Self::instantiate(standard, events);
         for (name, values) in start_values(config) {
             let (slot, variable) = MODEL.find(name).unwrap();
             unit.set_as(variable.kind, slot as u32, &values);
         }
         // Stamps come from the source.
-        unit.set_as(Kind::Boolean, slot("imu.external_stamps"), &[1.0]);
+        unit.set_as(ElementType::Boolean, slot("imu.external_stamps"), &[1.0]);
         unsafe {
             match standard {
-                Standard::Fmi2 => {
+                ServedStandard::Fmi2 => {
                     assert_eq!(fmi2SetupExperiment(unit.handle, 0, 0.0, 0.0, 0, 0.0), OK);
                     assert_eq!(fmi2EnterInitializationMode(unit.handle), OK);
                     assert_eq!(fmi2ExitInitializationMode(unit.handle), OK);
                 }
-                Standard::Fmi3 => {
+                ServedStandard::Fmi3 => {
                     let handle = unit.handle;
                     assert_eq!(fmi3EnterInitializationMode(handle, 0, 0.0, 0.0, 0, 0.0), OK);
                     assert_eq!(fmi3ExitInitializationMode(handle), OK);
@@ -108,42 +108,42 @@ impl Unit {
     }
 
     /// Sets a variable: element by element in FMI 2.0, as a whole in FMI 3.0.
-    fn set_as(&self, kind: Kind, first: u32, values: &[f64]) {
+    fn set_as(&self, kind: ElementType, first: u32, values: &[f64]) {
         let count = values.len();
         match (self.standard, kind) {
-            (Standard::Fmi2, Kind::Real | Kind::Count) => {
+            (ServedStandard::Fmi2, ElementType::Real | ElementType::Count) => {
                 let references: Vec<u32> = (first..).take(count).collect();
                 self.set_reals(&references, values);
             }
-            (Standard::Fmi2, _) => {
+            (ServedStandard::Fmi2, _) => {
                 for (reference, value) in (first..).zip(values) {
                     let value = *value as i32;
                     let set = match kind {
-                        Kind::Boolean => fmi2SetBoolean,
+                        ElementType::Boolean => fmi2SetBoolean,
                         _ => fmi2SetInteger,
                     };
                     assert_eq!(unsafe { set(self.handle, &reference, 1, &value) }, OK);
                 }
             }
-            (Standard::Fmi3, Kind::Real) => self.set_reals(&[first], values),
-            (Standard::Fmi3, Kind::Count) => {
+            (ServedStandard::Fmi3, ElementType::Real) => self.set_reals(&[first], values),
+            (ServedStandard::Fmi3, ElementType::Count) => {
                 let whole: Vec<u64> = values.iter().map(|value| *value as u64).collect();
                 let (handle, whole) = (self.handle, whole.as_ptr());
                 assert_eq!(unsafe { fmi3SetUInt64(handle, &first, 1, whole, count) }, OK);
             }
-            (Standard::Fmi3, Kind::Integer) => {
+            (ServedStandard::Fmi3, ElementType::Integer) => {
                 let value = values[0] as i32;
                 assert_eq!(unsafe { fmi3SetInt32(self.handle, &first, 1, &value, 1) }, OK);
             }
-            (Standard::Fmi3, Kind::Enumeration(_)) => {
+            (ServedStandard::Fmi3, ElementType::Enumeration(_)) => {
                 let value = values[0] as i64;
                 assert_eq!(unsafe { fmi3SetInt64(self.handle, &first, 1, &value, 1) }, OK);
             }
-            (Standard::Fmi3, Kind::Boolean) => {
+            (ServedStandard::Fmi3, ElementType::Boolean) => {
                 let value = values[0] as u8;
                 assert_eq!(unsafe { fmi3SetBoolean(self.handle, &first, 1, &value, 1) }, OK);
             }
-            (Standard::Fmi3, Kind::Binary(_) | Kind::Clock(_)) => panic!("the core has none"),
+            (ServedStandard::Fmi3, ElementType::Binary(_) | ElementType::Clock(_)) => panic!("the core has none"),
         }
     }
 
@@ -151,8 +151,8 @@ impl Unit {
         let (pointer, count) = (references.as_ptr(), references.len());
         let status = unsafe {
             match self.standard {
-                Standard::Fmi2 => fmi2SetReal(self.handle, pointer, count, values.as_ptr()),
-                Standard::Fmi3 => {
+                ServedStandard::Fmi2 => fmi2SetReal(self.handle, pointer, count, values.as_ptr()),
+                ServedStandard::Fmi3 => {
                     let (values, length) = (values.as_ptr(), values.len());
                     fmi3SetFloat64(self.handle, pointer, count, values, length)
                 }
@@ -166,10 +166,10 @@ impl Unit {
         let references: [u32; N] = std::array::from_fn(|i| first + i as u32);
         let status = unsafe {
             match self.standard {
-                Standard::Fmi2 => {
+                ServedStandard::Fmi2 => {
                     fmi2GetReal(self.handle, references.as_ptr(), N, values.as_mut_ptr())
                 }
-                Standard::Fmi3 => fmi3GetFloat64(self.handle, &first, 1, values.as_mut_ptr(), N),
+                ServedStandard::Fmi3 => fmi3GetFloat64(self.handle, &first, 1, values.as_mut_ptr(), N),
             }
         };
         assert_eq!(status, OK);
@@ -180,17 +180,17 @@ impl Unit {
         let (mut narrow, mut wide) = (-1, -1);
         let status = unsafe {
             match (self.standard, is_enumeration) {
-                (Standard::Fmi2, _) => fmi2GetInteger(self.handle, &reference, 1, &mut narrow),
+                (ServedStandard::Fmi2, _) => fmi2GetInteger(self.handle, &reference, 1, &mut narrow),
                 (_, false) => fmi3GetInt32(self.handle, &reference, 1, &mut narrow, 1),
                 (_, true) => fmi3GetInt64(self.handle, &reference, 1, &mut wide, 1),
             }
         };
         assert_eq!(status, OK);
-        if self.standard == Standard::Fmi3 && is_enumeration { wide } else { narrow.into() }
+        if self.standard == ServedStandard::Fmi3 && is_enumeration { wide } else { narrow.into() }
     }
 
     fn count(&self, reference: u32) -> u64 {
-        if self.standard == Standard::Fmi2 {
+        if self.standard == ServedStandard::Fmi2 {
             let [value] = self.reals::<1>(reference);
             return value as u64;
         }
@@ -204,8 +204,8 @@ impl Unit {
         let (mut wide, mut narrow) = (9, 9);
         let status = unsafe {
             match self.standard {
-                Standard::Fmi2 => fmi2GetBoolean(self.handle, &reference, 1, &mut wide),
-                Standard::Fmi3 => fmi3GetBoolean(self.handle, &reference, 1, &mut narrow, 1),
+                ServedStandard::Fmi2 => fmi2GetBoolean(self.handle, &reference, 1, &mut wide),
+                ServedStandard::Fmi3 => fmi3GetBoolean(self.handle, &reference, 1, &mut narrow, 1),
             }
         };
         assert_eq!(status, OK);
@@ -233,18 +233,18 @@ impl Unit {
         let sample = &epoch.sample;
         let theta = sample.delta_theta.map(|count| f64::from(count) * DELTA_THETA_LSB_RAD);
         let velocity = sample.delta_velocity.map(|count| f64::from(count) * DELTA_VELOCITY_LSB_MPS);
-        self.set_as(Kind::Real, slot("gyro.delta_theta"), &theta);
-        self.set_as(Kind::Real, slot("accelerometer.delta_velocity"), &velocity);
+        self.set_as(ElementType::Real, slot("gyro.delta_theta"), &theta);
+        self.set_as(ElementType::Real, slot("accelerometer.delta_velocity"), &velocity);
         let gimbal = [sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()];
         self.set_reals(&[slot("gimbal.azimuth"), slot("gimbal.roll")], &gimbal);
-        self.set_as(Kind::Boolean, slot("imu.valid"), &[1.0]);
-        self.set_as(Kind::Integer, slot("imu.status"), &[f64::from(sample.status.bits())]);
-        self.set_as(Kind::Count, slot("imu.sequence"), &[sample.sequence as f64]);
-        self.set_as(Kind::Count, slot("imu.device_time_ns"), &[sample.device_time.ns as f64]);
+        self.set_as(ElementType::Boolean, slot("imu.valid"), &[1.0]);
+        self.set_as(ElementType::Integer, slot("imu.status"), &[f64::from(sample.status.bits())]);
+        self.set_as(ElementType::Count, slot("imu.sequence"), &[sample.sequence as f64]);
+        self.set_as(ElementType::Count, slot("imu.device_time_ns"), &[sample.device_time.ns as f64]);
         let kind = match epoch.aiding.map(|aiding| aiding.reference) {
             None => 0.0,
             Some(Reference::Velocity(velocity)) => {
-                self.set_as(Kind::Real, slot("reference.velocity"), &velocity);
+                self.set_as(ElementType::Real, slot("reference.velocity"), &velocity);
                 1.0
             }
             Some(Reference::Position { latitude_rad, longitude_rad, height_m }) => {
@@ -258,7 +258,7 @@ impl Unit {
         self.set_as(variable.kind, reference_kind as u32, &[kind]);
         if let Some(aiding) = epoch.aiding {
             let age_ns = sample.device_time.ns as f64 - aiding.device_time.ns as f64;
-            self.set_as(Kind::Real, slot("reference.age_ns"), &[age_ns]);
+            self.set_as(ElementType::Real, slot("reference.age_ns"), &[age_ns]);
         }
         if self.events {
             self.finish_event();
@@ -267,8 +267,8 @@ impl Unit {
         self.step += 1;
         unsafe {
             match self.standard {
-                Standard::Fmi2 => assert_eq!(fmi2DoStep(self.handle, time_s, 0.005, 1), OK),
-                Standard::Fmi3 => {
+                ServedStandard::Fmi2 => assert_eq!(fmi2DoStep(self.handle, time_s, 0.005, 1), OK),
+                ServedStandard::Fmi3 => {
                     let (mut event, mut end, mut early, mut last_s) = (9, 9, 9, f64::NAN);
                     let do_step = fmi3DoStep;
                     let status = do_step(
@@ -318,7 +318,7 @@ impl Unit {
     fn parameters(&self) -> (Parameters, [f64; 30]) {
         let all = |prefix: &str| {
             let mut values = [f64::NAN; 30];
-            for group in octant_sample::parameters::Group::ALL {
+            for group in octant_sample::parameters::ParameterGroup::ALL {
                 let first = MODEL.slot(&format!("{prefix}.{}", group.name())) as u32;
                 let range = group.range();
                 match range.len() {
@@ -337,7 +337,7 @@ impl Unit {
         let (mut state, mut size) = (null_mut(), 0);
         unsafe {
             match self.standard {
-                Standard::Fmi2 => {
+                ServedStandard::Fmi2 => {
                     assert_eq!(fmi2GetFMUstate(self.handle, &mut state), OK);
                     assert_eq!(fmi2SerializedFMUstateSize(self.handle, state, &mut size), OK);
                     let mut bytes = vec![0u8; size];
@@ -346,7 +346,7 @@ impl Unit {
                     assert_eq!(fmi2FreeFMUstate(self.handle, &mut state), OK);
                     bytes
                 }
-                Standard::Fmi3 => {
+                ServedStandard::Fmi3 => {
                     assert_eq!(fmi3GetFMUState(self.handle, &mut state), OK);
                     assert_eq!(fmi3SerializedFMUStateSize(self.handle, state, &mut size), OK);
                     let mut bytes = vec![0u8; size];
@@ -365,12 +365,12 @@ impl Unit {
         let (mut state, size) = (null_mut(), bytes.len());
         unsafe {
             match self.standard {
-                Standard::Fmi2 => {
+                ServedStandard::Fmi2 => {
                     let from = bytes.as_ptr().cast();
                     assert_eq!(fmi2DeSerializeFMUstate(fresh.handle, from, size, &mut state), OK);
                     assert_eq!(fmi2SetFMUstate(fresh.handle, state), OK);
                 }
-                Standard::Fmi3 => {
+                ServedStandard::Fmi3 => {
                     let from = bytes.as_ptr();
                     assert_eq!(fmi3DeserializeFMUState(fresh.handle, from, size, &mut state), OK);
                     assert_eq!(fmi3SetFMUState(fresh.handle, state), OK);
@@ -384,7 +384,7 @@ impl Unit {
 
 /// Runs the whole stream of the scenario through a core in process and through an instance;
 /// `between` may replace the instance after any epoch.
-fn compare(standard: Standard, events: bool, mut between: impl FnMut(u64, &mut Unit, &Config)) {
+fn compare(standard: ServedStandard, events: bool, mut between: impl FnMut(u64, &mut Unit, &CoreConfig)) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenarios/lockstep.toml");
     let scenario = Scenario::load(&file, &[]).unwrap();
     let (plant, config, _) = configurations(&scenario, Method::Primary, scenario.seed).unwrap();
@@ -427,22 +427,22 @@ fn compare(standard: Standard, events: bool, mut between: impl FnMut(u64, &mut U
 
 #[test]
 fn fmi_2_gives_the_bits_of_the_core() {
-    compare(Standard::Fmi2, false, |_, _, _| ());
+    compare(ServedStandard::Fmi2, false, |_, _, _| ());
 }
 
 #[test]
 fn fmi_3_gives_the_bits_of_the_core() {
-    compare(Standard::Fmi3, false, |_, _, _| ());
+    compare(ServedStandard::Fmi3, false, |_, _, _| ());
 }
 
 #[test]
 fn fmi_3_with_event_mode_gives_the_bits_of_the_core() {
-    compare(Standard::Fmi3, true, |_, _, _| ());
+    compare(ServedStandard::Fmi3, true, |_, _, _| ());
 }
 
 /// Replaces the instance with a fresh one restored from its bytes: in the middle of the
 /// calibration, in a move, at the end of the calibration, and in navigation.
-fn revive(epochs: u64, unit: &mut Unit, config: &Config) {
+fn revive(epochs: u64, unit: &mut Unit, config: &CoreConfig) {
     if [1, 777, 48_000, 50_001, 95_999, 96_000, 110_000].contains(&epochs) {
         let bytes = unit.state();
         assert_eq!(unit.state(), bytes, "the same state, the same bytes");
@@ -465,18 +465,18 @@ fn revive(epochs: u64, unit: &mut Unit, config: &Config) {
 
 #[test]
 fn fmi_2_goes_on_from_bytes_in_a_fresh_instance() {
-    compare(Standard::Fmi2, false, revive);
+    compare(ServedStandard::Fmi2, false, revive);
 }
 
 #[test]
 fn fmi_3_goes_on_from_bytes_in_a_fresh_instance() {
-    compare(Standard::Fmi3, false, revive);
+    compare(ServedStandard::Fmi3, false, revive);
 }
 
 /// Every 10 000 epochs the instance takes a wrong step, and is restored.
 #[test]
 fn a_step_that_is_taken_back_leaves_no_trace() {
-    compare(Standard::Fmi2, false, |epochs, unit, _| {
+    compare(ServedStandard::Fmi2, false, |epochs, unit, _| {
         if !epochs.is_multiple_of(10_000) {
             return;
         }

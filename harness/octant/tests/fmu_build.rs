@@ -5,10 +5,10 @@ use octant_fmu::table::{self, Model};
 use octant_fmu_build::{BuildError, Options, build};
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::{
-    Causality, Description, Initial, IntervalVariability, Kind, Standard, Variability, Variable,
+    Causality, Description, Initial, IntervalVariability, VariableType, Standard, Variability, Variable,
     read_bytes,
 };
-use octant_fmu_host::instance::{self, Instance, Outcome, Place, Plan};
+use octant_fmu_host::instance::{self, Instance, StepOutcome, ProcessPlace, AccessPlan};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -68,8 +68,8 @@ fn descriptions_say_what_the_tables_say() {
         assert_eq!(description.model_name, model.name);
         assert!(description.structured_names);
         let of_library = match standard {
-            Standard::Fmi2 => octant_fmu::c::Standard::Fmi2,
-            Standard::Fmi3 => octant_fmu::c::Standard::Fmi3,
+            Standard::Fmi2 => octant_fmu::c::ServedStandard::Fmi2,
+            Standard::Fmi3 => octant_fmu::c::ServedStandard::Fmi3,
         };
         assert_eq!(description.token, octant_fmu::c::token(model, of_library));
         let interface = description.co_simulation.as_ref().unwrap();
@@ -112,46 +112,46 @@ fn descriptions_say_what_the_tables_say() {
 fn same(
     description: &Description,
     found: &Variable,
-    variable: &table::Variable,
+    variable: &table::DeclaredVariable,
     elements: std::ops::Range<usize>,
 ) {
     let name = &found.name;
     let fmi3 = description.standard == Standard::Fmi3;
     assert!(found.description.starts_with(variable.description), "{name}");
     let kind = match variable.kind {
-        table::Kind::Real => Kind::Float64,
-        table::Kind::Boolean => Kind::Boolean,
-        table::Kind::Integer => Kind::Int32,
-        table::Kind::Count if fmi3 => Kind::UInt64,
-        table::Kind::Count => Kind::Float64,
-        table::Kind::Enumeration(_) if fmi3 => Kind::Enumeration,
-        table::Kind::Enumeration(_) => Kind::Int32,
-        table::Kind::Binary(_) => Kind::Binary,
-        table::Kind::Clock(_) => Kind::Clock,
+        table::ElementType::Real => VariableType::Float64,
+        table::ElementType::Boolean => VariableType::Boolean,
+        table::ElementType::Integer => VariableType::Int32,
+        table::ElementType::Count if fmi3 => VariableType::UInt64,
+        table::ElementType::Count => VariableType::Float64,
+        table::ElementType::Enumeration(_) if fmi3 => VariableType::Enumeration,
+        table::ElementType::Enumeration(_) => VariableType::Int32,
+        table::ElementType::Binary(_) => VariableType::Binary,
+        table::ElementType::Clock(_) => VariableType::Clock,
     };
     assert_eq!(found.kind, kind, "{name}");
     let causality = match variable.causality {
-        table::Causality::Parameter => Causality::Parameter,
-        table::Causality::CalculatedParameter => Causality::CalculatedParameter,
-        table::Causality::Input => Causality::Input,
-        table::Causality::Output => Causality::Output,
-        table::Causality::Local => Causality::Local,
+        table::DeclaredCausality::Parameter => Causality::Parameter,
+        table::DeclaredCausality::CalculatedParameter => Causality::CalculatedParameter,
+        table::DeclaredCausality::Input => Causality::Input,
+        table::DeclaredCausality::Output => Causality::Output,
+        table::DeclaredCausality::Local => Causality::Local,
     };
     assert_eq!(found.causality, causality, "{name}");
     let variability = match variable.variability {
-        table::Variability::Fixed => Variability::Fixed,
-        table::Variability::Tunable => Variability::Tunable,
-        table::Variability::Discrete => Variability::Discrete,
+        table::DeclaredVariability::Fixed => Variability::Fixed,
+        table::DeclaredVariability::Tunable => Variability::Tunable,
+        table::DeclaredVariability::Discrete => Variability::Discrete,
     };
     assert_eq!(found.variability, variability, "{name}");
-    if let table::Kind::Binary(binary) = variable.kind {
+    if let table::ElementType::Binary(binary) = variable.kind {
         assert_eq!(found.mime_type.as_deref(), Some(binary.mime_type), "{name}");
         let clock = description.variable(binary.clock).unwrap();
         assert_eq!(found.clocks, [clock.reference], "{name}");
         assert_eq!(found.start, vec![String::new(); found.start.len()], "{name}");
         return;
     }
-    if let table::Kind::Clock(ticks) = variable.kind {
+    if let table::ElementType::Clock(ticks) = variable.kind {
         let expected = match ticks {
             table::Ticks::Triggered => IntervalVariability::Triggered,
             table::Ticks::Countdown => IntervalVariability::Countdown,
@@ -166,7 +166,7 @@ fn same(
     let expected: Vec<f64> =
         elements.filter(|_| given).map(|element| variable.start_of(element).unwrap()).collect();
     assert_eq!(start, expected, "{name}");
-    if let (Some(quantity), Kind::Float64) = (variable.quantity, kind) {
+    if let (Some(quantity), VariableType::Float64) = (variable.quantity, kind) {
         assert_eq!(found.unit.as_deref(), Some(quantity.unit.name), "{name}");
         assert_eq!(found.display_unit.as_deref(), quantity.display, "{name}");
         let unit = description.unit(quantity.unit.name).unwrap();
@@ -185,7 +185,7 @@ fn same(
             .collect();
         assert_eq!(found, made);
     }
-    if kind == Kind::Float64 {
+    if kind == VariableType::Float64 {
         assert_eq!(found.max, variable.max, "{name}");
         assert_eq!(found.nominal, variable.nominal, "{name}");
     }
@@ -222,11 +222,11 @@ fn csv(path: &Path, what: &str) -> Table {
     Table { names, times, rows }
 }
 
-fn plan(instance: &dyn Instance, names: &[String]) -> Plan {
+fn plan(instance: &dyn Instance, names: &[String]) -> AccessPlan {
     let description = instance.description();
     let variables: Vec<&Variable> =
         names.iter().map(|name| description.variable(name).unwrap()).collect();
-    Plan::new(description, &variables).unwrap()
+    AccessPlan::new(description, &variables).unwrap()
 }
 
 /// The library in the FMU, stepped as any other, gives the reference that is packed with it.
@@ -238,10 +238,10 @@ fn references_are_what_the_libraries_give() {
                 continue;
             }
             let (inputs, results) = (csv(&path, "in"), csv(&path, "ref"));
-            let options = instance::Options {
-                place: Place::ThisProcess,
+            let options = instance::OpenOptions {
+                place: ProcessPlace::ThisProcess,
                 event_mode,
-                ..instance::Options::default()
+                ..instance::OpenOptions::default()
             };
             let mut instance = octant_fmu_host::open(&path, &options).unwrap();
             let instance = &mut *instance;
@@ -285,7 +285,7 @@ fn references_are_what_the_libraries_give() {
                 let stepped = instance
                     .exchange(&set.groups, &numbers, *time_s, 0.005, &get.groups, &mut outputs)
                     .unwrap();
-                assert_eq!(stepped.outcome, Outcome::Done);
+                assert_eq!(stepped.outcome, StepOutcome::Done);
             }
             assert!(row.is_none() && compared == 701 * get.elements, "{}", path.display());
         }
@@ -303,10 +303,10 @@ fn the_one_on_a_bus_follows_the_layered_standard() {
     let manifest = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml";
     assert!(Archive::open(&path).unwrap().read(manifest).is_ok());
     // The stepping program ticks its clocks; without a harness on the bus it only says hello.
-    let options = instance::Options {
-        place: Place::ThisProcess,
+    let options = instance::OpenOptions {
+        place: ProcessPlace::ThisProcess,
         event_mode: true,
-        ..instance::Options::default()
+        ..instance::OpenOptions::default()
     };
     let mut instance = octant_fmu_host::open(&path, &options).unwrap();
     instance.enter_initialization(0.0, None, None).unwrap();

@@ -6,8 +6,8 @@ use crate::common::program::{OCTANT, program};
 use octant_fmu_build as build;
 use octant_fmu_check::load::load;
 use octant_fmu_check::rules::Severity;
-use octant_fmu_check::{Report, check, show};
-use octant_fmu_host::instance::Options;
+use octant_fmu_check::{CheckReport, check, show};
+use octant_fmu_host::instance::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -57,11 +57,11 @@ fn stepped(fmu: &Path) -> Vec<String> {
     let mut checked = check(fmu).unwrap();
     assert!(checked.can_be_loaded());
     let limit = Duration::from_secs(3);
-    let options = Options {
+    let options = OpenOptions {
         program: Some(OCTANT.into()),
         start_limit: limit,
         time_limit: limit,
-        ..Options::default()
+        ..OpenOptions::default()
     };
     load(&mut checked, &options, true);
     let report = checked.report();
@@ -71,7 +71,7 @@ fn stepped(fmu: &Path) -> Vec<String> {
 
 /// Lists findings worse than notes, except for functions that these FMUs don't need: rule and found
 /// content.
-fn found(report: &Report) -> Vec<String> {
+fn found(report: &CheckReport) -> Vec<String> {
     report
         .findings
         .iter()

@@ -1,13 +1,13 @@
 //! The core's configuration survives as parameters of the Calibrator FMU: bit for bit, and within
 //! the ranges of its table.
 
-use octant_calibration::Config;
+use octant_calibration::CoreConfig;
 use octant_earth::{Vector3, rotation};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::calibrator::{config, put, start_values};
-use octant_fmu::table::{Kind, Variable};
-use octant_fmu::values::Values;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_fmu::table::{ElementType, DeclaredVariable};
+use octant_fmu::values::CellValues;
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use std::path::PathBuf;
 
@@ -25,11 +25,11 @@ fn files() -> Vec<PathBuf> {
 }
 
 /// Collects the configurations of both methods, with an attitude and velocity of many digits.
-fn configurations() -> Vec<(String, Config)> {
+fn configurations() -> Vec<(String, CoreConfig)> {
     let mut all = Vec::new();
     for file in files() {
         let scenario = Scenario::load(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
-        let draws = Draws::of(&scenario, &Seeded(scenario.seed));
+        let draws = DrawnValues::of(&scenario, &Seeded(scenario.seed));
         let turn = rotation::exp(&Vector3::new(0.1, -0.2, 0.3));
         let velocity = Vector3::new(1.0 / 3.0, -2.0 / 7.0, 1e-9);
         for method in [Method::Primary, Method::Baseline] {
@@ -42,13 +42,13 @@ fn configurations() -> Vec<(String, Config)> {
     all
 }
 
-fn set(values: &mut Values, slot: usize, variable: &Variable, value: f64) {
+fn set(values: &mut CellValues, slot: usize, variable: &DeclaredVariable, value: f64) {
     match variable.kind {
-        Kind::Real => values.set_real(slot, value),
-        Kind::Count => values.set_count(slot, value as u64),
-        Kind::Integer | Kind::Enumeration(_) => values.set_integer(slot, value as i32),
-        Kind::Boolean => values.set_boolean(slot, value != 0.0),
-        Kind::Binary(_) | Kind::Clock(_) => panic!("no parameter is one"),
+        ElementType::Real => values.set_real(slot, value),
+        ElementType::Count => values.set_count(slot, value as u64),
+        ElementType::Integer | ElementType::Enumeration(_) => values.set_integer(slot, value as i32),
+        ElementType::Boolean => values.set_boolean(slot, value != 0.0),
+        ElementType::Binary(_) | ElementType::Clock(_) => panic!("no parameter is one"),
     }
 }
 
@@ -57,12 +57,12 @@ fn every_scenario_survives_as_parameters() {
     for (name, original) in configurations() {
         // Debug prints every field, and floats so that they read back to the same bits.
         let expected = format!("{original:?}");
-        let mut values = Values::new(&MODEL);
+        let mut values = CellValues::new(&MODEL);
         put(&original, &mut values);
         assert_eq!(format!("{:?}", config(&values).unwrap()), expected, "{name}");
 
         // As numbers set by an importer, by name.
-        let mut values = Values::new(&MODEL);
+        let mut values = CellValues::new(&MODEL);
         for (variable_name, elements) in start_values(&original) {
             let (slot, variable) = MODEL.find(variable_name).unwrap();
             assert_eq!(elements.len(), variable.slots());

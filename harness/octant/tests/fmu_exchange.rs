@@ -1,16 +1,16 @@
 //! Model exchange compared with closed forms, and with another method.
 
 use crate::common::foreign;
-use octant_fmu_host::instance::{Group, Instance, InstanceError, Options, Outcome, Place};
+use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError, OpenOptions, StepOutcome, ProcessPlace};
 
 fn open(name: &str) -> Box<dyn Instance> {
-    let options = Options { place: Place::ThisProcess, ..Options::default() };
+    let options = OpenOptions { place: ProcessPlace::ThisProcess, ..OpenOptions::default() };
     octant_fmu_host::open(&foreign::fmu(name), &options).unwrap()
 }
 
-fn group(instance: &dyn Instance, name: &str) -> Group {
+fn group(instance: &dyn Instance, name: &str) -> VariableGroup {
     let description = instance.description();
-    Group::of(description, description.variable(name).unwrap()).unwrap()
+    VariableGroup::of(description, description.variable(name).unwrap()).unwrap()
 }
 
 fn set(instance: &mut dyn Instance, name: &str, value: f64) {
@@ -65,7 +65,7 @@ fn a_ball_bounces_where_it_should() {
             let mut time_s = 0.0;
             while time_s < 3.5 {
                 let stepped = fmu.step(time_s, step_s).unwrap();
-                assert_eq!(stepped.outcome, Outcome::Done);
+                assert_eq!(stepped.outcome, StepOutcome::Done);
                 time_s = stepped.time_s;
                 let (height, bounces) = ball(time_s);
                 let found = get(fmu, "h");
@@ -213,7 +213,7 @@ fn time_events_come_on_time() {
     }
     // The simulation ends at the tenth event.
     let stepped = fmu.step(time_s, 0.3).unwrap();
-    assert!(stepped.terminate && stepped.outcome == Outcome::Early);
+    assert!(stepped.terminate && stepped.outcome == StepOutcome::Early);
     assert!((stepped.time_s - 10.0).abs() < 1e-9);
     fmu.terminate().unwrap();
 }

@@ -4,18 +4,18 @@
 use crate::common::foreign;
 use std::path::{Path, PathBuf};
 
-use octant_fmu_host::OpenError;
+use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::description::Variable;
 use octant_fmu_host::instance::{
-    Group, Instance, InstanceError, InterfaceKind, Options, Outcome, Place, Plan, Stepped,
+    VariableGroup, Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome, ProcessPlace, AccessPlan, Stepped,
 };
 
 /// Returns options for code that runs in this process.
-fn here() -> Options {
-    Options { place: Place::ThisProcess, ..Options::default() }
+fn here() -> OpenOptions {
+    OpenOptions { place: ProcessPlace::ThisProcess, ..OpenOptions::default() }
 }
 
-fn open_with(name: &str, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
+fn open_with(name: &str, options: &OpenOptions) -> Result<Box<dyn Instance>, FmuOpenError> {
     octant_fmu_host::open(&foreign::fmu(name), options)
 }
 
@@ -28,8 +28,8 @@ fn variable(instance: &dyn Instance, name: &str) -> Variable {
     found.unwrap_or_else(|| panic!("no variable {name}")).clone()
 }
 
-fn group(instance: &dyn Instance, name: &str) -> Group {
-    Group::of(instance.description(), &variable(instance, name)).unwrap()
+fn group(instance: &dyn Instance, name: &str) -> VariableGroup {
+    VariableGroup::of(instance.description(), &variable(instance, name)).unwrap()
 }
 
 fn set(instance: &mut dyn Instance, name: &str, values: &[f64]) -> Result<(), InstanceError> {
@@ -49,9 +49,9 @@ fn start(instance: &mut dyn Instance) {
     assert!(!instance.exit_initialization().unwrap());
 }
 
-fn plan(instance: &dyn Instance, names: &[&str]) -> Plan {
+fn plan(instance: &dyn Instance, names: &[&str]) -> AccessPlan {
     let variables: Vec<Variable> = names.iter().map(|name| variable(instance, name)).collect();
-    Plan::new(instance.description(), &variables.iter().collect::<Vec<_>>()).unwrap()
+    AccessPlan::new(instance.description(), &variables.iter().collect::<Vec<_>>()).unwrap()
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn fmi2_takes_and_gives_every_type() {
     set(gain, "on", &[1.0]).unwrap();
     set(gain, "mode", &[2.0]).unwrap();
     let stepped = gain.step(0.0, 2.0).unwrap();
-    let done = Stepped { time_s: 2.0, outcome: Outcome::Done, event: false, terminate: false };
+    let done = Stepped { time_s: 2.0, outcome: StepOutcome::Done, event: false, terminate: false };
     assert_eq!(stepped, done);
     assert_eq!(get(gain, "y"), [3.0]);
     assert_eq!(get(gain, "n_next"), [-6.0]);
@@ -94,7 +94,7 @@ fn an_exchange_sets_steps_and_gets() {
         let time_s = f64::from(k);
         let stepped =
             gain.exchange(&inputs.groups, &set, time_s, 1.0, &outputs.groups, &mut got).unwrap();
-        assert_eq!((stepped.time_s, stepped.outcome), (time_s + 1.0, Outcome::Done));
+        assert_eq!((stepped.time_s, stepped.outcome), (time_s + 1.0, StepOutcome::Done));
     }
     let got: Vec<f64> = outputs.places.iter().map(|place| got[place.start]).collect();
     assert_eq!(got, [1.0, 2.0, 42.0]);
@@ -141,7 +141,7 @@ fn messages_are_written_out_with_their_arguments() {
 
 #[test]
 fn nothing_is_logged_when_it_is_not_asked_for() {
-    let mut gain = open_with("gain_fmi2", &Options { log: false, ..here() }).unwrap();
+    let mut gain = open_with("gain_fmi2", &OpenOptions { log: false, ..here() }).unwrap();
     set(&mut *gain, "chatty", &[1.0]).unwrap();
     start(&mut *gain);
     gain.step(0.0, 1.0).unwrap();
@@ -258,7 +258,7 @@ const SIGNALS: [(&str, &[f64]); 11] = [
 fn fmi3_takes_and_gives_every_type() {
     let folder = without_clocks();
     for event_mode in [true, false] {
-        let options = Options { event_mode, ..here() };
+        let options = OpenOptions { event_mode, ..here() };
         let mut signals = octant_fmu_host::open(folder.path(), &options).unwrap();
         let signals = &mut *signals;
         start(signals);
@@ -293,7 +293,7 @@ fn arrays_have_the_size_of_their_structural_parameter() {
     let mut signals = open("signals_fmi3");
     let signals = &mut *signals;
     set(signals, "size", &[5.0]).unwrap();
-    let sized = |group: Group| Group { elements: 5, ..group };
+    let sized = |group: VariableGroup| VariableGroup { elements: 5, ..group };
     let (u, y) = (sized(group(signals, "u")), sized(group(signals, "y")));
     start(signals);
     signals.set(&u, &[1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
@@ -319,7 +319,7 @@ fn early_returns_come_at_events() {
     start(signals);
     set(signals, "u", &[1.0; 3]).unwrap();
     let stepped = signals.step(0.0, 0.6).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.25, Outcome::Early, true));
+    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.25, StepOutcome::Early, true));
     // The clock ticks at the event.
     signals.enter_event_mode().unwrap();
     let mut updates = 0;
@@ -338,7 +338,7 @@ fn early_returns_come_at_events() {
     assert_eq!(get(signals, "y"), [0.25; 3]);
     // The rest in one call: over the event at 0.5 s, to the end.
     let stepped = signals.advance(0.25, 0.35).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, Outcome::Done, false));
+    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, StepOutcome::Done, false));
     assert_eq!(get(signals, "count"), [2.0]);
     assert_eq!(get(signals, "event_time"), [0.5]);
 }
@@ -346,10 +346,10 @@ fn early_returns_come_at_events() {
 #[test]
 fn events_without_early_return_come_at_the_end_of_a_step() {
     let mut signals =
-        open_with("signals_fmi3", &Options { early_return: false, ..here() }).unwrap();
+        open_with("signals_fmi3", &OpenOptions { early_return: false, ..here() }).unwrap();
     start(&mut *signals);
     let stepped = signals.step(0.0, 0.6).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, Outcome::Done, true));
+    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, StepOutcome::Done, true));
     assert!(!signals.handle_events().unwrap());
     assert_eq!(get(&mut *signals, "count"), [2.0]);
     assert_eq!(get(&mut *signals, "event_time"), [0.6]);
@@ -358,11 +358,11 @@ fn events_without_early_return_come_at_the_end_of_a_step() {
 #[test]
 fn an_fmu_handles_its_events_itself_where_it_is_asked_to() {
     let folder = without_clocks();
-    let options = Options { event_mode: false, ..here() };
+    let options = OpenOptions { event_mode: false, ..here() };
     let mut signals = octant_fmu_host::open(folder.path(), &options).unwrap();
     start(&mut *signals);
     let stepped = signals.step(0.0, 0.6).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, Outcome::Done, false));
+    assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, StepOutcome::Done, false));
     assert_eq!(get(&mut *signals, "count"), [2.0]);
     assert_eq!(get(&mut *signals, "event_time"), [0.5]);
     assert_eq!(get(&mut *signals, "updates"), [0.0]);
@@ -383,7 +383,7 @@ fn a_discarded_step_says_how_far_it_came() {
     let mut signals = open("signals_fmi3");
     start(&mut *signals);
     let stepped = signals.step(0.0, 11.0).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome), (0.0, Outcome::Discarded));
+    assert_eq!((stepped.time_s, stepped.outcome), (0.0, StepOutcome::Discarded));
     assert_eq!(signals.messages().last().unwrap().text, "10 s at most");
     signals.step(0.0, 0.1).unwrap();
 
@@ -391,11 +391,11 @@ fn a_discarded_step_says_how_far_it_came() {
     start(&mut *trouble);
     demand(&mut *trouble, STEP, DISCARD);
     let stepped = trouble.step(1.0, 1.0).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome), (1.25, Outcome::Discarded));
+    assert_eq!((stepped.time_s, stepped.outcome), (1.25, StepOutcome::Discarded));
     assert!(!stepped.terminate);
     demand(&mut *trouble, STEP, TERMINATE);
     let stepped = trouble.step(1.0, 1.0).unwrap();
-    assert!(stepped.terminate && stepped.outcome == Outcome::Discarded);
+    assert!(stepped.terminate && stepped.outcome == StepOutcome::Discarded);
 }
 
 // Places and troubles of `trouble_fmi2`.
@@ -462,7 +462,7 @@ fn what_answered_fatal_is_not_touched_again() {
 
 #[test]
 fn an_instance_that_is_none_is_said() {
-    let options = Options { instance_name: Some(format!("instantiate {FAIL}")), ..here() };
+    let options = OpenOptions { instance_name: Some(format!("instantiate {FAIL}")), ..here() };
     let error = open_with("trouble_fmi2", &options).map(|_| ()).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -504,10 +504,10 @@ fn a_flood_of_messages_is_bounded() {
 #[test]
 fn a_pending_step_is_waited_for_up_to_the_limit() {
     let time_limit = std::time::Duration::from_millis(50);
-    let mut trouble = open_with("trouble_fmi2", &Options { time_limit, ..here() }).unwrap();
+    let mut trouble = open_with("trouble_fmi2", &OpenOptions { time_limit, ..here() }).unwrap();
     start(&mut *trouble);
     demand(&mut *trouble, STEP, PENDING);
-    assert_eq!(trouble.step(0.0, 1.0).unwrap().outcome, Outcome::Done);
+    assert_eq!(trouble.step(0.0, 1.0).unwrap().outcome, StepOutcome::Done);
     demand(&mut *trouble, STEP, PENDING_FOREVER);
     let error = trouble.step(1.0, 1.0).unwrap_err();
     assert!(error.to_string().contains("pending beyond the time limit"), "{error}");
@@ -587,7 +587,7 @@ fn what_cannot_be_loaded_is_said() {
         let error = refusal(folder.path());
         assert!(error.contains("is no name of a file"), "{error}");
     }
-    let exchange = Options { interface: InterfaceKind::ModelExchange, ..here() };
+    let exchange = OpenOptions { interface: InterfaceKind::ModelExchange, ..here() };
     let error =
         octant_fmu_host::open(&foreign::fmu("gain_fmi2"), &exchange).map(|_| ()).unwrap_err();
     assert_eq!(
@@ -606,7 +606,7 @@ fn clocks_tick_when_they_are_due() {
         let mut time_s = 0.0;
         while time_s < 4.9 {
             let stepped = clocks.step(time_s, step_s).unwrap();
-            assert_eq!(stepped.outcome, Outcome::Done);
+            assert_eq!(stepped.outcome, StepOutcome::Done);
             time_s = stepped.time_s;
             // From 0.1 s on, each 0.3 s.
             let fixed = ((time_s + 1e-9 - 0.1) / 0.3).floor() + 1.0;
@@ -652,7 +652,7 @@ fn clocks_are_kept_with_the_state() {
 
 #[test]
 fn clocks_need_event_mode() {
-    let error = open_with("clocks_fmi3", &Options { event_mode: false, ..here() });
+    let error = open_with("clocks_fmi3", &OpenOptions { event_mode: false, ..here() });
     let error = error.map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("has clocks"), "{error}");
 }

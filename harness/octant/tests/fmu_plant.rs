@@ -6,12 +6,12 @@ use octant_endpoint::{Endpoint, InProcess};
 use octant_faults::catalogue::{Acts, Lasts};
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Spec, Station, Value, kinds};
+use octant_faults::{FaultSpec, Station, Value, kinds};
 use octant_fmu::calibrator::{self, Calibrator};
-use octant_fmu::component::Component;
+use octant_fmu::component::ModelComponent;
 use octant_fmu::plant;
-use octant_fmu::table::{Causality, Model};
-use octant_fmu::values::Values;
+use octant_fmu::table::{DeclaredCausality, Model};
+use octant_fmu::values::CellValues;
 use octant_plant::Plant;
 use octant_plant::config as plant_config;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -33,7 +33,7 @@ fn scenario(name: &str) -> Scenario {
 }
 
 /// Returns plant and core of a scenario.
-fn configured(scenario: &Scenario) -> (plant_config::Config, core::Config) {
+fn configured(scenario: &Scenario) -> (plant_config::PlantConfig, core::CoreConfig) {
     let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed).unwrap();
     (plant, core)
 }
@@ -41,24 +41,24 @@ fn configured(scenario: &Scenario) -> (plant_config::Config, core::Config) {
 /// Component with its values.
 struct Instance<C> {
     component: C,
-    values: Values,
+    values: CellValues,
 }
 
-impl<C: Component> Instance<C> {
+impl<C: ModelComponent> Instance<C> {
     fn new(start: &[(&'static str, Vec<f64>)]) -> Result<Self, String> {
-        let mut values = Values::new(C::MODEL);
+        let mut values = CellValues::new(C::MODEL);
         for (name, numbers) in start {
             let (slot, variable) = C::MODEL.find(name).unwrap();
             for (slot, number) in (slot..).zip(numbers) {
-                use octant_fmu::table::Kind;
+                use octant_fmu::table::ElementType;
                 match variable.kind {
-                    Kind::Real => values.set_real(slot, *number),
-                    Kind::Count => values.set_count(slot, *number as u64),
-                    Kind::Integer | Kind::Enumeration(_) => {
+                    ElementType::Real => values.set_real(slot, *number),
+                    ElementType::Count => values.set_count(slot, *number as u64),
+                    ElementType::Integer | ElementType::Enumeration(_) => {
                         values.set_integer(slot, *number as i32);
                     }
-                    Kind::Boolean => values.set_boolean(slot, *number != 0.0),
-                    Kind::Binary(_) | Kind::Clock(_) => panic!("no parameter is one"),
+                    ElementType::Boolean => values.set_boolean(slot, *number != 0.0),
+                    ElementType::Binary(_) | ElementType::Clock(_) => panic!("no parameter is one"),
                 }
             }
         }
@@ -85,7 +85,7 @@ impl<C: Component> Instance<C> {
 
 /// Pairs the slots of outputs of one model with the inputs of the same names of the other.
 fn wires(from: &'static Model, to: &'static Model) -> Vec<(usize, usize)> {
-    let inputs = to.with_slots().filter(|(_, input)| input.causality == Causality::Input);
+    let inputs = to.with_slots().filter(|(_, input)| input.causality == DeclaredCausality::Input);
     let wired = inputs.filter_map(|(slot, input)| {
         let (output, _) = from.find(input.name)?;
         Some((0..input.slots()).map(move |element| (output + element, slot + element)))
@@ -103,7 +103,7 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(plant: &plant_config::Config, faults: &[Spec], core: &core::Config) -> Self {
+    fn new(plant: &plant_config::PlantConfig, faults: &[FaultSpec], core: &core::CoreConfig) -> Self {
         let mut start = calibrator::start_values(core);
         // Stamps of the plant: faults of time reach the core.
         start.push(("imu.external_stamps", vec![1.0]));
@@ -239,7 +239,7 @@ struct Loop {
 }
 
 impl Loop {
-    fn new(plant: &plant_config::Config, faults: &[Spec], core: &core::Config) -> Self {
+    fn new(plant: &plant_config::PlantConfig, faults: &[FaultSpec], core: &core::CoreConfig) -> Self {
         Self {
             plant: Plant::new(plant).unwrap(),
             station: Station::new(faults, &plant::setup(plant)).unwrap(),
@@ -279,9 +279,9 @@ fn bits(output: &Output) -> [u8; canonical::OUTPUT_BYTES] {
 
 /// Runs both and compares the plant's outputs, the core's answers, and truth.
 fn same(
-    plant: &plant_config::Config,
-    faults: &[Spec],
-    core: &core::Config,
+    plant: &plant_config::PlantConfig,
+    faults: &[FaultSpec],
+    core: &core::CoreConfig,
     samples: u64,
     saves: &[u64],
 ) -> Pair {
@@ -350,7 +350,7 @@ fn a_ship_is_the_same_too() {
 
 /// Takes the fault of a kind's scenario as a fault of the plant: for a minute, in which lockstep
 /// has two moves.
-fn fault_of(kind: &str) -> Spec {
+fn fault_of(kind: &str) -> FaultSpec {
     let mut faults = scenario(&format!("faults/{kind}")).faults;
     let spec = faults.swap_remove(0).spec;
     assert_eq!(spec.kind.name, kind);
@@ -361,7 +361,7 @@ fn fault_of(kind: &str) -> Spec {
         recovery: if fades { 400 } else { 0 },
         repeat: Repeat::Once,
     };
-    Spec { id: "fault[1]".into(), schedule, ..spec }
+    FaultSpec { id: "fault[1]".into(), schedule, ..spec }
 }
 
 fn can_act() -> Vec<&'static str> {
@@ -400,15 +400,15 @@ fn every_kind_that_can_act_in_a_plant_does_the_same_there() {
 #[test]
 fn four_at_once_and_what_has_no_place() {
     let (plant, core) = configured(&scenario("lockstep"));
-    let four: Vec<Spec> = ["command-late", "vibration-random", "dropout", "bias-step"]
+    let four: Vec<FaultSpec> = ["command-late", "vibration-random", "dropout", "bias-step"]
         .into_iter()
         .enumerate()
-        .map(|(place, kind)| Spec { id: format!("fault[{}]", place + 1), ..fault_of(kind) })
+        .map(|(place, kind)| FaultSpec { id: format!("fault[{}]", place + 1), ..fault_of(kind) })
         .collect();
     same(&plant, &four, &core, 20_000, &[9_000]);
 
-    let said = |faults: &[Spec]| plant::start_values(&plant, faults).unwrap_err().to_string();
-    let five: Vec<Spec> = four.iter().chain(&four[..1]).cloned().collect();
+    let said = |faults: &[FaultSpec]| plant::start_values(&plant, faults).unwrap_err().to_string();
+    let five: Vec<FaultSpec> = four.iter().chain(&four[..1]).cloned().collect();
     assert_eq!(said(&five), "5 faults were found, at most 4 are possible");
     for kind in kinds::all().filter(|kind| !can_act().contains(&kind.name)) {
         let why = match kind.acts {

@@ -3,22 +3,22 @@
 
 use crate::common::foreign;
 use crate::common::program::{OCTANT, passes_as_process, program, test_as_process};
-use octant_fmu_host::OpenError;
-use octant_fmu_host::instance::{Group, Instance, InstanceError, Options, Outcome, Place, Plan};
+use octant_fmu_host::FmuOpenError;
+use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError, OpenOptions, StepOutcome, ProcessPlace, AccessPlan};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-fn apart() -> Options {
+fn apart() -> OpenOptions {
     let program = Some(PathBuf::from(OCTANT));
-    Options { place: Place::OwnProcess, program, ..Options::default() }
+    OpenOptions { place: ProcessPlace::OwnProcess, program, ..OpenOptions::default() }
 }
 
-fn here() -> Options {
-    Options { place: Place::ThisProcess, ..Options::default() }
+fn here() -> OpenOptions {
+    OpenOptions { place: ProcessPlace::ThisProcess, ..OpenOptions::default() }
 }
 
-fn try_open(name: &str, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
+fn try_open(name: &str, options: &OpenOptions) -> Result<Box<dyn Instance>, FmuOpenError> {
     octant_fmu_host::open(&foreign::fmu(name), options)
 }
 
@@ -26,9 +26,9 @@ fn open(name: &str) -> Box<dyn Instance> {
     try_open(name, &apart()).unwrap()
 }
 
-fn group(instance: &dyn Instance, name: &str) -> Group {
+fn group(instance: &dyn Instance, name: &str) -> VariableGroup {
     let description = instance.description();
-    Group::of(description, description.variable(name).unwrap()).unwrap()
+    VariableGroup::of(description, description.variable(name).unwrap()).unwrap()
 }
 
 fn set(instance: &mut dyn Instance, name: &str, values: &[f64]) -> Result<(), InstanceError> {
@@ -48,10 +48,10 @@ fn start(instance: &mut dyn Instance) {
     assert!(!instance.exit_initialization().unwrap());
 }
 
-fn plan(instance: &dyn Instance, names: &[&str]) -> Plan {
+fn plan(instance: &dyn Instance, names: &[&str]) -> AccessPlan {
     let description = instance.description();
     let variables: Vec<_> = names.iter().map(|name| description.variable(name).unwrap()).collect();
-    Plan::new(description, &variables).unwrap()
+    AccessPlan::new(description, &variables).unwrap()
 }
 
 // Places and troubles of `trouble_fmi2`.
@@ -164,7 +164,7 @@ fn more_numbers_than_shared_memory_was_made_for() {
     let gain = &mut *gain;
     start(gain);
     let u = group(gain, "u");
-    let many = Group { references: vec![u.references[0]; 5000], elements: 5000, ..u };
+    let many = VariableGroup { references: vec![u.references[0]; 5000], elements: 5000, ..u };
     let y = plan(gain, &["y"]);
     let mut values = vec![0.0; 5000];
     values[4999] = 0.5;
@@ -174,7 +174,7 @@ fn more_numbers_than_shared_memory_was_made_for() {
     // More different exchanges than are planned for.
     for n in 1..100 {
         let u = group(gain, "u");
-        let some = Group { references: vec![u.references[0]; n], elements: n, ..u };
+        let some = VariableGroup { references: vec![u.references[0]; n], elements: n, ..u };
         let time_s = n as f64;
         gain.exchange(&[some], &values[5000 - n..], time_s, 1.0, &y.groups, &mut got).unwrap();
         assert_eq!(got, [1.0 + time_s]);
@@ -182,9 +182,9 @@ fn more_numbers_than_shared_memory_was_made_for() {
 }
 
 /// Triggers a trouble, and returns the error.
-fn meet(place: u8, what: u8, options: &Options) -> String {
+fn meet(place: u8, what: u8, options: &OpenOptions) -> String {
     let options = if place == INSTANTIATE {
-        Options { instance_name: Some(format!("instantiate {what}")), ..options.clone() }
+        OpenOptions { instance_name: Some(format!("instantiate {what}")), ..options.clone() }
     } else {
         options.clone()
     };
@@ -258,14 +258,14 @@ fn a_crash_is_an_error_with_signal_and_function() {
 #[test]
 fn a_hang_ends_at_the_limit() {
     // The FMU hangs for ever: any answer shows that the time limit was kept.
-    let options = Options { time_limit: Duration::from_secs(1), ..apart() };
+    let options = OpenOptions { time_limit: Duration::from_secs(1), ..apart() };
     for what in [HANG, BUSY] {
         assert_eq!(
             meet(STEP, what, &options),
             "the process of trouble_fmi2.fmu gave no answer to fmi2DoStep for 1 s, and was ended"
         );
     }
-    let options = Options { start_limit: Duration::from_millis(500), ..apart() };
+    let options = OpenOptions { start_limit: Duration::from_millis(500), ..apart() };
     for place in [INSTANTIATE, INITIALIZATION] {
         let error = meet(place, HANG, &options);
         assert!(error.contains("for 0.5 s, and was ended"), "{error}");
@@ -275,7 +275,7 @@ fn a_hang_ends_at_the_limit() {
 #[test]
 fn a_hang_in_its_end_holds_nobody_up_for_longer() {
     // The FMU hangs for ever: the return of `drop` shows that the time limit was kept.
-    let options = Options { time_limit: Duration::from_secs(1), ..apart() };
+    let options = OpenOptions { time_limit: Duration::from_secs(1), ..apart() };
     for what in [HANG, CRASH, EXIT] {
         let mut trouble = try_open("trouble_fmi2", &options).unwrap();
         start(&mut *trouble);
@@ -294,7 +294,7 @@ fn a_failure_is_not_the_end_of_the_process() {
     demand(trouble, STEP, DISCARD);
     let stepped =
         trouble.exchange(&inputs.groups, &[1.0], 0.0, 1.0, &outputs.groups, &mut got).unwrap();
-    assert_eq!((stepped.time_s, stepped.outcome), (0.25, Outcome::Discarded));
+    assert_eq!((stepped.time_s, stepped.outcome), (0.25, StepOutcome::Discarded));
     demand(trouble, STEP, FAIL);
     let kept = trouble.keep_state().unwrap();
     let error =
@@ -378,7 +378,7 @@ fn opens_and_closes() {
         gain.step(0.0, 1.0).unwrap();
         if k % 2 == 0 {
             drop(gain);
-            let options = Options { time_limit: Duration::from_millis(500), ..apart() };
+            let options = OpenOptions { time_limit: Duration::from_millis(500), ..apart() };
             meet(STEP, if k % 4 == 0 { CRASH } else { HANG }, &options);
         }
     }
@@ -394,7 +394,7 @@ fn nothing_is_left_behind() {
 #[test]
 #[ignore = "run by the_process_ends_with_the_one_that_it_serves, which ends it"]
 fn hangs_for_long() {
-    let options = Options { time_limit: Duration::from_mins(10), ..apart() };
+    let options = OpenOptions { time_limit: Duration::from_mins(10), ..apart() };
     let mut idle = try_open("gain_fmi2", &options).unwrap();
     start(&mut *idle);
     meet(STEP, BUSY, &options);
@@ -459,21 +459,21 @@ fn an_instance_may_outlive_the_thread_that_made_it() {
 
 #[test]
 fn a_program_that_is_none_is_said() {
-    let no_such = Options { program: Some("/no/such/octant".into()), ..apart() };
+    let no_such = OpenOptions { program: Some("/no/such/octant".into()), ..apart() };
     let error = try_open("gain_fmi2", &no_such).map(|_| ()).unwrap_err().to_string();
     assert!(
         error.starts_with("the process of gain_fmi2.fmu can't be started: /no/such/octant: "),
         "{error}"
     );
-    let other = Options { program: Some("/bin/true".into()), ..apart() };
+    let other = OpenOptions { program: Some("/bin/true".into()), ..apart() };
     let error = try_open("gain_fmi2", &other).map(|_| ()).unwrap_err().to_string();
     assert_eq!(error, "the process of gain_fmi2.fmu ended by itself with exit status 0");
 }
 
 #[test]
 fn what_cannot_be_opened_is_said_as_it_is_here() {
-    let said = |options: &Options| {
-        let options = Options { instance_name: Some("nul\0".into()), ..options.clone() };
+    let said = |options: &OpenOptions| {
+        let options = OpenOptions { instance_name: Some("nul\0".into()), ..options.clone() };
         try_open("gain_fmi2", &options).map(|_| ()).unwrap_err().to_string()
     };
     assert_eq!(said(&apart()), said(&here()));

@@ -8,10 +8,10 @@ use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::file::Campaign;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{Kind, Table, Value};
+use octant_campaign::table::{ColumnKind, ExistingTable, ColumnValue};
 use octant_campaign::{merge, requirements, status};
 use octant_evidence::manifest::Manifest;
-use octant_evidence::signature::{self, Key};
+use octant_evidence::signature::{self, SigningKey};
 use octant_recorder::reader::{Item, Recording};
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
@@ -110,7 +110,7 @@ fn a_calibration_table() {
     let summary = std::fs::read_to_string(sample("run/summary.json")).unwrap();
     let summary = Summary::from_json(&summary).unwrap().calibration.unwrap();
     for (i, name) in octant_sample::parameters::NAMES.iter().enumerate() {
-        let si = octant_sample::parameters::Group::of(i).si_per_unit();
+        let si = octant_sample::parameters::ParameterGroup::of(i).si_per_unit();
         let estimate = table.parameters.to_array()[i] / si;
         let expected = summary.parameters[*name].estimate;
         assert!((estimate - expected).abs() <= 1e-12 * expected.abs(), "{name}");
@@ -211,21 +211,21 @@ fn a_plan_and_the_results_of_its_cases() {
 fn tables() {
     let plan = Plan::read(&sample("campaign/plan.json")).unwrap();
     let path = |table: &str| merge::merged(&sample("campaign"), table);
-    let cases = Table::open(&path("cases")).unwrap();
+    let cases = ExistingTable::open(&path("cases")).unwrap();
     assert_eq!((cases.rows, &cases.plan), (4, &plan.id));
     let kind = |name: &str| {
         let column = cases.columns.iter().find(|(column, _)| column == name);
         column.map(|(_, kind)| *kind)
     };
-    assert_eq!(kind("seed"), Some(Kind::Integer));
-    assert_eq!(kind("navigation.latitude_error_arcmin.max"), Some(Kind::Number));
+    assert_eq!(kind("seed"), Some(ColumnKind::Integer));
+    assert_eq!(kind("navigation.latitude_error_arcmin.max"), Some(ColumnKind::Number));
     let ids = cases.column("case").unwrap().unwrap();
     for (row, case) in plan.cases.iter().enumerate() {
-        assert_eq!(ids.at(row), Some(Value::Text(case.id.as_str().into())));
+        assert_eq!(ids.at(row), Some(ColumnValue::Text(case.id.as_str().into())));
     }
-    let checks = Table::open(&path("checks")).unwrap();
+    let checks = ExistingTable::open(&path("checks")).unwrap();
     assert_eq!(checks.rows, 8, "two requirements of each case");
-    let drift = Table::open(&path("drift")).unwrap();
+    let drift = ExistingTable::open(&path("drift")).unwrap();
     assert!(drift.rows > 40 && drift.column("hours").unwrap().is_some());
 
     // The version is text in the footer of a Parquet file, which has no checksum.
@@ -234,7 +234,7 @@ fn tables() {
     let folder = tempfile::tempdir().unwrap();
     let newer = folder.path().join("cases.parquet");
     std::fs::write(&newer, bytes).unwrap();
-    assert_refused(&Table::open(&newer).unwrap_err().to_string());
+    assert_refused(&ExistingTable::open(&newer).unwrap_err().to_string());
 }
 
 /// Writes samples of the present version into the folder that `OCTANT_FORMATS` names.
@@ -261,7 +261,7 @@ fn make() {
     let secret = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(secret.path(), pair.sk.to_box(None).unwrap().to_string()).unwrap();
     std::fs::write(out.join(KEY), pair.pk.to_box().unwrap().to_string()).unwrap();
-    let key = Key::read(secret.path(), None).unwrap();
+    let key = SigningKey::read(secret.path(), None).unwrap();
     // Without facts of the host, and without the report, which is large and isn't read again.
     let mut manifest = Manifest::read(&run).unwrap();
     std::fs::remove_file(run.join("report.html")).unwrap();

@@ -3,7 +3,7 @@
 
 use crate::common::program::ends;
 use octant_faults::catalogue::{Acts, Family};
-use octant_faults::{Kind, kinds};
+use octant_faults::{FaultKind, kinds};
 use std::path::{Path, PathBuf};
 
 fn path(file: &str) -> PathBuf {
@@ -44,7 +44,7 @@ fn named(folder: &str, ending: &str) -> Vec<String> {
 }
 
 /// Names of kinds in the order of a folder.
-fn names<'a>(kinds: impl Iterator<Item = &'a Kind>) -> Vec<&'a str> {
+fn names<'a>(kinds: impl Iterator<Item = &'a FaultKind>) -> Vec<&'a str> {
     let mut names: Vec<&str> = kinds.map(|kind| kind.name).collect();
     names.sort_unstable();
     names
@@ -52,7 +52,7 @@ fn names<'a>(kinds: impl Iterator<Item = &'a Kind>) -> Vec<&'a str> {
 
 /// Kinds that alter samples. Those of the wire need a device and those of the host the clock: they
 /// have no sample that could be drawn, and no short scenario.
-fn in_samples() -> impl Iterator<Item = &'static Kind> {
+fn in_samples() -> impl Iterator<Item = &'static FaultKind> {
     kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host))
 }
 
@@ -66,7 +66,7 @@ fn pages_of_faults() {
     for kind in kinds::all() {
         is_made(&format!("docs/faults/{}.md", kind.name), &describe(kind.name, &[]));
     }
-    for Kind { name, .. } in in_samples() {
+    for FaultKind { name, .. } in in_samples() {
         describe(name, &["--picture", svg.to_str().unwrap()]);
         let picture = std::fs::read_to_string(&svg).unwrap();
         is_made(&format!("docs/faults/{name}.svg"), &picture);
@@ -92,7 +92,7 @@ fn tables_of_faults() {
             "\n### {}{rest}\n\n| kind | what happens |\n|---|---|\n",
             first.to_uppercase()
         );
-        for Kind { name, summary, .. } in kinds::all().filter(|kind| kind.family == family) {
+        for FaultKind { name, summary, .. } in kinds::all().filter(|kind| kind.family == family) {
             tables += &format!("| [{name}](faults/{name}.md) | {summary} |\n");
         }
     }
@@ -112,7 +112,7 @@ fn suite_of_faults() {
          # verdict is a fail, because it is \"refused\".\n\
          schema = 1\n",
     );
-    for Kind { name, .. } in in_samples() {
+    for FaultKind { name, .. } in in_samples() {
         let scenario = read(&format!("{FOLDER}/{name}.toml"));
         let expected = scenario.lines().find_map(|line| line.strip_prefix("# Expected ("));
         let expected = expected.and_then(|line| line.split_once("): "));

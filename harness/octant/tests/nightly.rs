@@ -3,7 +3,7 @@
 use crate::common::program::octant_in;
 use octant_campaign::case;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{Table, Value as Cell};
+use octant_campaign::table::{ExistingTable, ColumnValue as Cell};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -176,7 +176,7 @@ fn what_got_worse_is_found_and_what_is_the_same_is_the_same() {
 
 /// Lists the names of the nights in the history.
 fn nights(bench: &Bench) -> Vec<String> {
-    let table = Table::open(&bench.at("h/history.parquet")).unwrap();
+    let table = ExistingTable::open(&bench.at("h/history.parquet")).unwrap();
     let names = table.column("night").unwrap().unwrap();
     let mut names: Vec<String> = (0..table.rows)
         .map(|row| match names.at(row) {
@@ -190,7 +190,7 @@ fn nights(bench: &Bench) -> Vec<String> {
 
 /// Checks that the history has each night, and that its page is drawn.
 fn history(bench: &Bench, count: usize) {
-    let table = Table::open(&bench.at("h/history.parquet")).unwrap();
+    let table = ExistingTable::open(&bench.at("h/history.parquet")).unwrap();
     let column = |name: &str| table.column(name).unwrap().unwrap();
     assert_eq!(nights(bench).len(), count);
     let measure = Cell::Text("navigation.radial_error_nmi.max".into());

@@ -4,7 +4,7 @@
 use octant_calibration::least_squares::raw::{self, Nominal};
 use octant_earth::Vector3;
 use octant_run::passes::in_passes;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use octant_source as source;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
         .unwrap()
         .replace("${OCTANT_RECORDINGS}", recordings.to_str().unwrap());
     let scenario = Scenario::parse(&text, file, Path::new(""), &[]).unwrap();
-    let draws = Draws::of(&scenario, &Seeded(scenario.seed));
+    let draws = DrawnValues::of(&scenario, &Seeded(scenario.seed));
     let config = scenario
         .core(Method::Primary, &draws, &scenario.mean_attitude(), &Vector3::zeros())
         .unwrap();
@@ -45,7 +45,7 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
     assert_eq!((tally.gaps, tally.out_of_order), (0, 0));
 
     let mapping = scenario.source.text().unwrap();
-    let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
+    let nominal = |axes: &[octant_scenario::recorded::AxisColumn; 3]| Nominal {
         bias_counts: axes.each_ref().map(|axis| axis.offset),
         scale: axes.each_ref().map(|axis| axis.scale),
     };

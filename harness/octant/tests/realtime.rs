@@ -5,11 +5,11 @@ use crate::common::allocations;
 use crate::common::program::{ends, json};
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, InProcess, Sent};
-use octant_realtime::clock::{HostTime, now};
+use octant_realtime::clock::{MonotonicTime, now};
 use octant_recorder::{Recorder, RecorderOptions};
-use octant_run::done::Plan;
+use octant_run::done::PlannedWork;
 use octant_run::realtime::drive_by_clock;
-use octant_run::{Ended, Faulted, Host, Line, Recording, Watcher};
+use octant_run::{Ended, Faulted, RunHost, Line, StreamKeeping, Watcher};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Method, Scenario};
@@ -143,7 +143,7 @@ impl Endpoint for Slow {
 
     fn answer(
         &mut self,
-        until: HostTime,
+        until: MonotonicTime,
         output: &mut Output,
     ) -> Result<Option<usize>, EndpointError> {
         if self.waiting.front().is_some_and(|(frames, _)| *frames == 0)
@@ -171,7 +171,7 @@ fn drive(
     watched: Option<(u64, u64)>,
 ) -> (
     Result<Ended, String>,
-    octant_run::realtime::Kept,
+    octant_run::realtime::TimeKeeping,
     octant_recorder::RecorderSummary,
     Option<u64>,
 ) {
@@ -188,10 +188,10 @@ fn drive(
     let mut faulted = scenario.station(1).unwrap().map(|station| Faulted {
         station,
         fires: Vec::new(),
-        host: Host::new(&scenario, &Recording::File(Path::new("sink")), &options.trouble).unwrap(),
+        host: RunHost::new(&scenario, &StreamKeeping::File(Path::new("sink")), &options.trouble).unwrap(),
     });
     let mut recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
-    let mut watcher = Watcher::new(Plan::default());
+    let mut watcher = Watcher::new(PlannedWork::default());
     let faulted = faulted.as_mut();
     let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
     let (ended, kept) = drive_by_clock(

@@ -439,7 +439,7 @@ fn parameters_that_were_announced_have_to_come() {
     steps[300].output.parameters_revision = 9;
     let mut recorder = Recorder::hash_only(&RecorderOptions::default());
     let error = steps.iter().find_map(|step| {
-        let frame = octant_recorder::Frame {
+        let frame = octant_recorder::EpochFrame {
             clean: &step.clean,
             faulted: &step.faulted,
             output: &step.output,

@@ -4,7 +4,7 @@ use crate::common::epochs::{push, record, stream, truth_of};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
-use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, Quantity, TimeUnit};
+use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, RecordedQuantity, TimeUnit};
 use octant_source::{Epoch, Replay, Source, SourceError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -219,7 +219,7 @@ fn json_messages_become_samples() {
         topic: "/imu/data".into(),
         gyro: [field("w[1]", degree), field("w[0]", -degree), field("w[2]", degree)],
         accelerometer: [field("acc.x", 1.0), field("acc.y", 1.0), field("acc.z", 1.0)],
-        quantity: Quantity::Rates,
+        quantity: RecordedQuantity::Rates,
         stamp: MappedStamp::Field {
             path: "t".into(),
             unit: TimeUnit::Nanosecond,

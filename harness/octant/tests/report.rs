@@ -4,21 +4,21 @@
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData, compare as page,
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData, compare as page,
     run,
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
-use octant_score::compare::{Claim, Comparison, Maxima, PairedRun, compare};
+use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
+use octant_score::compare::{Claim, MethodComparison, Maxima, PairedRun, compare};
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::floor::{Floor, MaximumFloor};
 use octant_score::judge::judge;
 use octant_score::parameters;
 use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
-    Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
+    BaselineMethod, CalibrationScore, HealthCounts, HeightChannel, NavigationScore, SCHEMA, Summary,
 };
 
 const LATITUDE: f64 = 30.5 * DEG;
@@ -34,30 +34,30 @@ fn chance(k: usize) -> f64 {
 fn truth() -> Parameters {
     let mut all = [0.0; PARAMETER_COUNT];
     for (i, value) in all.iter_mut().enumerate() {
-        let group = Group::of(i);
+        let group = ParameterGroup::of(i);
         let size = match group {
-            Group::GyroBias => 0.005,
-            Group::GyroScale | Group::AccelScale => 30.0,
-            Group::GyroMisalignment | Group::AccelMisalignment => 40.0,
-            Group::GDependent => 2e-3,
-            Group::AccelBias => 100.0,
+            ParameterGroup::GyroBias => 0.005,
+            ParameterGroup::GyroScale | ParameterGroup::AccelScale => 30.0,
+            ParameterGroup::GyroMisalignment | ParameterGroup::AccelMisalignment => 40.0,
+            ParameterGroup::GDependent => 2e-3,
+            ParameterGroup::AccelBias => 100.0,
         };
         *value = size * chance(i) * group.si_per_unit();
     }
-    all[20] = 2.1e-3 * Group::GDependent.si_per_unit();
+    all[20] = 2.1e-3 * ParameterGroup::GDependent.si_per_unit();
     Parameters::from_array(&all)
 }
 
 fn final_sigma(i: usize) -> f64 {
-    let group = Group::of(i);
+    let group = ParameterGroup::of(i);
     let size = match group {
-        Group::GyroBias => 3.7e-4,
-        Group::GyroScale => 1.4,
-        Group::GyroMisalignment => 0.6,
-        Group::GDependent => 1.6e-4,
-        Group::AccelBias => 0.45,
-        Group::AccelScale => 0.55,
-        Group::AccelMisalignment => 0.4,
+        ParameterGroup::GyroBias => 3.7e-4,
+        ParameterGroup::GyroScale => 1.4,
+        ParameterGroup::GyroMisalignment => 0.6,
+        ParameterGroup::GDependent => 1.6e-4,
+        ParameterGroup::AccelBias => 0.45,
+        ParameterGroup::AccelScale => 0.55,
+        ParameterGroup::AccelMisalignment => 0.4,
     };
     size * (1.0 + 0.3 * chance(i + 77)) * group.si_per_unit()
 }
@@ -73,7 +73,7 @@ fn point(part: f64, hours: f64) -> ParameterPoint {
     ParameterPoint { hours, estimate: Parameters::from_array(&estimate), sigma }
 }
 
-fn calibration(positions: &str, with_g: bool) -> (Calibration, Parameters) {
+fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) {
     let ParameterPoint { mut estimate, mut sigma, .. } = point(1.0, 24.0);
     if !with_g {
         estimate.g_dependent = [0.0; 9];
@@ -83,7 +83,7 @@ fn calibration(positions: &str, with_g: bool) -> (Calibration, Parameters) {
         }
     }
     let parameters = parameters::score(Some(&truth()), &estimate, &sigma);
-    let calibration = Calibration {
+    let calibration = CalibrationScore {
         positions: positions.to_owned(),
         estimator: "39-state Kalman filter (phi)".to_owned(),
         duration_h: 24.0,
@@ -97,7 +97,7 @@ fn calibration(positions: &str, with_g: bool) -> (Calibration, Parameters) {
     (calibration, estimate)
 }
 
-fn navigation(residual_g_zz: f64, tilt_arcsec: f64) -> Navigation {
+fn navigation(residual_g_zz: f64, tilt_arcsec: f64) -> NavigationScore {
     let floor = Floor::new(LATITUDE, 0.0, 0.0, 0.0);
     let (mut scorer, gravity) = (DriftScorer::new(), 9.793_64);
     let initial =
@@ -139,7 +139,7 @@ fn data() -> ReportData {
         method: "eight positions".to_owned(),
         calibration: Some(eight),
         navigation: Some(navigation(g(&truth()) - g(&estimate), 1.5)),
-        baseline: Some(Baseline {
+        baseline: Some(BaselineMethod {
             planned: None,
             done: None,
             label: "six positions".to_owned(),
@@ -205,7 +205,7 @@ fn data() -> ReportData {
             detail: "NIS 31.2 above the gate of 25".to_owned(),
         }],
         dispositions: Dispositions::default(),
-        provenance: Provenance {
+        provenance: ReportProvenance {
             entries: vec![fact("rustc", "1.95.0"), fact("host", "x86_64-unknown-linux-gnu")],
             rerun: "octant run scenario.toml --seed 42".to_owned(),
         },
@@ -311,7 +311,7 @@ fn a_report_of_next_to_nothing_is_still_a_page() {
 }
 
 /// Makes pairs whose second method is `ratio` times the first, with some scatter.
-fn comparison(ratio: f64, scatter: f64, floor: f64) -> Comparison {
+fn comparison(ratio: f64, scatter: f64, floor: f64) -> MethodComparison {
     let runs: Vec<PairedRun> = (0..20usize)
         .map(|k| {
             let first = 1.0 + 0.6 * chance(k);
@@ -382,6 +382,6 @@ fn a_comparison_is_a_table_a_page_and_a_file() {
     let html = page::render(&comparison, &[("rustc".to_owned(), "1.95.0".to_owned())]);
     check(&html, "compare.html");
     let json = serde_json::to_string(&comparison).unwrap();
-    assert_eq!(serde_json::from_str::<Comparison>(&json).unwrap(), comparison);
+    assert_eq!(serde_json::from_str::<MethodComparison>(&json).unwrap(), comparison);
     assert!(json.contains(r#""measure":"longitude_72h""#) && json.contains(r#""claim":"holds""#));
 }

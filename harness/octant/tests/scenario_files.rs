@@ -1,8 +1,8 @@
 //! Scenarios that ship with Octant: each is read, resolved and read again.
 
 use octant_earth::Vector3;
-use octant_sample::parameters::Group;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_sample::parameters::ParameterGroup;
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 fn both_configurations(scenario: &Scenario) -> String {
-    let draws = Draws::of(scenario, &Seeded(1));
+    let draws = DrawnValues::of(scenario, &Seeded(1));
     let plant = scenario.plant(scenario.seed, &draws);
     let core = |method| scenario.core(method, &draws, &scenario.mean_attitude(), &Vector3::zeros());
     // Debug prints every field, and floats so that they read back to the same bits.
@@ -45,12 +45,12 @@ fn every_shipped_scenario_is_one() {
 fn a_resolved_scenario_makes_the_same_run_and_resolves_to_itself() {
     for file in files() {
         let scenario = Scenario::load(&file, &[]).unwrap();
-        let draws = Draws::of(&scenario, &Seeded(1));
+        let draws = DrawnValues::of(&scenario, &Seeded(1));
         let resolved = scenario.to_resolved_toml(scenario.seed, &draws);
         let again = Scenario::parse(&resolved, "resolved", Path::new("/elsewhere"), &[])
             .unwrap_or_else(|error| panic!("{error}\n{resolved}"));
         assert_eq!(both_configurations(&again), both_configurations(&scenario), "{resolved}");
-        let draws = Draws::of(&again, &Seeded(1));
+        let draws = DrawnValues::of(&again, &Seeded(1));
         assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
     }
 }
@@ -92,7 +92,7 @@ fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
                 .unwrap_or_else(|error| panic!("{error}\n{text}"))
         };
         let scenario = parse(&text, "/runs");
-        let resolved = scenario.to_resolved_toml(1, &Draws::of(&scenario, &Seeded(1)));
+        let resolved = scenario.to_resolved_toml(1, &DrawnValues::of(&scenario, &Seeded(1)));
         let again = parse(&resolved, "/elsewhere");
         let place = |text: String| text.replace("\"data/gyro.csv\"", "\"/runs/data/gyro.csv\"");
         assert_eq!(
@@ -110,7 +110,7 @@ fn the_quick_scenario_is_what_its_header_says() {
     assert_eq!(scenario.calibration_samples(), 4 * 3600 * 200);
     assert_eq!(scenario.samples(), Some(28 * 3600 * 200));
     let (eight, six) = (scenario.calibration.unwrap(), scenario.baseline.unwrap());
-    assert!(eight.estimates(Group::GDependent) && !six.estimates(Group::GDependent));
+    assert!(eight.estimates(ParameterGroup::GDependent) && !six.estimates(ParameterGroup::GDependent));
     assert_eq!((eight.sequence.stops().len(), six.sequence.stops().len()), (19, 17));
     // 16 moves of 90°: 10 s each; 17 equal dwells fill the rest.
     assert!((six.dwell_s - (14400.0 - 160.0) / 17.0).abs() < 1e-9, "{}", six.dwell_s);

@@ -8,13 +8,13 @@ use octant_score::drift::{DriftError, DriftSample, DriftScorer};
 use octant_score::ensemble;
 use octant_score::floor::Floor;
 use octant_score::reference::{isotropic_g_sigma, vertical_drift};
-use octant_score::summary::{HeightChannel, Navigation};
+use octant_score::summary::{HeightChannel, NavigationScore};
 use std::f64::consts::PI;
 
 const LATITUDE: f64 = 30.5 * DEG;
 
 /// Scores `f(t) = [latitude, longitude]` in arcmin, at a step of `dt_s`.
-fn scored(hours: f64, dt_s: f64, f: impl Fn(f64) -> [f64; 2]) -> Navigation {
+fn scored(hours: f64, dt_s: f64, f: impl Fn(f64) -> [f64; 2]) -> NavigationScore {
     let mut scorer = DriftScorer::new();
     let steps = (hours * 3600.0 / dt_s) as u32;
     for k in 0..=steps {

@@ -67,8 +67,8 @@ fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
 #[cfg(unix)]
 #[test]
 fn a_program_that_passes_everything_is_an_alarm() {
-    use octant_selftest::judge::{Expectation, Judged};
-    use octant_selftest::record::Record;
+    use octant_selftest::judge::{Expectation, CaseVerdict};
+    use octant_selftest::record::SelftestRecord;
     use octant_selftest::{cases, run};
     use std::os::unix::fs::PermissionsExt;
     use std::sync::atomic::AtomicBool;
@@ -86,8 +86,8 @@ fn a_program_that_passes_everything_is_an_alarm() {
     let found = run(&liar, &some, 2, &AtomicBool::new(false), &|_| {}).unwrap();
     assert_eq!(found.len(), some.len());
     for case in &found {
-        assert_eq!(case.verdict, Judged::Alarm, "{}: {}", case.id, case.found);
+        assert_eq!(case.verdict, CaseVerdict::Alarm, "{}: {}", case.id, case.found);
     }
-    let record = Record::new(&liar, started, some.len(), found).unwrap();
+    let record = SelftestRecord::new(&liar, started, some.len(), found).unwrap();
     assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
 }

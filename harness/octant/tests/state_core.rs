@@ -21,12 +21,12 @@ fn case(seed: u64) -> Case {
     Case { calibration_h: 8.0 / 60.0, navigation_h: 4.0 / 60.0, ..Case::table_1(seed, EIGHT) }
 }
 
-fn with_estimator(mut config: Config, estimator: Estimator) -> Config {
+fn with_estimator(mut config: CoreConfig, estimator: Estimator) -> CoreConfig {
     config.calibration.as_mut().unwrap().estimator = estimator;
     config
 }
 
-fn kalman(config: &Config) -> Kalman {
+fn kalman(config: &CoreConfig) -> Kalman {
     match config.calibration.as_ref().unwrap().estimator {
         Estimator::Kalman(kalman) => Kalman { refuse_above_mean_nis: 1e12, ..kalman },
         _ => unreachable!(),
@@ -34,12 +34,12 @@ fn kalman(config: &Config) -> Kalman {
 }
 
 /// Lists every estimator on land, the Kalman filter on a ship.
-fn methods(seed: u64) -> Vec<(&'static str, plant::Config, Config)> {
+fn methods(seed: u64) -> Vec<(&'static str, plant::PlantConfig, CoreConfig)> {
     let case = case(seed);
     let (ground, base) = (case.plant(), case.core());
     let psi = Kalman { error_model: ErrorModel::Psi, ..kalman(&base) };
     let mut without_g = kalman(&base);
-    without_g.estimated[octant_sample::parameters::Group::GDependent as usize] = false;
+    without_g.estimated[octant_sample::parameters::ParameterGroup::GDependent as usize] = false;
     let least_squares = |gyro, intervals| {
         Estimator::LeastSquares(LeastSquares { gravity_mps2: None, gyro, intervals })
     };
@@ -143,7 +143,7 @@ fn saved(core: &Core) -> Vec<u8> {
 
 /// Runs a method and, from each of some points on, also a core that was saved and loaded there.
 /// Returns the modes at these points.
-fn run(plant: &plant::Config, core: &Config, faults: bool, seed: u64) -> Vec<(Mode, usize)> {
+fn run(plant: &plant::PlantConfig, core: &CoreConfig, faults: bool, seed: u64) -> Vec<(Mode, usize)> {
     // One in the first seconds, three in the calibration, one at its end, one in the navigation.
     let at = |nth: u64, from: u64, to: u64| from + mix(seed * 16 + nth) % (to - from);
     let points = [
@@ -201,7 +201,7 @@ fn a_loaded_core_goes_on_bit_for_bit() {
         for (screen, screening) in screenings(core.screening.base) {
             // With faults where a screen can detect them, and the bare filter too.
             let faults = screen != "gate, widening";
-            let core = Config { screening, ..core.clone() };
+            let core = CoreConfig { screening, ..core.clone() };
             cases.push((method, screen, faults, plant.clone(), core.clone(), 10 + index as u64));
             if screen == "hardened" {
                 cases.push((method, screen, false, plant.clone(), core, 30 + index as u64));

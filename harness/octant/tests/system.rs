@@ -2,15 +2,15 @@
 //! process.
 
 use octant_base::control::Control;
-use octant_cosim::run::{Prepared, Request, Results};
-use octant_cosim::summary::Ended;
+use octant_cosim::run::{PreparedSystem, Request, Results};
+use octant_cosim::summary::SystemEnded;
 use octant_cosim::system::element_names;
 use octant_fmu_build::{Options, build};
 use octant_fmu_host::description::{Description, read_bytes};
-use octant_fmu_host::instance::Place;
+use octant_fmu_host::instance::ProcessPlace;
 use octant_recorder::StreamHash;
 use octant_requirements::Verdict;
-use octant_run::{Recording, run_method};
+use octant_run::{StreamKeeping, run_method};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
@@ -43,11 +43,11 @@ fn built() -> &'static Path {
 }
 
 fn request(path: PathBuf) -> Request {
-    Request { path, place: Place::ThisProcess, ..Request::default() }
+    Request { path, place: ProcessPlace::ThisProcess, ..Request::default() }
 }
 
 fn run(request: Request) -> Results {
-    let prepared = Prepared::new(request).unwrap_or_else(|error| panic!("{error}"));
+    let prepared = PreparedSystem::new(request).unwrap_or_else(|error| panic!("{error}"));
     prepared.run(&[], &Control::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -70,7 +70,7 @@ impl Names {
 
 /// Assembles the core's stream from the calibrator's inputs and outputs, and returns its hash.
 fn stream_hash(request: Request, fmus: [&str; 2]) -> (String, Results) {
-    let prepared = Prepared::new(request).unwrap_or_else(|error| panic!("{error}"));
+    let prepared = PreparedSystem::new(request).unwrap_or_else(|error| panic!("{error}"));
     assert!(prepared.warnings().is_empty());
     let descriptions: Vec<Description> = fmus
         .map(|fmu| {
@@ -174,7 +174,7 @@ fn output(names: &Names) -> Output {
 fn estimate(names: &Names, revision: u32) -> octant_sample::parameters::ParameterEstimate {
     let all = |prefix: &str| {
         let mut values = [f64::NAN; 30];
-        for group in octant_sample::parameters::Group::ALL {
+        for group in octant_sample::parameters::ParameterGroup::ALL {
             for (n, value) in values[group.range()].iter_mut().enumerate() {
                 *value = names.real(&format!("{prefix}.{}[{}]", group.name(), n + 1));
             }
@@ -193,7 +193,7 @@ fn in_process() -> String {
     let scenario = scenario();
     let control = Control::default();
     let run =
-        run_method(&scenario, Method::Primary, scenario.seed, Recording::Hash, &control).unwrap();
+        run_method(&scenario, Method::Primary, scenario.seed, StreamKeeping::Hash, &control).unwrap();
     run.recorder.stream_hash
 }
 
@@ -203,7 +203,7 @@ fn our_system_gives_the_bits_of_the_core_in_process() {
     let (hash, results) = stream_hash(request(built().join("octant.ssp")), fmus);
     assert_eq!(hash, in_process());
     let summary = results.summary;
-    assert_eq!((summary.verdict, &summary.ended), (Verdict::None, &Ended::AtStop));
+    assert_eq!((summary.verdict, &summary.ended), (Verdict::None, &SystemEnded::AtStop));
     assert_eq!((summary.rejected, summary.connections), (0, 22));
     // The same bytes each time, also without a watcher.
     let again = run(request(built().join("octant.ssp"))).summary;
@@ -348,7 +348,7 @@ fn what_is_set_reaches_the_fmus_and_what_is_wrong_is_told() {
         let mut request = request(built().join("octant.ssp"));
         request.said.stop_s = Some(1.0);
         request.set = set.iter().map(|one| (*one).to_owned()).collect();
-        Prepared::new(request).map(|prepared| prepared.run(&[], &Control::default()))
+        PreparedSystem::new(request).map(|prepared| prepared.run(&[], &Control::default()))
     };
     let plain = with(&[]).unwrap().unwrap().summary.stream_hash;
     let other = with(&["plant.random.seed=2"]).unwrap().unwrap().summary.stream_hash;

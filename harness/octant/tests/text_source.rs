@@ -3,22 +3,22 @@
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::recorded::{
-    Axis, Column, Delimiter, GimbalColumns, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
+    AxisColumn, RecordedColumn, Delimiter, GimbalColumns, RecordedQuantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
 use octant_source::{Epoch, Source, SourceError, TextSource};
 use std::path::{Path, PathBuf};
 
-fn axis(column: usize, offset: f64, scale: f64) -> Axis {
-    Axis { column: Column::Number(column), offset, scale }
+fn axis(column: usize, offset: f64, scale: f64) -> AxisColumn {
+    AxisColumn { column: RecordedColumn::Number(column), offset, scale }
 }
 
 fn mapping(files: TextFiles) -> TextMapping {
     TextMapping {
         files,
-        time: Some(TimeColumn { column: Column::Number(1), unit: TimeUnit::Second }),
+        time: Some(TimeColumn { column: RecordedColumn::Number(1), unit: TimeUnit::Second }),
         gyro: [2, 3, 4].map(|column| axis(column, 0.0, 1.0)),
         accelerometer: [5, 6, 7].map(|column| axis(column, 0.0, 1.0)),
-        quantity: Quantity::Rates,
+        quantity: RecordedQuantity::Rates,
         nominal_rate_hz: 100.0,
         split: 1,
         delimiter: Delimiter::Character(b','),
@@ -75,11 +75,11 @@ fn names_signs_order_increments_and_gimbals() {
     let text = "t_ms;wz;wy;wx;az;ay;ax;azimuth;roll\n5;1e-6;2e-6;3e-6;1e-3;2e-3;3e-3;90;-45\n";
     let epochs = read(text, |mapping| {
         let named =
-            |name: &str, scale| Axis { column: Column::Name(name.into()), offset: 0.0, scale };
+            |name: &str, scale| AxisColumn { column: RecordedColumn::Name(name.into()), offset: 0.0, scale };
         mapping.delimiter = Delimiter::Character(b';');
-        mapping.quantity = Quantity::Increments;
+        mapping.quantity = RecordedQuantity::Increments;
         mapping.time =
-            Some(TimeColumn { column: Column::Name("t_ms".into()), unit: TimeUnit::Millisecond });
+            Some(TimeColumn { column: RecordedColumn::Name("t_ms".into()), unit: TimeUnit::Millisecond });
         mapping.gyro = [named("wx", 1.0), named("wy", -1.0), named("wz", 1.0)];
         mapping.accelerometer = [named("ax", 1.0), named("ay", 1.0), named("az", -2.0)];
         let degree = std::f64::consts::PI / 180.0;
@@ -135,12 +135,12 @@ fn errors_name_line_and_column() {
         assert!(found.contains("a.csv"), "{found}");
     }
     let found = error("t,a,b\n1,2,3\n", |mapping| {
-        mapping.gyro[0].column = Column::Name("wx".into());
+        mapping.gyro[0].column = RecordedColumn::Name("wx".into());
     });
     assert!(found.contains("line 1: no column \"wx\", found t, a, b"), "{found}");
     let found = error("", |mapping| mapping.skip_lines = 2);
     assert!(found.contains("within the 2 lines to skip"), "{found}");
-    let found = error(good, |mapping| mapping.gyro[0].column = Column::Number(0));
+    let found = error(good, |mapping| mapping.gyro[0].column = RecordedColumn::Number(0));
     assert!(found.contains("column 0"), "{found}");
     let found = error(good, |mapping| mapping.nominal_rate_hz = 0.0);
     assert!(found.contains("nominal rate is 0 Hz"), "{found}");

@@ -5,8 +5,8 @@ use crate::common::program::OCTANT;
 use crate::common::table::{Bench, Running, Stage, wait_for};
 use octant_sample::{GimbalCommand, Status};
 use octant_source::{Replay, Source};
-use octant_turntable::Axis;
-use octant_turntable::simulate::Behaviour;
+use octant_turntable::TableAxis;
+use octant_turntable::simulate::ControllerBehaviour;
 use serde_json::Value;
 use std::process::Command;
 
@@ -16,7 +16,7 @@ fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
     let bench = Bench::new(&stage, 20, "home = true\nwatchdog = \"5 s\"\n");
     let (status, said) = bench.run(&[]).wait();
     assert!(matches!(status, Some(0 | 1 | 3)), "{status:?}: {said}");
-    assert!((stage.angle(Axis::Roll) - 20.0).abs() < 1e-4 && stage.rests());
+    assert!((stage.angle(TableAxis::Roll) - 20.0).abs() < 1e-4 && stage.rests());
     let log = stage.server.with(|controller, _| controller.log().to_vec());
     let homed = log.iter().filter(|line| line.starts_with("PROGRAM RUN")).count();
     assert_eq!(homed, 2);
@@ -75,7 +75,7 @@ fn ended_on_the_way(more: &str, end: impl FnOnce(&Stage, &Running)) -> (Option<i
     end(&stage, &running);
     wait_for("rest", || stage.rests());
     let (status, said) = running.wait();
-    let angle = stage.angle(Axis::Roll);
+    let angle = stage.angle(TableAxis::Roll);
     assert!(angle < 195.0, "{angle}: {said}");
     assert!(stage.rests());
     if status != Some(4) {
@@ -96,7 +96,7 @@ fn an_instrument_that_is_lost_stops_the_table() {
 #[test]
 fn a_table_that_stops_itself_ends_the_run_and_is_named() {
     let (status, reasons) = ended_on_the_way("reply = \"200 ms\"\n", |stage, _| {
-        stage.server.with(|controller, _| controller.behave(Behaviour::Silent));
+        stage.server.with(|controller, _| controller.behave(ControllerBehaviour::Silent));
     });
     assert_eq!(status, Some(4));
     assert!(reasons.contains("turntable tcp:") && reasons.contains("no reply to"), "{reasons}");
@@ -139,7 +139,7 @@ fn a_set_point_beyond_its_limits_ends_the_run() {
     assert_eq!(status, Some(4), "{said}");
     let reasons = bench.json("summary.json")["reasons"].to_string();
     assert!(reasons.contains("roll -20.0000° is beyond its limits, -5° to 25°"), "{reasons}");
-    assert!(stage.rests() && stage.angle(Axis::Roll).abs() < 1e-4);
+    assert!(stage.rests() && stage.angle(TableAxis::Roll).abs() < 1e-4);
 }
 
 /// Invalid settings are refused with their place, before anything is sent to the table.

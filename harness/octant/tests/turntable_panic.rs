@@ -3,7 +3,7 @@
 use crate::common::program::passes_as_process;
 use crate::common::table::{Bench, Stage, wait_for};
 use octant_sample::{GimbalAngles, GimbalCommand};
-use octant_scenario::Source as Kind;
+use octant_scenario::SourceSpec as Kind;
 use octant_source::{Epoch, LiveSource, Source};
 
 /// In a process of its own: a panic stops every table of its process.
@@ -26,7 +26,7 @@ fn the_table_stops_at_a_panic() {
     let mut epoch = Epoch::default();
     wait_for("the move", || {
         source.next(&command, &mut epoch).unwrap();
-        stage.angle(octant_turntable::Axis::Roll) > 5.0
+        stage.angle(octant_turntable::TableAxis::Roll) > 5.0
     });
     assert!(std::thread::spawn(|| panic!("somewhere else")).join().is_err());
     wait_for("rest", || stage.rests());
@@ -37,5 +37,5 @@ fn the_table_stops_at_a_panic() {
     assert!(failed.is_none(), "{failed:?}");
     let stopped = bench.unwrap().table.unwrap().stopped;
     assert_eq!(stopped.as_deref(), Some("the harness panicked"));
-    assert!(stage.rests() && stage.angle(octant_turntable::Axis::Roll) < 195.0);
+    assert!(stage.rests() && stage.angle(octant_turntable::TableAxis::Roll) < 195.0);
 }

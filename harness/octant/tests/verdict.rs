@@ -5,12 +5,12 @@ use octant_evidence::discrepancy::of_run;
 use octant_requirements::measures;
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
-use octant_run::{Recording, assemble, run_method};
+use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
+use octant_score::judge::{FindingSubject, Finding, NO_REQUIREMENT, derive, judge, judge_by};
 use octant_score::junit::junit;
 use octant_score::summary::{
-    Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
+    CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, NavigationScore, RadialScore,
     SCHEMA, Summary, SummaryError,
 };
 use octant_score::verdict::{evaluate, measure};
@@ -35,7 +35,7 @@ fn summary() -> Summary {
         done: None,
         faults: vec![],
         method: "eight".to_owned(),
-        calibration: Some(Calibration {
+        calibration: Some(CalibrationScore {
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -46,7 +46,7 @@ fn summary() -> Summary {
             refused: None,
             health: HealthCounts::default(),
         }),
-        navigation: Some(Navigation {
+        navigation: Some(NavigationScore {
             duration_h: 1.0,
             height: HeightChannel::Held,
             latitude_error_arcmin: score,
@@ -105,7 +105,7 @@ proptest! {
             .iter()
             .map(|&verdict| Finding {
                 verdict,
-                about: About::Run,
+                about: FindingSubject::Run,
                 reason: "so it was".to_owned(),
             })
             .collect();
@@ -444,7 +444,7 @@ fn every_number_of_a_run_can_be_required() {
                 [procedure.navigation]\nduration = \"2 h\"\n[baseline]\ng_states = false\n";
     let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
     let run =
-        |method| run_method(&scenario, method, 1, Recording::None, &Control::default()).unwrap();
+        |method| run_method(&scenario, method, 1, StreamKeeping::None, &Control::default()).unwrap();
     let (primary, baseline) = (run(Method::Primary), run(Method::Baseline));
     let run = assemble(&scenario, 1, primary, Some(baseline)).unwrap();
     let mut all = Vec::new();

@@ -5,24 +5,24 @@
 //! use.
 
 use octant_base::control::Control;
-use octant_campaign::case::{self, CaseResult, Kept as KeptResult};
+use octant_campaign::case::{self, CaseResult, StoreOutcome as KeptResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario};
 use octant_campaign::requirements::Planned;
 use octant_campaign::{status, trace};
-use octant_realtime::schedule::{Granted, Outcome};
+use octant_realtime::schedule::{Granted, RequestOutcome};
 use octant_requirements::requirement::{
-    self as required, Check, Ensemble, Limit, Requirements, Verification,
+    self as required, Check, EnsembleRequirement, Limit, Requirements, Verification,
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
-use octant_run::realtime::Kept;
-use octant_run::{Recording, assemble, run_method};
+use octant_run::realtime::TimeKeeping;
+use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::judge::{About, Finding, besides, derive, judge};
+use octant_score::judge::{FindingSubject, Finding, besides, derive, judge};
 use octant_score::summary::{
-    Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
-    Navigation, Pacing, RadialScore, Summary,
+    BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, LatenessQuantiles,
+    NavigationScore, PacingRecord, RadialScore, Summary,
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -132,7 +132,7 @@ impl Parts {
             clean_crc32: None,
             faulted_crc32: None,
         };
-        let calibration = |refused: bool| Calibration {
+        let calibration = |refused: bool| CalibrationScore {
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -162,7 +162,7 @@ impl Parts {
             altered_streams: None,
             method: "eight".to_owned(),
             calibration: Some(calibration(self.refused)),
-            navigation: Some(Navigation {
+            navigation: Some(NavigationScore {
                 duration_h: 1.0,
                 height: HeightChannel::Held,
                 latitude_error_arcmin: score,
@@ -173,7 +173,7 @@ impl Parts {
                 series_hours: Vec::new(),
             }),
             counterfactual: None,
-            baseline: self.baseline.as_ref().map(|(fired, refused)| Baseline {
+            baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,
                 done: None,
                 label: "six".to_owned(),
@@ -190,7 +190,7 @@ impl Parts {
         let requirements: Vec<LimitCheck> = self.checks.iter().map(Found::requirement).collect();
         let finding = |verdict: &Verdict| Finding {
             verdict: *verdict,
-            about: About::Run,
+            about: FindingSubject::Run,
             reason: "x".to_owned(),
         };
         let findings: Vec<Finding> = self.findings.iter().map(finding).collect();
@@ -285,7 +285,7 @@ fn result(id: &str, scenario: &PlannedScenario, case: &Case, parts: &Parts) -> C
 }
 
 /// Makes a campaign in a folder, and its requirements.
-fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Plan, Requirements) {
+fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<EnsembleRequirement>) -> (Plan, Requirements) {
     let planned = PlannedScenario {
         id: "s".to_owned(),
         file: PathBuf::from("s.toml"),
@@ -352,10 +352,10 @@ fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Pl
     (plan, requirements)
 }
 
-fn ensemble() -> impl Strategy<Value = Option<Ensemble>> {
+fn ensemble() -> impl Strategy<Value = Option<EnsembleRequirement>> {
     // A weak requirement on the ensemble, which a few cases can show.
     let weak =
-        (0.01f64..0.4, 0.01f64..0.6).prop_map(|(pass, confidence)| Ensemble { pass, confidence });
+        (0.01f64..0.4, 0.01f64..0.6).prop_map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
     prop::option::of(weak)
 }
 
@@ -435,7 +435,7 @@ fn a_failure_that_an_ensemble_allows_hides_no_silent_fault() {
         baseline,
     };
     let good = Parts { checks: vec![Found::Kept], ..bad(Vec::new(), None) };
-    let allowed = Some(Ensemble { pass: 0.2, confidence: 0.5 });
+    let allowed = Some(EnsembleRequirement { pass: 0.2, confidence: 0.5 });
     let verdict = |one: Parts| {
         let folder = tempfile::tempdir().unwrap();
         let mut outcomes = vec![Came::Ran(good.clone()); 9];
@@ -459,8 +459,8 @@ fn a_failure_that_an_ensemble_allows_hides_no_silent_fault() {
     assert_eq!(status.verdict(), Verdict::Fail);
 }
 
-fn lateness(p99: f64) -> Lateness {
-    Lateness { p50: 0.0, p99, p999: p99, max: p99 }
+fn lateness(p99: f64) -> LatenessQuantiles {
+    LatenessQuantiles { p50: 0.0, p99, p999: p99, max: p99 }
 }
 
 proptest! {
@@ -482,10 +482,10 @@ proptest! {
                     measure = \"navigation.radial_error_nmi.max\"\nlimit = \"10 nmi\"\n";
         let scenario = Scenario::parse(text, "f", Path::new(""), &[]).unwrap();
         let run = || {
-            run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap()
+            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
         };
         let (mut primary, mut baseline) = (run(), run());
-        let pacing = Pacing {
+        let pacing = PacingRecord {
             frames: 800,
             period_us: 5000.0,
             lateness_us: lateness(p99_us),
@@ -504,11 +504,11 @@ proptest! {
         };
         let side = if in_baseline { &mut baseline } else { &mut primary };
         let granted = Granted {
-            scheduling: Outcome::NotAsked,
-            memory: Outcome::NotAsked,
-            cpu: Outcome::NotAsked,
+            scheduling: RequestOutcome::NotAsked,
+            memory: RequestOutcome::NotAsked,
+            cpu: RequestOutcome::NotAsked,
         };
-        side.kept = Some(Kept { pacing, granted });
+        side.kept = Some(TimeKeeping { pacing, granted });
         let lost = overruns + late_answers + missed_answers + not_sent + dropped_records > 0
             || p99_us > 500.0;
         let summary = assemble(&scenario, 1, primary, Some(baseline)).unwrap().summary;
@@ -525,7 +525,7 @@ fn a_baseline_that_was_interrupted_shows_nothing() {
                 measure = \"navigation.radial_error_nmi.max\"\nlimit = \"10 nmi\"\n";
     let scenario = Scenario::parse(text, "f", Path::new(""), &[]).unwrap();
     let run =
-        || run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap();
+        || run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap();
     let mut baseline = run();
     baseline.ended = octant_run::Ended::Cancelled;
     let summary = assemble(&scenario, 1, run(), Some(baseline)).unwrap().summary;

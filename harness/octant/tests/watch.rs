@@ -7,8 +7,8 @@ use octant_recorder::event::Pace;
 use octant_recorder::reader::{Item, Recording};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
 use octant_watch::follow::{Follow, Stage};
-use octant_watch::place::Place;
-use octant_watch::tail::{Reached, Tail, TailError};
+use octant_watch::place::RunPlace;
+use octant_watch::tail::{PollEnd, Tail, TailError};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
@@ -103,7 +103,7 @@ fn a_file_is_followed_through_its_writing_and_its_new_name() {
     let here = tempfile::tempdir().unwrap();
     let path = here.path().join("run");
     let folder = RunFolder::create(&path, Existing::Refuse).unwrap();
-    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let mut tail = Tail::new(RunPlace::of(&path).unwrap());
     let mut found = Vec::new();
     let mut look = |tail: &mut Tail, most| {
         tail.look(most, |info, time_ns, item| {
@@ -112,7 +112,7 @@ fn a_file_is_followed_through_its_writing_and_its_new_name() {
         })
         .unwrap()
     };
-    assert_eq!(look(&mut tail, 10), Reached::Present, "there is no file yet");
+    assert_eq!(look(&mut tail, 10), PollEnd::Present, "there is no file yet");
     let writer = std::thread::spawn(move || {
         let mut file = std::fs::File::create(folder.path().join("recording.mcap")).unwrap();
         let mut left = &bytes[..];
@@ -130,11 +130,11 @@ fn a_file_is_followed_through_its_writing_and_its_new_name() {
         folder.finish().unwrap();
     });
     // A limit that can end a poll in the middle of a chunk.
-    while look(&mut tail, 777) != Reached::End {}
+    while look(&mut tail, 777) != PollEnd::End {}
     writer.join().unwrap();
     same(&found, &expected);
     // The end stays the end.
-    assert_eq!(tail.look(10, |_, _, _| panic!("a message after the end")).unwrap(), Reached::End);
+    assert_eq!(tail.look(10, |_, _, _| panic!("a message after the end")).unwrap(), PollEnd::End);
 }
 
 #[test]
@@ -143,8 +143,8 @@ fn another_file_in_its_place_is_told_and_so_is_damage() {
     let here = tempfile::tempdir().unwrap();
     let path = here.path().join("recording.mcap");
     std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
-    let mut tail = Tail::new(Place::of(&path).unwrap());
-    assert_eq!(tail.look(usize::MAX, |_, _, _| {}).unwrap(), Reached::Present);
+    let mut tail = Tail::new(RunPlace::of(&path).unwrap());
+    assert_eq!(tail.look(usize::MAX, |_, _, _| {}).unwrap(), PollEnd::Present);
     std::fs::write(&path, &bytes[..100]).unwrap();
     let error = tail.look(10, |_, _, _| {}).unwrap_err();
     assert!(matches!(error, TailError::Replaced { found: 100, .. }), "{error}");
@@ -153,12 +153,12 @@ fn another_file_in_its_place_is_told_and_so_is_damage() {
     let at = bytes.len() / 3;
     damaged[at..at + 100].fill(0);
     std::fs::write(&path, &damaged).unwrap();
-    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let mut tail = Tail::new(RunPlace::of(&path).unwrap());
     let error = tail.look(usize::MAX, |_, _, _| {}).unwrap_err().to_string();
     assert!(error.contains("damaged after byte"), "{error}");
 
     std::fs::write(&path, "no recording at all").unwrap();
-    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let mut tail = Tail::new(RunPlace::of(&path).unwrap());
     let error = tail.look(10, |_, _, _| {}).unwrap_err().to_string();
     assert!(error.contains("not an MCAP file"), "{error}");
 }
@@ -206,7 +206,7 @@ fn a_run_that_was_killed_is_told_from_one_that_goes_on() {
     let folder = RunFolder::create(&here.path().join("killed"), Existing::Refuse).unwrap();
     let mut recorder = known(&folder);
     recorder.hand_over().unwrap();
-    let mut follow = Follow::new(Place::of(folder.path()).unwrap());
+    let mut follow = Follow::new(RunPlace::of(folder.path()).unwrap());
     while follow.state.about.title.is_empty() {
         follow.look(|_, _, _| {}).unwrap();
     }
@@ -217,7 +217,7 @@ fn a_run_that_was_killed_is_told_from_one_that_goes_on() {
     let bytes = std::fs::read(&path).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
     drop(folder);
-    let mut follow = Follow::new(Place::of(&here.path().join("killed")).unwrap());
+    let mut follow = Follow::new(RunPlace::of(&here.path().join("killed")).unwrap());
     for _ in 0..2 {
         while follow.look(|_, _, _| {}).unwrap() {}
     }

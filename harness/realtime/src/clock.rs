@@ -8,12 +8,12 @@ use std::time::Duration;
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
-pub struct HostTime {
+pub struct MonotonicTime {
     /// Time since a start that is arbitrary for each boot of the host, ns.
     pub ns: u64,
 }
 
-impl HostTime {
+impl MonotonicTime {
     /// Adds a duration; the result stays at the end of time, which is 584 years after a boot.
     #[must_use]
     pub const fn after(self, duration_ns: u64) -> Self {
@@ -29,16 +29,16 @@ impl HostTime {
 
 #[cfg(target_os = "linux")]
 mod system {
-    use super::HostTime;
+    use super::MonotonicTime;
     use rustix::thread::clock_nanosleep_absolute;
     use rustix::time::{ClockId, Timespec, clock_getres, clock_gettime};
 
-    pub(super) fn now() -> HostTime {
+    pub(super) fn now() -> MonotonicTime {
         let Timespec { tv_sec, tv_nsec } = clock_gettime(ClockId::Monotonic);
-        HostTime { ns: tv_sec as u64 * 1_000_000_000 + tv_nsec as u64 }
+        MonotonicTime { ns: tv_sec as u64 * 1_000_000_000 + tv_nsec as u64 }
     }
 
-    pub(super) fn sleep_until(deadline: HostTime) {
+    pub(super) fn sleep_until(deadline: MonotonicTime) {
         let at = Timespec {
             tv_sec: (deadline.ns / 1_000_000_000) as i64,
             tv_nsec: (deadline.ns % 1_000_000_000) as i64,
@@ -55,18 +55,18 @@ mod system {
 
 #[cfg(not(target_os = "linux"))]
 mod system {
-    use super::HostTime;
+    use super::MonotonicTime;
     use std::sync::OnceLock;
     use std::time::{Duration, Instant};
 
-    pub(super) fn now() -> HostTime {
+    pub(super) fn now() -> MonotonicTime {
         static START: OnceLock<Instant> = OnceLock::new();
         // Times start at 1 s, so that a deadline may lie before the first reading of the clock.
         let since = START.get_or_init(Instant::now).elapsed() + Duration::from_secs(1);
-        HostTime { ns: u64::try_from(since.as_nanos()).unwrap_or(u64::MAX) }
+        MonotonicTime { ns: u64::try_from(since.as_nanos()).unwrap_or(u64::MAX) }
     }
 
-    pub(super) fn sleep_until(deadline: HostTime) {
+    pub(super) fn sleep_until(deadline: MonotonicTime) {
         let wait_ns = deadline.since(now());
         if wait_ns > 0 {
             std::thread::sleep(Duration::from_nanos(wait_ns));
@@ -88,14 +88,14 @@ mod system {
 /// Present time.
 #[must_use]
 #[inline]
-pub fn now() -> HostTime {
+pub fn now() -> MonotonicTime {
     system::now()
 }
 
 /// Sleeps until a deadline; returns at once if it has passed. On Linux the kernel takes the absolute
 /// deadline too, so that a delay between reading the clock and sleeping costs nothing.
 #[inline]
-pub fn sleep_until(deadline: HostTime) {
+pub fn sleep_until(deadline: MonotonicTime) {
     system::sleep_until(deadline);
 }
 
@@ -108,7 +108,7 @@ pub fn resolution_ns() -> u64 {
 /// Reads the clock in a loop until a deadline has passed; returns the time of the last reading.
 /// Occupies the processor all that time.
 #[inline]
-pub fn spin_until(deadline: HostTime) -> HostTime {
+pub fn spin_until(deadline: MonotonicTime) -> MonotonicTime {
     loop {
         let time = now();
         if time >= deadline {

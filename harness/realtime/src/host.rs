@@ -18,7 +18,7 @@ pub enum Grade {
 
 /// Finding about one property of the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Finding {
+pub struct HostFinding {
     /// Property examined.
     pub subject: String,
     /// Grade.
@@ -29,7 +29,7 @@ pub struct Finding {
     pub advice: Option<String>,
 }
 
-impl Finding {
+impl HostFinding {
     fn new(subject: &str, grade: Grade, found: impl Into<String>) -> Self {
         Self { subject: subject.to_owned(), grade, found: found.into(), advice: None }
     }
@@ -42,7 +42,7 @@ impl Finding {
 
 /// Examines the host.
 #[must_use]
-pub fn look() -> Vec<Finding> {
+pub fn look() -> Vec<HostFinding> {
     let mut findings = limits::look();
     findings.extend(Tree::of("/").look());
     findings
@@ -76,7 +76,7 @@ impl Tree {
 
     /// Examines everything that the tree describes.
     #[must_use]
-    pub fn look(&self) -> Vec<Finding> {
+    pub fn look(&self) -> Vec<HostFinding> {
         let mut findings = vec![self.kernel(), self.clock_source()];
         findings.extend(self.throttling());
         findings.push(self.governor());
@@ -86,23 +86,23 @@ impl Tree {
         findings
     }
 
-    fn kernel(&self) -> Finding {
+    fn kernel(&self) -> HostFinding {
         let release = self.read("proc/sys/kernel/osrelease").unwrap_or_else(|| "unknown".into());
         if self.read("sys/kernel/realtime").as_deref() == Some("1") {
-            return Finding::new("kernel", Grade::Good, format!("{release}, PREEMPT_RT"));
+            return HostFinding::new("kernel", Grade::Good, format!("{release}, PREEMPT_RT"));
         }
-        Finding::new("kernel", Grade::Advice, format!("{release}, not PREEMPT_RT"))
+        HostFinding::new("kernel", Grade::Advice, format!("{release}, not PREEMPT_RT"))
             .advice("a PREEMPT_RT kernel bounds the largest lateness; p99 is good without one")
     }
 
-    fn clock_source(&self) -> Finding {
+    fn clock_source(&self) -> HostFinding {
         let path = "sys/devices/system/clocksource/clocksource0/current_clocksource";
         match self.read(path) {
-            None => Finding::new("clock source", Grade::Advice, "not reported by this system"),
+            None => HostFinding::new("clock source", Grade::Advice, "not reported by this system"),
             Some(source) if matches!(&*source, "tsc" | "kvm-clock" | "arch_sys_counter") => {
-                Finding::new("clock source", Grade::Good, source)
+                HostFinding::new("clock source", Grade::Good, source)
             }
-            Some(source) => Finding::new("clock source", Grade::Advice, source).advice(
+            Some(source) => HostFinding::new("clock source", Grade::Advice, source).advice(
                 "every reading of this clock is a system call, or slow: see dmesg for why the \
                  processor's own counter isn't used",
             ),
@@ -110,19 +110,19 @@ impl Tree {
     }
 
     /// Finding about throttling: after a share of each period, the kernel stops real-time threads.
-    fn throttling(&self) -> Option<Finding> {
+    fn throttling(&self) -> Option<HostFinding> {
         let runtime: i64 = self.read("proc/sys/kernel/sched_rt_runtime_us")?.parse().ok()?;
         let period: i64 = self.read("proc/sys/kernel/sched_rt_period_us")?.parse().ok()?;
         let share = format!("{runtime} of {period} us");
         Some(if runtime < 0 || runtime >= period {
-            Finding::new("real-time throttling", Grade::Good, "off")
+            HostFinding::new("real-time throttling", Grade::Good, "off")
         } else {
             // A thread that sleeps for most of its period never reaches the limit.
-            Finding::new("real-time throttling", Grade::Good, format!("{share}, enough"))
+            HostFinding::new("real-time throttling", Grade::Good, format!("{share}, enough"))
         })
     }
 
-    fn governor(&self) -> Finding {
+    fn governor(&self) -> HostFinding {
         let mut governors: Vec<String> = self
             .names("sys/devices/system/cpu")
             .iter()
@@ -134,17 +134,17 @@ impl Tree {
         governors.dedup();
         let subject = "processor frequency";
         if governors.is_empty() {
-            return Finding::new(subject, Grade::Good, "not governed by this system");
+            return HostFinding::new(subject, Grade::Good, "not governed by this system");
         }
         let found = format!("governor {}", governors.join(", "));
         if governors == ["performance"] {
-            return Finding::new(subject, Grade::Good, found);
+            return HostFinding::new(subject, Grade::Good, found);
         }
-        Finding::new(subject, Grade::Advice, found)
+        HostFinding::new(subject, Grade::Advice, found)
             .advice("cpupower frequency-set -g performance: a slow processor wakes late")
     }
 
-    fn machine(&self) -> Finding {
+    fn machine(&self) -> HostFinding {
         let info = self.read("proc/cpuinfo").unwrap_or_default();
         let processors = info.lines().filter(|line| line.starts_with("processor")).count();
         let isolated = self.read("sys/devices/system/cpu/isolated").filter(|list| !list.is_empty());
@@ -160,18 +160,18 @@ impl Tree {
             found += &format!(", isolated {list}");
         }
         if is_virtual {
-            return Finding::new("machine", Grade::Advice, format!("virtual, {found}")).advice(
+            return HostFinding::new("machine", Grade::Advice, format!("virtual, {found}")).advice(
                 "the host of a virtual machine may stop it at any time: certify on a physical machine",
             );
         }
         if processors == 1 {
-            return Finding::new("machine", Grade::Advice, found)
+            return HostFinding::new("machine", Grade::Advice, found)
                 .advice("the recorder and everything else share the processor with the bench");
         }
-        Finding::new("machine", Grade::Good, found)
+        HostFinding::new("machine", Grade::Good, found)
     }
 
-    fn serial_ports(&self) -> Finding {
+    fn serial_ports(&self) -> HostFinding {
         // Only ports with a driver count: the kernel makes ttyS0 to ttyS3 even without a chip.
         let real = |name: &String| {
             name.starts_with("tty")
@@ -181,7 +181,7 @@ impl Tree {
         let ports: Vec<String> = self.names("sys/class/tty").into_iter().filter(real).collect();
         let subject = "serial ports";
         if ports.is_empty() {
-            return Finding::new(subject, Grade::Advice, "none").advice(
+            return HostFinding::new(subject, Grade::Advice, "none").advice(
                 "plug the device in and look at dmesg; pseudo terminals and UDP work without it",
             );
         }
@@ -192,9 +192,9 @@ impl Tree {
             .collect();
         let list = ports.iter().map(|name| format!("/dev/{name}")).collect::<Vec<_>>().join(" ");
         if closed.is_empty() {
-            return Finding::new(subject, Grade::Good, list);
+            return HostFinding::new(subject, Grade::Good, list);
         }
-        Finding::new(
+        HostFinding::new(
             subject,
             Grade::Missing,
             format!("{list}; no permission for {}", closed.join(" ")),
@@ -202,7 +202,7 @@ impl Tree {
         .advice("add the user to the group that the ports belong to (often dialout), log in anew")
     }
 
-    fn can_interfaces(&self) -> Finding {
+    fn can_interfaces(&self) -> HostFinding {
         /// ARPHRD_CAN of the kernel's if_arp.h.
         const CAN: &str = "280";
         let interfaces: Vec<String> = self
@@ -212,7 +212,7 @@ impl Tree {
             .collect();
         let subject = "CAN interfaces";
         if interfaces.is_empty() {
-            return Finding::new(subject, Grade::Advice, "none").advice(
+            return HostFinding::new(subject, Grade::Advice, "none").advice(
                 "load the adapter's driver, or vcan for trials: modprobe vcan; ip link add vcan0 \
                  type vcan; ip link set vcan0 up",
             );
@@ -231,8 +231,8 @@ impl Tree {
             .collect::<Vec<_>>()
             .join(", ");
         match states.iter().find(|(_, up)| !up) {
-            None => Finding::new(subject, Grade::Good, list),
-            Some((name, _)) => Finding::new(subject, Grade::Advice, list).advice(format!(
+            None => HostFinding::new(subject, Grade::Good, list),
+            Some((name, _)) => HostFinding::new(subject, Grade::Advice, list).advice(format!(
                 "bring it up: ip link set {name} type can bitrate 1000000 restart-ms 100; ip link \
                  set {name} up"
             )),
@@ -242,7 +242,7 @@ impl Tree {
 
 #[cfg(target_os = "linux")]
 mod limits {
-    use super::{Finding, Grade};
+    use super::{HostFinding, Grade};
     use crate::clock::resolution_ns;
     use rustix::fs::{Access, access};
     use rustix::process::{Resource, getrlimit};
@@ -253,10 +253,10 @@ mod limits {
         capabilities(None).is_ok_and(|sets| sets.effective.contains(capability))
     }
 
-    pub(super) fn look() -> Vec<Finding> {
+    pub(super) fn look() -> Vec<HostFinding> {
         let resolution = resolution_ns();
         let grade = if resolution <= 1000 { Grade::Good } else { Grade::Missing };
-        let mut timer = Finding::new("timer", grade, format!("resolution {resolution} ns"));
+        let mut timer = HostFinding::new("timer", grade, format!("resolution {resolution} ns"));
         if grade == Grade::Missing {
             timer =
                 timer.advice("the kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
@@ -264,30 +264,30 @@ mod limits {
         vec![timer, priority(), memory()]
     }
 
-    fn priority() -> Finding {
+    fn priority() -> HostFinding {
         let subject = "real-time priority";
         if has(CapabilitySet::SYS_NICE) {
-            return Finding::new(subject, Grade::Good, "up to 99, by CAP_SYS_NICE");
+            return HostFinding::new(subject, Grade::Good, "up to 99, by CAP_SYS_NICE");
         }
         match getrlimit(Resource::Rtprio).current {
-            None => Finding::new(subject, Grade::Good, "up to 99"),
-            Some(0) => Finding::new(subject, Grade::Missing, "not permitted").advice(
+            None => HostFinding::new(subject, Grade::Good, "up to 99"),
+            Some(0) => HostFinding::new(subject, Grade::Missing, "not permitted").advice(
                 "put the user into a group realtime, \"@realtime - rtprio 99\" into \
                  /etc/security/limits.conf, and log in anew",
             ),
-            Some(limit) => Finding::new(subject, Grade::Good, format!("up to {limit}")),
+            Some(limit) => HostFinding::new(subject, Grade::Good, format!("up to {limit}")),
         }
     }
 
-    fn memory() -> Finding {
+    fn memory() -> HostFinding {
         let subject = "locked memory";
         if has(CapabilitySet::IPC_LOCK) {
-            return Finding::new(subject, Grade::Good, "unlimited, by CAP_IPC_LOCK");
+            return HostFinding::new(subject, Grade::Good, "unlimited, by CAP_IPC_LOCK");
         }
         match getrlimit(Resource::Memlock).current {
-            None => Finding::new(subject, Grade::Good, "unlimited"),
+            None => HostFinding::new(subject, Grade::Good, "unlimited"),
             Some(bytes) => {
-                Finding::new(subject, Grade::Missing, format!("{} KiB", bytes / 1024)).advice(
+                HostFinding::new(subject, Grade::Missing, format!("{} KiB", bytes / 1024)).advice(
                     "\"@realtime - memlock unlimited\" in /etc/security/limits.conf, and log in anew",
                 )
             }
@@ -302,10 +302,10 @@ mod limits {
 
 #[cfg(not(target_os = "linux"))]
 mod limits {
-    use super::{Finding, Grade};
+    use super::{HostFinding, Grade};
     use std::path::Path;
 
-    pub(super) fn look() -> Vec<Finding> {
+    pub(super) fn look() -> Vec<HostFinding> {
         vec![
             Finding::new("system", Grade::Missing, std::env::consts::OS)
                 .advice("real-time scheduling, locked memory and SocketCAN exist on Linux only"),

@@ -16,7 +16,7 @@ fn tree(files: &[(&str, &str)]) -> (PathBuf, Tree) {
     (root, tree)
 }
 
-fn found(files: &[(&str, &str)], subject: &str) -> Finding {
+fn found(files: &[(&str, &str)], subject: &str) -> HostFinding {
     let (root, tree) = tree(files);
     let finding = tree.look().into_iter().find(|finding| finding.subject == subject);
     let _ = fs::remove_dir_all(root);

@@ -1,7 +1,7 @@
 //! Wake-up latency of this host: a short measurement, where cyclictest makes a long one.
 
-use crate::clock::{HostTime, now};
-use crate::pace::{FrameClock, Pacing, Report};
+use crate::clock::{MonotonicTime, now};
+use crate::pace::{FrameClock, FramePacing, PaceReport};
 use crate::schedule::{Granted, Wish, apply};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -21,30 +21,30 @@ pub struct Trial {
 
 /// Result of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct LatencyResult {
     /// Scheduling that the thread was granted.
     pub granted: Granted,
     /// Lateness of the wake-ups. Overruns are later than a tenth of the period.
-    pub report: Report,
+    pub report: PaceReport,
 }
 
 /// Measures on a separate thread.
 ///
 /// # Errors
 /// If the system can't start a thread.
-pub fn measure(trial: Trial) -> std::io::Result<Found> {
+pub fn measure(trial: Trial) -> std::io::Result<LatencyResult> {
     let thread = std::thread::Builder::new().name("latency".into()).spawn(move || {
         let granted = apply(&trial.wish);
         // Spinning without a real-time priority is worse than sleeping, and no run would do it.
         let spin_ns = if granted.is_realtime() { trial.spin_ns } else { 0 };
         let period_ns = trial.period_ns.max(1);
-        let pacing = Pacing { period_ns, spin_ns, overrun_ns: period_ns / 10 };
-        let end: HostTime = now().after(crate::clock::nanoseconds(trial.duration));
+        let pacing = FramePacing { period_ns, spin_ns, overrun_ns: period_ns / 10 };
+        let end: MonotonicTime = now().after(crate::clock::nanoseconds(trial.duration));
         let mut clock = FrameClock::start(pacing);
         while clock.deadline() <= end {
             clock.wait();
         }
-        Found { granted, report: clock.report() }
+        LatencyResult { granted, report: clock.report() }
     })?;
     thread.join().map_err(|_| std::io::Error::other("the measuring thread panicked"))
 }
@@ -66,7 +66,7 @@ mod tests {
         assert_eq!(found.report.lateness.count, found.report.frames);
         assert!(found.report.lateness.p50_us <= found.report.lateness.p99_us);
         let text = serde_json::to_string(&found).unwrap_or_default();
-        let back: Found = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let back: LatencyResult = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}"));
         assert_eq!(back, found);
     }
 }

@@ -9,19 +9,19 @@ const LARGEST_NS: u64 = 60_000_000_000;
 /// Histogram of durations with three significant digits, from 1 ns to a minute; longer ones count as a
 /// minute. Recording a duration takes a few nanoseconds and allocates nothing.
 #[derive(Clone, Debug)]
-pub struct Lateness {
+pub struct LatenessHistogram {
     histogram: Histogram<u64>,
     /// Largest duration, exact, ns.
     max_ns: u64,
 }
 
-impl Default for Lateness {
+impl Default for LatenessHistogram {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Lateness {
+impl LatenessHistogram {
     /// Makes an empty histogram.
     #[must_use]
     pub fn new() -> Self {
@@ -95,7 +95,7 @@ impl Lateness {
     }
 }
 
-/// Most important figures of a [`Lateness`]. The maximum grows with the length of a test; compare the
+/// Most important figures of a [`LatenessHistogram`]. The maximum grows with the length of a test; compare the
 /// quantiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
@@ -118,14 +118,14 @@ mod tests {
 
     #[test]
     fn nothing_is_late_where_nothing_was() {
-        let figures = Lateness::new().figures();
+        let figures = LatenessHistogram::new().figures();
         assert_eq!((figures.count, figures.p99_us, figures.max_us), (0, 0.0, 0.0));
-        assert!(Lateness::new().rows().is_empty());
+        assert!(LatenessHistogram::new().rows().is_empty());
     }
 
     #[test]
     fn longer_than_a_minute_counts_as_one_and_the_largest_is_exact() {
-        let mut lateness = Lateness::new();
+        let mut lateness = LatenessHistogram::new();
         lateness.record(u64::MAX);
         assert_eq!(lateness.max_ns(), u64::MAX);
         assert_eq!(lateness.count(), 1);
@@ -139,8 +139,8 @@ mod tests {
             mut values in prop::collection::vec(0u64..2_000_000_000, 1..400),
             share in 0.0f64..=1.0,
         ) {
-            let mut lateness = Lateness::new();
-            let mut halves = [Lateness::new(), Lateness::new()];
+            let mut lateness = LatenessHistogram::new();
+            let mut halves = [LatenessHistogram::new(), LatenessHistogram::new()];
             for (index, value) in values.iter().enumerate() {
                 lateness.record(*value);
                 halves[index % 2].record(*value);

@@ -1,12 +1,12 @@
 //! Frame clock.
 
-use crate::clock::{HostTime, now, sleep_until, spin_until};
-use crate::lateness::{Figures, Lateness};
+use crate::clock::{MonotonicTime, now, sleep_until, spin_until};
+use crate::lateness::{Figures, LatenessHistogram};
 use serde::{Deserialize, Serialize};
 
 /// Pacing of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pacing {
+pub struct FramePacing {
     /// Period of the frames, ns; not 0.
     pub period_ns: u64,
     /// Last part of each wait that is spent reading the clock, ns. Punctual to a microsecond if the
@@ -21,12 +21,12 @@ pub struct Pacing {
 /// have caught up.
 #[derive(Clone, Debug)]
 pub struct FrameClock {
-    pacing: Pacing,
-    start: HostTime,
+    pacing: FramePacing,
+    start: MonotonicTime,
     frame: u64,
-    lateness: Lateness,
+    lateness: LatenessHistogram,
     /// Time left before the next deadline when the work of a frame was done.
-    slack: Lateness,
+    slack: LatenessHistogram,
     overruns: u64,
     /// Present number of overruns in a row; `longest_row` is the largest.
     row: u64,
@@ -37,19 +37,19 @@ pub struct FrameClock {
 impl FrameClock {
     /// Starts a clock whose frame 0 is due now, without waiting.
     #[must_use]
-    pub fn start(pacing: Pacing) -> Self {
+    pub fn start(pacing: FramePacing) -> Self {
         Self::start_at(pacing, now())
     }
 
     /// Starts a clock whose frame 0 is due at `start`.
     #[must_use]
-    pub fn start_at(pacing: Pacing, start: HostTime) -> Self {
+    pub fn start_at(pacing: FramePacing, start: MonotonicTime) -> Self {
         Self {
-            pacing: Pacing { period_ns: pacing.period_ns.max(1), ..pacing },
+            pacing: FramePacing { period_ns: pacing.period_ns.max(1), ..pacing },
             start,
             frame: 0,
-            lateness: Lateness::new(),
-            slack: Lateness::new(),
+            lateness: LatenessHistogram::new(),
+            slack: LatenessHistogram::new(),
             overruns: 0,
             row: 0,
             longest_row: 0,
@@ -66,25 +66,25 @@ impl FrameClock {
     /// accumulates.
     #[must_use]
     #[inline]
-    pub fn deadline(&self) -> HostTime {
+    pub fn deadline(&self) -> MonotonicTime {
         self.start.after((self.frame + 1).saturating_mul(self.pacing.period_ns))
     }
 
     /// Time at which frame 0 was due.
     #[must_use]
-    pub fn started(&self) -> HostTime {
+    pub fn started(&self) -> MonotonicTime {
         self.start
     }
 
     /// Waits until the next frame is due, and returns the time at which it begins.
     #[inline]
-    pub fn wait(&mut self) -> HostTime {
+    pub fn wait(&mut self) -> MonotonicTime {
         let deadline = self.deadline();
         let before = now();
         let mut time = before;
         if before < deadline {
             self.slack.record(deadline.since(before));
-            let sleep_to = HostTime { ns: deadline.ns.saturating_sub(self.pacing.spin_ns) };
+            let sleep_to = MonotonicTime { ns: deadline.ns.saturating_sub(self.pacing.spin_ns) };
             if before < sleep_to {
                 sleep_until(sleep_to);
             }
@@ -126,14 +126,14 @@ impl FrameClock {
 
     /// Lateness of all frames.
     #[must_use]
-    pub fn lateness(&self) -> &Lateness {
+    pub fn lateness(&self) -> &LatenessHistogram {
         &self.lateness
     }
 
     /// Results so far.
     #[must_use]
-    pub fn report(&self) -> Report {
-        Report {
+    pub fn report(&self) -> PaceReport {
+        PaceReport {
             frames: self.frame,
             period_us: self.pacing.period_ns as f64 / 1e3,
             overrun_us: self.pacing.overrun_ns as f64 / 1e3,
@@ -148,7 +148,7 @@ impl FrameClock {
 
 /// Results of a frame clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct PaceReport {
     /// Number of frames that began.
     pub frames: u64,
     /// Period, µs.
@@ -171,15 +171,15 @@ pub struct Report {
 mod tests {
     use super::*;
 
-    const PACING: Pacing = Pacing { period_ns: 1_000_000, spin_ns: 0, overrun_ns: 100_000 };
+    const PACING: FramePacing = FramePacing { period_ns: 1_000_000, spin_ns: 0, overrun_ns: 100_000 };
 
     #[test]
     fn no_frame_begins_before_it_is_due_and_nothing_adds_up() {
         let start = now().after(2_000_000);
         let mut clock = FrameClock::start_at(PACING, start);
         for frame in 1..=50u64 {
-            assert_eq!(clock.deadline(), HostTime { ns: start.ns + frame * 1_000_000 });
-            assert!(clock.wait() >= HostTime { ns: start.ns + frame * 1_000_000 });
+            assert_eq!(clock.deadline(), MonotonicTime { ns: start.ns + frame * 1_000_000 });
+            assert!(clock.wait() >= MonotonicTime { ns: start.ns + frame * 1_000_000 });
         }
         let report = clock.report();
         assert_eq!((report.frames, report.lateness.count), (50, 50));
@@ -187,13 +187,13 @@ mod tests {
 
     #[test]
     fn spinning_is_not_early_either() {
-        let mut clock = FrameClock::start(Pacing { spin_ns: 300_000, ..PACING });
+        let mut clock = FrameClock::start(FramePacing { spin_ns: 300_000, ..PACING });
         for _ in 0..20 {
             let deadline = clock.deadline();
             assert!(clock.wait() >= deadline);
         }
         // The whole wait is spent reading the clock.
-        let mut clock = FrameClock::start(Pacing { spin_ns: u64::MAX, ..PACING });
+        let mut clock = FrameClock::start(FramePacing { spin_ns: u64::MAX, ..PACING });
         let deadline = clock.deadline();
         assert!(clock.wait() >= deadline);
     }
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn late_frames_are_counted_and_caught_up_without_a_wait() {
         // The start was ten periods ago: the first ten frames are already due.
-        let start = HostTime { ns: now().ns - 10_500_000 };
+        let start = MonotonicTime { ns: now().ns - 10_500_000 };
         let mut clock = FrameClock::start_at(PACING, start);
         let first = clock.wait();
         assert!(first.since(start) >= 10_500_000);
@@ -229,11 +229,11 @@ mod tests {
 
     #[test]
     fn a_period_of_nothing_and_an_end_of_time_are_borne() {
-        let mut clock = FrameClock::start(Pacing { period_ns: 0, ..PACING });
+        let mut clock = FrameClock::start(FramePacing { period_ns: 0, ..PACING });
         clock.wait();
         let clock = FrameClock::start_at(
-            Pacing { period_ns: u64::MAX, ..PACING },
-            HostTime { ns: u64::MAX - 5 },
+            FramePacing { period_ns: u64::MAX, ..PACING },
+            MonotonicTime { ns: u64::MAX - 5 },
         );
         assert_eq!(clock.deadline().ns, u64::MAX);
     }

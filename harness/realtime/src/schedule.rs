@@ -17,7 +17,7 @@ pub struct Wish {
 /// Outcome of one request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "outcome")]
-pub enum Outcome {
+pub enum RequestOutcome {
     /// The property wasn't requested.
     NotAsked,
     /// The request was granted.
@@ -34,7 +34,7 @@ pub enum Outcome {
     },
 }
 
-impl Outcome {
+impl RequestOutcome {
     /// True if the request was granted.
     #[must_use]
     pub fn is_granted(&self) -> bool {
@@ -56,11 +56,11 @@ impl Outcome {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Granted {
     /// Real-time priority.
-    pub scheduling: Outcome,
+    pub scheduling: RequestOutcome,
     /// Locked memory.
-    pub memory: Outcome,
+    pub memory: RequestOutcome,
     /// Processor.
-    pub cpu: Outcome,
+    pub cpu: RequestOutcome,
 }
 
 impl Granted {
@@ -79,9 +79,9 @@ pub fn apply(wish: &Wish) -> Granted {
     system::prepare();
     Granted {
         // Memory comes first, so that page faults happen before the thread has a real-time priority.
-        memory: if wish.lock_memory { system::lock_memory() } else { Outcome::NotAsked },
-        cpu: wish.cpu.map_or(Outcome::NotAsked, system::pin),
-        scheduling: wish.priority.map_or(Outcome::NotAsked, system::fifo),
+        memory: if wish.lock_memory { system::lock_memory() } else { RequestOutcome::NotAsked },
+        cpu: wish.cpu.map_or(RequestOutcome::NotAsked, system::pin),
+        scheduling: wish.priority.map_or(RequestOutcome::NotAsked, system::fifo),
     }
 }
 
@@ -103,7 +103,7 @@ pub fn release(granted: &Granted) {
 
 #[cfg(target_os = "linux")]
 mod system {
-    use super::Outcome;
+    use super::RequestOutcome;
     use rustix::mm::{MlockAllFlags, mlockall};
     use rustix::process::{Resource, getrlimit};
     use rustix::thread::{
@@ -140,13 +140,13 @@ mod system {
         capabilities(None).is_ok_and(|sets| sets.effective.contains(capability))
     }
 
-    pub(super) fn fifo(priority: u8) -> Outcome {
+    pub(super) fn fifo(priority: u8) -> RequestOutcome {
         let what = format!("SCHED_FIFO with priority {priority}");
         let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
         let why = match ThreadPriority::try_from(priority) {
             Err(reason) => reason.to_owned(),
             Ok(asked) => match set_thread_priority_and_policy(thread_native_id(), asked, policy) {
-                Ok(()) => return Outcome::Granted { what },
+                Ok(()) => return RequestOutcome::Granted { what },
                 Err(Error::OS(number)) if number == rustix::io::Errno::PERM.raw_os_error() => {
                     let limit = getrlimit(Resource::Rtprio).current.unwrap_or(99);
                     format!(
@@ -159,7 +159,7 @@ mod system {
                 Err(error) => error.to_string(),
             },
         };
-        Outcome::Refused { what, why }
+        RequestOutcome::Refused { what, why }
     }
 
     pub(super) fn release(granted: &super::Granted) {
@@ -176,9 +176,9 @@ mod system {
         }
     }
 
-    pub(super) fn lock_memory() -> Outcome {
+    pub(super) fn lock_memory() -> RequestOutcome {
         let what = "all memory locked".to_owned();
-        let refused = |why| Outcome::Refused { what: "locked memory".to_owned(), why };
+        let refused = |why| RequestOutcome::Refused { what: "locked memory".to_owned(), why };
         // Under a limit the lock may succeed now, and an allocation fail an hour later.
         let limit = getrlimit(Resource::Memlock).current;
         if let Some(bytes) = limit
@@ -191,16 +191,16 @@ mod system {
             ));
         }
         match mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE) {
-            Ok(()) => Outcome::Granted { what },
+            Ok(()) => RequestOutcome::Granted { what },
             Err(error) => refused(error.to_string()),
         }
     }
 
-    pub(super) fn pin(cpu: u16) -> Outcome {
+    pub(super) fn pin(cpu: u16) -> RequestOutcome {
         let what = format!("processor {cpu} alone");
         if usize::from(cpu) >= CpuSet::MAX_CPU {
             let why = format!("processors are numbered from 0 to {}", CpuSet::MAX_CPU - 1);
-            return Outcome::Refused { what, why };
+            return RequestOutcome::Refused { what, why };
         }
         let mut set = CpuSet::new();
         set.set(usize::from(cpu));
@@ -208,20 +208,20 @@ mod system {
         match sched_setaffinity(None, &set) {
             Ok(()) => {
                 BEFORE.set(before);
-                Outcome::Granted { what }
+                RequestOutcome::Granted { what }
             }
-            Err(rustix::io::Errno::INVAL) => Outcome::Refused {
+            Err(rustix::io::Errno::INVAL) => RequestOutcome::Refused {
                 why: "there is no such processor, or this process may not use it".to_owned(),
                 what,
             },
-            Err(error) => Outcome::Refused { what, why: error.to_string() },
+            Err(error) => RequestOutcome::Refused { what, why: error.to_string() },
         }
     }
 }
 
 #[cfg(not(target_os = "linux"))]
 mod system {
-    use super::Outcome;
+    use super::RequestOutcome;
 
     pub(super) fn prepare() {}
 
@@ -231,19 +231,19 @@ mod system {
 
     pub(super) fn release(_granted: &super::Granted) {}
 
-    fn not_here(what: String) -> Outcome {
-        Outcome::Refused { what, why: "Octant does this on Linux only".to_owned() }
+    fn not_here(what: String) -> RequestOutcome {
+        RequestOutcome::Refused { what, why: "Octant does this on Linux only".to_owned() }
     }
 
-    pub(super) fn fifo(priority: u8) -> Outcome {
+    pub(super) fn fifo(priority: u8) -> RequestOutcome {
         not_here(format!("real-time priority {priority}"))
     }
 
-    pub(super) fn lock_memory() -> Outcome {
+    pub(super) fn lock_memory() -> RequestOutcome {
         not_here("locked memory".to_owned())
     }
 
-    pub(super) fn pin(cpu: u16) -> Outcome {
+    pub(super) fn pin(cpu: u16) -> RequestOutcome {
         not_here(format!("processor {cpu} alone"))
     }
 }
@@ -262,9 +262,9 @@ mod tests {
     #[test]
     fn what_is_not_asked_for_is_not_done() {
         let granted = applied(NOTHING);
-        assert_eq!(granted.scheduling, Outcome::NotAsked);
-        assert_eq!(granted.memory, Outcome::NotAsked);
-        assert_eq!(granted.cpu, Outcome::NotAsked);
+        assert_eq!(granted.scheduling, RequestOutcome::NotAsked);
+        assert_eq!(granted.memory, RequestOutcome::NotAsked);
+        assert_eq!(granted.cpu, RequestOutcome::NotAsked);
         assert!(!granted.is_realtime());
     }
 
@@ -280,7 +280,7 @@ mod tests {
         }
         for priority in [0, 101] {
             let granted = applied(Wish { priority: Some(priority), ..NOTHING });
-            assert!(matches!(granted.scheduling, Outcome::Refused { .. }), "{granted:?}");
+            assert!(matches!(granted.scheduling, RequestOutcome::Refused { .. }), "{granted:?}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! The frame clock allocates nothing after its start.
 
 use octant_realtime::clock::now;
-use octant_realtime::pace::{FrameClock, Pacing};
+use octant_realtime::pace::{FrameClock, FramePacing};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -32,9 +32,9 @@ static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn frames_allocate_nothing() {
-    let pacing = Pacing { period_ns: 200_000, spin_ns: 20_000, overrun_ns: 50_000 };
+    let pacing = FramePacing { period_ns: 200_000, spin_ns: 20_000, overrun_ns: 50_000 };
     // The first half of the frames is already late, the second is waited for: both paths are tested.
-    let start = octant_realtime::clock::HostTime { ns: now().ns - 20 * 200_000 };
+    let start = octant_realtime::clock::MonotonicTime { ns: now().ns - 20 * 200_000 };
     let mut clock = FrameClock::start_at(pacing, start);
     let before = ALLOCATIONS.get();
     for _ in 0..40 {

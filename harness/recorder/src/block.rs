@@ -1,6 +1,6 @@
 //! A block of epochs: filled by the run loop, processed by the recorder's thread.
 
-use super::{Event, Extra, Frame};
+use super::{Event, Extra, EpochFrame};
 use octant_sample::Epoch;
 use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
@@ -70,7 +70,7 @@ impl Block {
     }
 
     #[inline]
-    pub(super) fn push(&mut self, frame: &Frame<'_>, due: bool) {
+    pub(super) fn push(&mut self, frame: &EpochFrame<'_>, due: bool) {
         let position = self.position();
         if let Some(aiding) = frame.faulted.aiding {
             self.aiding.push((position, aiding));
@@ -102,7 +102,7 @@ impl Block {
     pub(super) fn added(&mut self, step_ns: u64, faulted: &Epoch, output: &Output, due: bool) {
         let position = self.position();
         self.added.push((position, step_ns));
-        self.push(&Frame { clean: faulted, faulted, output }, due);
+        self.push(&EpochFrame { clean: faulted, faulted, output }, due);
     }
 
     pub(super) fn extra(&mut self, extra: &Extra) {
@@ -131,7 +131,7 @@ impl Block {
     }
 }
 
-impl Frame<'_> {
+impl EpochFrame<'_> {
     /// True if the core received another epoch than the source delivered.
     #[inline]
     pub(super) fn is_altered(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Hashes and counts of the epochs so far.
 
-use super::Frame;
+use super::EpochFrame;
 use super::altered;
 use super::block::Block;
 use super::stream_hash::StreamHash;
@@ -28,7 +28,7 @@ impl Digest {
 
     /// Takes a frame in which the core received the source's epoch.
     #[inline]
-    pub(super) fn epoch(&mut self, frame: &Frame<'_>) {
+    pub(super) fn epoch(&mut self, frame: &EpochFrame<'_>) {
         let (sample, aiding) = (&frame.faulted.sample, frame.faulted.aiding.as_ref());
         self.hash.epoch(sample, aiding, frame.output);
         if let Some(streams) = &mut self.streams {

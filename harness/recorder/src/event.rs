@@ -7,10 +7,10 @@ mod fault_result;
 mod link;
 mod pacing;
 
-pub use bench::{Bench, BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchTable};
+pub use bench::{BenchRecord, BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchTable};
 pub use fault_result::FaultResult;
-pub use link::Link;
-pub use pacing::{DeviceClock, Lateness, Pacing};
+pub use link::LinkRecord;
+pub use pacing::{DeviceClock, LatenessQuantiles, PacingRecord};
 
 use octant_realtime::schedule::Granted;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
@@ -27,7 +27,7 @@ pub type ByName = BTreeMap<String, Option<f64>>;
 #[serde(tag = "kind", content = "detail", rename_all = "kebab-case")]
 pub enum Event {
     /// A real instrument and the table under it, at the end of a run.
-    Bench(Box<Bench>),
+    Bench(Box<BenchRecord>),
     /// Parameters, SI, of a calibration that ended with the stream.
     Calibration {
         /// The parameters.
@@ -63,7 +63,7 @@ pub enum Event {
         threads: usize,
     },
     /// Device and traffic of a run over a wire, at its end.
-    Link(Box<Link>),
+    Link(Box<LinkRecord>),
     /// Change of the core's mode.
     Mode {
         /// Mode before; null at the first output.
@@ -82,7 +82,7 @@ pub enum Event {
         granted: Granted,
         /// Figures as in the summary.
         #[serde(serialize_with = "sorted")]
-        pacing: Box<Pacing>,
+        pacing: Box<PacingRecord>,
     },
     /// Results of all faults, at the end of a run.
     Receipts(#[serde(serialize_with = "sorted")] Vec<FaultResult>),

@@ -9,9 +9,9 @@
 use super::block::Block;
 use super::digest::Digest;
 use super::summary::RecorderSummary;
-use super::trouble::{Disk, Trouble};
+use super::trouble::{Disk, RecorderTrouble};
 use super::writer::{RecordingWriter, next_on_grid};
-use super::{Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions};
+use super::{Event, Extra, FLUSH_INTERVAL, EpochFrame, RecorderError, RecorderOptions};
 use octant_sample::Epoch;
 use octant_sample::{Mode, Output};
 use std::fs::File;
@@ -177,7 +177,7 @@ impl Recorder {
     /// If the recorder failed (with the error of its thread), or the parameters announced by the frame
     /// before are missing.
     #[inline]
-    pub fn push(&mut self, frame: Frame<'_>) -> Result<(), RecorderError> {
+    pub fn push(&mut self, frame: EpochFrame<'_>) -> Result<(), RecorderError> {
         let Some(worker) = &self.worker else { return Ok(()) };
         if self.parameters_due {
             return Err(RecorderError::ParametersMissing {
@@ -382,7 +382,7 @@ fn work<W: Write>(
     full: &Receiver<Block>,
     empty: &SyncSender<Block>,
     wanted: &AtomicBool,
-    trouble: &Trouble,
+    trouble: &RecorderTrouble,
 ) -> Result<RecorderSummary, RecorderError> {
     let mut digest = Digest::new();
     let mut asked = std::time::Instant::now();

@@ -24,7 +24,7 @@ pub use event::Event;
 pub use handle::Recorder;
 pub use stream_hash::StreamHash;
 pub use summary::RecorderSummary;
-pub use trouble::Trouble;
+pub use trouble::RecorderTrouble;
 
 use octant_sample::Epoch;
 use octant_sample::Output;
@@ -40,11 +40,11 @@ pub const FORMAT_VERSION: u32 = 1;
 pub const FLUSH_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Number of messages in a file, by topic.
-pub type Counts = BTreeMap<&'static str, u64>;
+pub type MessageCounts = BTreeMap<&'static str, u64>;
 
 /// All parts of one epoch.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct EpochFrame<'a> {
     /// Epoch that the source delivered.
     pub clean: &'a Epoch,
     /// Epoch that reached the core.
@@ -123,7 +123,7 @@ pub struct RecorderOptions {
     /// Number of blocks; when all are full the run loop waits.
     pub blocks: usize,
     /// Faults of disk and thread.
-    pub trouble: Trouble,
+    pub trouble: RecorderTrouble,
 }
 
 impl Default for RecorderOptions {
@@ -134,7 +134,7 @@ impl Default for RecorderOptions {
             metadata: BTreeMap::new(),
             epochs_per_block: 256,
             blocks: 4,
-            trouble: Trouble::default(),
+            trouble: RecorderTrouble::default(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Reading of recordings: message by message, or epoch by epoch for replay and scoring.
 
 use super::message::{self, MessageError, Topic};
-use super::records::{End, Records, RecordsError};
+use super::records::{FileEnd, Records, RecordsError};
 use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
 use super::{Event, FORMAT_VERSION, Samples, StreamHash};
 use mcap::records::{Record, op};
@@ -218,7 +218,7 @@ impl<R: Read> Recording<R> {
 
     /// True if the recording was read to a proper end.
     pub fn ended(&self) -> bool {
-        self.records.end() == Some(End::Whole)
+        self.records.end() == Some(FileEnd::Whole)
     }
 
     /// Head of the recording.
@@ -229,7 +229,7 @@ impl<R: Read> Recording<R> {
     /// True if the recording ends in the middle (killed, or an incomplete copy). Known once
     /// [`Recording::next_item`] has returned `None`.
     pub fn truncated(&self) -> bool {
-        self.records.end() == Some(End::Truncated)
+        self.records.end() == Some(FileEnd::Truncated)
     }
 
     /// Reads the next message with its log time (simulated time, ns); `None` at the end.

@@ -73,14 +73,14 @@ pub struct Records<R> {
     offset: u64,
     started: bool,
     /// End of the file, once it was reached.
-    end: Option<End>,
+    end: Option<FileEnd>,
     /// True if the file may still grow.
     grows: bool,
 }
 
 /// Kind of a file's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum FileEnd {
     /// Proper end.
     Whole,
     /// The file ends in the middle: the writer was killed, or the copy is incomplete.
@@ -112,7 +112,7 @@ impl<R: Read> Records<R> {
     }
 
     /// Kind of the file's end, once [`Records::next`] has returned `None`.
-    pub fn end(&self) -> Option<End> {
+    pub fn end(&self) -> Option<FileEnd> {
         self.end
     }
 
@@ -138,11 +138,11 @@ impl<R: Read> Records<R> {
                 }
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted,
                 Some(Err(mcap::McapError::UnexpectedEof)) if self.started => {
-                    self.end = Some(End::Truncated);
+                    self.end = Some(FileEnd::Truncated);
                     break;
                 }
                 Some(Err(error)) => {
-                    self.end = Some(End::Truncated);
+                    self.end = Some(FileEnd::Truncated);
                     return Err(match error {
                         mcap::McapError::BadMagic | mcap::McapError::UnexpectedEof
                             if !self.started =>
@@ -155,7 +155,7 @@ impl<R: Read> Records<R> {
                     });
                 }
                 None => {
-                    self.end = Some(End::Whole);
+                    self.end = Some(FileEnd::Whole);
                     break;
                 }
             };
@@ -181,7 +181,7 @@ impl<R: Read> Records<R> {
                 }
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    self.end = Some(End::Truncated);
+                    self.end = Some(FileEnd::Truncated);
                     return Err(RecordsError::Io(error));
                 }
             }

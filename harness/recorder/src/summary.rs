@@ -1,6 +1,6 @@
 //! Summary of a recording.
 
-use super::Counts;
+use super::MessageCounts;
 use super::altered::AlteredStreams;
 
 /// Summary of a recording.
@@ -17,7 +17,7 @@ pub struct RecorderSummary {
     /// Checksums of the streams of the source and the core, if they differ.
     pub altered_streams: Option<AlteredStreams>,
     /// Number of messages in the file, by topic.
-    pub messages: Counts,
+    pub messages: MessageCounts,
     /// Size of the file, bytes.
     pub bytes: u64,
 }

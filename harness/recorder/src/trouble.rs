@@ -8,7 +8,7 @@ use std::time::Duration;
 /// Handle to the disk and the thread of a recorder, for faults. By default there are none. Raising a
 /// fault is a store: it takes no lock and allocates nothing.
 #[derive(Clone, Debug, Default)]
-pub struct Trouble(Arc<Raised>);
+pub struct RecorderTrouble(Arc<Raised>);
 
 #[derive(Debug, Default)]
 struct Raised {
@@ -16,7 +16,7 @@ struct Raised {
     pause_ns: AtomicU64,
 }
 
-impl Trouble {
+impl RecorderTrouble {
     /// Makes the disk full from now on.
     pub fn fill_disk(&self) {
         self.0.full.store(true, Ordering::Relaxed);
@@ -38,11 +38,11 @@ impl Trouble {
 /// File on a disk that can be full.
 pub(super) struct Disk<W> {
     inner: W,
-    trouble: Trouble,
+    trouble: RecorderTrouble,
 }
 
 impl<W> Disk<W> {
-    pub(super) fn new(inner: W, trouble: Trouble) -> Self {
+    pub(super) fn new(inner: W, trouble: RecorderTrouble) -> Self {
         Self { inner, trouble }
     }
 }

@@ -19,7 +19,7 @@ use super::block::Block;
 use super::message::{self, Topic};
 use super::sink::Sink;
 use super::{
-    Counts, Event, FLUSH_INTERVAL, FORMAT_VERSION, Policy, RecorderError, RecorderOptions, Samples,
+    MessageCounts, Event, FLUSH_INTERVAL, FORMAT_VERSION, Policy, RecorderError, RecorderOptions, Samples,
 };
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -282,7 +282,7 @@ impl<W: Write> RecordingWriter<W> {
     }
 
     /// Writes the summary. Returns the number of messages by topic, and the size of the file in bytes.
-    pub(super) fn finish(mut self) -> Result<(Counts, u64), RecorderError> {
+    pub(super) fn finish(mut self) -> Result<(MessageCounts, u64), RecorderError> {
         self.write_parameters()?;
         self.mcap.finish().map_err(|error| error_of(error, &self.written))?;
         let counts =

@@ -42,14 +42,14 @@ pub struct Rejudged {
     /// SHA-256 of the manifest, hexadecimal; null without one, as for a night.
     pub manifest_sha256: Option<String>,
     /// Judged subjects: a run, a campaign, each campaign of a night.
-    pub judged: Vec<Judged>,
+    pub judged: Vec<JudgedSubject>,
     /// The worst of the new verdicts.
     pub verdict: Verdict,
 }
 
 /// Judged subject.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Judged {
+pub struct JudgedSubject {
     /// Kind: `run`, `campaign`.
     pub what: &'static str,
     /// Title.
@@ -67,16 +67,16 @@ pub struct Judged {
     /// Present reasons.
     pub reasons_now: Vec<String>,
     /// Requirements.
-    pub requirements: Vec<Check>,
+    pub requirements: Vec<RejudgedCheck>,
     /// Cases of a campaign whose verdict has changed.
-    pub cases: Vec<Turned>,
+    pub cases: Vec<RejudgedCase>,
     /// Quantities that can't be derived, because they were never stored.
     pub not_stored: Vec<String>,
 }
 
 /// Requirement with its stored and its present verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
+pub struct RejudgedCheck {
     /// Id.
     pub id: String,
     /// Verdict at the time of the run; null if the folder doesn't contain it.
@@ -89,7 +89,7 @@ pub struct Check {
 
 /// Case with its stored and its present verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Turned {
+pub struct RejudgedCase {
     /// Id.
     pub case: String,
     /// Stored verdict.
@@ -194,7 +194,7 @@ fn form(path: &Path, reason: impl ToString) -> RejudgeError {
     RejudgeError::Form { path: path.to_owned(), reason: reason.to_string() }
 }
 
-fn run(folder: &Path, manifest: &Manifest) -> Result<Judged, RejudgeError> {
+fn run(folder: &Path, manifest: &Manifest) -> Result<JudgedSubject, RejudgeError> {
     let path = folder.join(SUMMARY);
     let bytes = manifest.read_file(folder, SUMMARY)?;
     let text = String::from_utf8(bytes).map_err(|_| form(&path, "it is no text"))?;
@@ -210,7 +210,7 @@ fn run(folder: &Path, manifest: &Manifest) -> Result<Judged, RejudgeError> {
     let certified = certified(manifest).map_err(|reason| form(&folder.join(FILE_NAME), reason))?;
     let again = rederive::rejudge(&stored, &certified).map_err(|error| form(&path, error))?;
     let now = again.summary;
-    Ok(Judged {
+    Ok(JudgedSubject {
         what: "run",
         title: stored.scenario.clone(),
         made_by: vec![stored.octant.clone()],
@@ -225,8 +225,8 @@ fn run(folder: &Path, manifest: &Manifest) -> Result<Judged, RejudgeError> {
     })
 }
 
-fn checks(then: &[RequirementResult], now: &[RequirementResult]) -> Vec<Check> {
-    let one = |(then, now): (&RequirementResult, &RequirementResult)| Check {
+fn checks(then: &[RequirementResult], now: &[RequirementResult]) -> Vec<RejudgedCheck> {
+    let one = |(then, now): (&RequirementResult, &RequirementResult)| RejudgedCheck {
         id: now.id.clone(),
         then: Some(then.verdict),
         now: now.verdict,
@@ -262,7 +262,7 @@ fn campaign(
     folder: &Path,
     then: Option<Verdict>,
     requirements: &BTreeMap<String, Verdict>,
-) -> Result<Judged, RejudgeError> {
+) -> Result<JudgedSubject, RejudgeError> {
     let path = folder.join(plan::FILE_NAME);
     let plan = Plan::read(&path).map_err(|error| form(&path, error))?;
     let system = |reason: String| RejudgeError::System { folder: folder.to_owned(), reason };
@@ -298,7 +298,7 @@ fn campaign(
         };
         if again.verdict != stored.verdict {
             let reasons = again.summary.as_ref().map(|summary| summary.reasons.clone());
-            cases.push(Turned {
+            cases.push(RejudgedCase {
                 case: case.id.clone(),
                 then: stored.verdict,
                 now: again.verdict,
@@ -316,7 +316,7 @@ fn campaign(
     }
     let status =
         status::of(&plan, place.path(), Shard::WHOLE).map_err(|error| system(error.to_string()))?;
-    let one = |(id, found): (&String, &status::RequirementStatus)| Check {
+    let one = |(id, found): (&String, &status::RequirementStatus)| RejudgedCheck {
         id: id.clone(),
         then: requirements.get(id).copied(),
         now: found.verdict,
@@ -333,7 +333,7 @@ fn campaign(
             status.cases
         ));
     }
-    Ok(Judged {
+    Ok(JudgedSubject {
         what: "campaign",
         title: plan.title.clone(),
         made_by: made_by.into_iter().collect(),
@@ -352,11 +352,11 @@ impl Rejudged {
     /// Renders the comparison as text.
     #[must_use]
     pub fn text(&self) -> String {
-        self.judged.iter().map(Judged::text).collect()
+        self.judged.iter().map(JudgedSubject::text).collect()
     }
 }
 
-impl Judged {
+impl JudgedSubject {
     fn text(&self) -> String {
         let name = |verdict: Option<Verdict>| verdict.map_or("not told", Verdict::name);
         let mut text = format!("{} {}\n", self.what, self.title);

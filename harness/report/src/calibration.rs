@@ -1,11 +1,11 @@
 //! Calibration of a run: parameters, their convergence, innovations.
 
-use super::chart::{Band, Chart, Line, Role};
+use super::chart::{Band, Chart, ChartLine, ChartRole};
 use super::data::{NisPoint, ParameterPoint, ReportData};
 use super::parameters;
 use maud::{Markup, html};
 use octant_base::number;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 pub(super) fn calibration(data: &ReportData) -> Markup {
     let summary = &data.summary;
@@ -37,7 +37,7 @@ fn convergence(data: &ReportData) -> Markup {
     if data.convergence.len() < 2 {
         return html! {};
     }
-    let panel = |group: Group| {
+    let panel = |group: ParameterGroup| {
         let unit = group.si_per_unit();
         let sigmas = |p: &ParameterPoint| {
             p.sigma[group.range()].iter().map(|s| s / unit).filter(|s| *s > 0.0).collect::<Vec<_>>()
@@ -52,7 +52,7 @@ fn convergence(data: &ReportData) -> Markup {
         chart.logarithmic = true;
         chart.bands.push(Band {
             label: "σ".to_owned(),
-            role: Role::Primary,
+            role: ChartRole::Primary,
             points: data
                 .convergence
                 .iter()
@@ -70,9 +70,9 @@ fn convergence(data: &ReportData) -> Markup {
                 let sum: f64 = group.range().map(|i| (e[i] - truth[i]) * (e[i] - truth[i])).sum();
                 libm::sqrt(sum / group.range().len() as f64) / unit
             };
-            chart.lines.push(Line {
+            chart.lines.push(ChartLine {
                 label: "rms error".to_owned(),
-                role: Role::Primary,
+                role: ChartRole::Primary,
                 points: data.convergence.iter().map(|p| [p.hours, error(p)]).collect(),
             });
         }
@@ -83,7 +83,7 @@ fn convergence(data: &ReportData) -> Markup {
         p.hint { "Band: smallest to largest σ of the group. "
             @if data.truth.is_some() { "Line: rms of the group's true errors. " }
             "Of a consistent filter the line lies about the band." }
-        div.multiples { @for group in Group::ALL { (panel(group)) } }
+        div.multiples { @for group in ParameterGroup::ALL { (panel(group)) } }
     }
 }
 
@@ -113,12 +113,12 @@ fn nis(data: &ReportData) -> Markup {
     chart.y_range = Some([0.0, (1.1 * highest).max(6.0)]);
     chart.bands.push(Band {
         label: "95 % confidence interval of the mean".to_owned(),
-        role: Role::Reference,
+        role: ChartRole::Reference,
         points: ends.iter().map(|&x| [x, (3.0 - half).max(0.0), 3.0 + half]).collect(),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: format!("mean of {size} measurements"),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: means,
     });
     chart.levels.push((3.0, String::new()));

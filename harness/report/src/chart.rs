@@ -6,7 +6,7 @@ use octant_base::number;
 
 /// Meaning of a line or band: the style sheet assigns colour and dash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ChartRole {
     /// The method under test.
     Primary,
     /// Method of comparison.
@@ -17,7 +17,7 @@ pub enum Role {
     Reference,
 }
 
-impl Role {
+impl ChartRole {
     const fn class(self) -> &'static str {
         match self {
             Self::Primary => "primary",
@@ -30,11 +30,11 @@ impl Role {
 
 /// A line.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct ChartLine {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: Role,
+    pub role: ChartRole,
     /// Points in order of x; NaN breaks the line.
     pub points: Vec<[f64; 2]>,
 }
@@ -45,7 +45,7 @@ pub struct Band {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: Role,
+    pub role: ChartRole,
     /// x, lower, upper.
     pub points: Vec<[f64; 3]>,
 }
@@ -74,7 +74,7 @@ pub struct Chart {
     /// Bands, drawn first.
     pub bands: Vec<Band>,
     /// Lines.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ChartLine>,
     /// Horizontal lines with a label.
     pub levels: Vec<(f64, String)>,
     /// Length of a bracket on the x axis with its label: a reference period.
@@ -294,7 +294,7 @@ impl Frame {
         }
     }
 
-    fn pairs(&self, lines: &[Line]) -> Markup {
+    fn pairs(&self, lines: &[ChartLine]) -> Markup {
         let first = lines.first().map_or(&[][..], |l| &l.points[..]);
         html! {
             @for (i, [x, _]) in first.iter().enumerate() {
@@ -464,7 +464,7 @@ mod tests {
         let mut chart = Chart::new("Small", "h", "y");
         let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
         for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
-            chart.lines = vec![Line { label: String::new(), role: Role::Primary, points: line(y) }];
+            chart.lines = vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
             let frame = Frame::of(&chart).unwrap();
             let longest = frame.y_ticks.iter().map(|tick| tick.1.chars().count()).max().unwrap();
             assert!(frame.left - 7.0 >= 6.5 * longest as f64, "{:?}", frame.y_ticks);

@@ -1,15 +1,15 @@
 //! Renders `compare.html` and the plain text of `octant compare`.
 
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use super::page::page;
 use maud::{Markup, html};
 use octant_base::number;
-use octant_score::compare::{Cell, Claim, Comparison, Refusals, interval, percent};
-use octant_statistics::sample::Interval;
+use octant_score::compare::{MeasureCell, Claim, MethodComparison, Refusals, interval, percent};
+use octant_statistics::sample::ConfidenceInterval;
 
 /// Renders the comparison as text for a terminal.
 #[must_use]
-pub fn table(comparison: &Comparison) -> String {
+pub fn table(comparison: &MethodComparison) -> String {
     let width = comparison.first.len().max(comparison.second.len()).max(8);
     let mut text = format!(
         "{:<20}{:>w$}{:>w$}{:>8}{:>13}  90 % interval\n",
@@ -43,7 +43,7 @@ pub fn table(comparison: &Comparison) -> String {
 
 /// Renders the comparison as one HTML file.
 #[must_use]
-pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> String {
+pub fn render(comparison: &MethodComparison, provenance: &[(String, String)]) -> String {
     let claim = comparison.cells.iter().rfind(|c| c.measure.is_longitude()).map(|c| c.claim);
     let class = match claim {
         Some(Claim::Holds) => "pass",
@@ -82,8 +82,8 @@ pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> Strin
 }
 
 /// Renders the refusals of each method.
-fn refused(comparison: &Comparison, refusals: &Refusals) -> Markup {
-    let row = |name: &str, count: u64, rate: &Interval| {
+fn refused(comparison: &MethodComparison, refusals: &Refusals) -> Markup {
+    let row = |name: &str, count: u64, rate: &ConfidenceInterval| {
         html! { tr {
             td { (name) } td.n { (count) " of " (refusals.seeds) } td.n { (percent(rate.value)) " %" }
             td.n { (percent(rate.low)) " to " (percent(rate.high)) " %" }
@@ -109,7 +109,7 @@ fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }
 
-fn cells(comparison: &Comparison) -> Markup {
+fn cells(comparison: &MethodComparison) -> Markup {
     html! {
         table {
             thead { tr {
@@ -143,7 +143,7 @@ fn place(fraction: f64) -> f64 {
     libm::round((fraction.clamp(-0.6, 1.0) + 0.6) / 1.8 * 2000.0) / 10.0
 }
 
-fn whisker(cell: &Cell) -> Markup {
+fn whisker(cell: &MeasureCell) -> Markup {
     let i = &cell.improvement;
     html! {
         svg viewBox="0 0 200 16" aria-hidden="true" {
@@ -156,7 +156,7 @@ fn whisker(cell: &Cell) -> Markup {
 }
 
 /// Draws both methods seed by seed, sorted by the first, so that the pairs are visible.
-fn pairs(comparison: &Comparison, cell: &Cell) -> Markup {
+fn pairs(comparison: &MethodComparison, cell: &MeasureCell) -> Markup {
     let mut values: Vec<(f64, f64)> = comparison
         .runs
         .iter()
@@ -176,20 +176,20 @@ fn pairs(comparison: &Comparison, cell: &Cell) -> Markup {
     if let Some(floor) = cell.floor {
         chart.levels.push((floor, "floor".to_owned()));
     }
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: comparison.first.clone(),
-        role: Role::Baseline,
+        role: ChartRole::Baseline,
         points: series(&|v| v.0),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: comparison.second.clone(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: series(&|v| v.1),
     });
     chart.render()
 }
 
-fn runs(comparison: &Comparison) -> Markup {
+fn runs(comparison: &MethodComparison) -> Markup {
     html! {
         table {
             thead { tr { th { "Seed" } @for cell in &comparison.cells {

@@ -1,11 +1,11 @@
 //! Effects of the faults: the run compared with its twin without them.
 
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_sample::parameters::NAMES;
 use octant_score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
-use octant_score::summary::{Calibration, Summary};
+use octant_score::summary::{CalibrationScore, Summary};
 
 /// Maximum number of parameters listed: those that moved most.
 const LISTED: usize = 12;
@@ -95,7 +95,7 @@ fn noticed(c: &Counterfactual) -> Markup {
     }
 }
 
-fn shifts(c: &Counterfactual, calibration: Option<&Calibration>) -> Markup {
+fn shifts(c: &Counterfactual, calibration: Option<&CalibrationScore>) -> Markup {
     let unit =
         |name: &str| calibration.and_then(|c| c.parameters.get(name)).map_or("", |p| &p.unit);
     let mut moved: Vec<_> =
@@ -129,9 +129,9 @@ fn drift(difference: &DriftDifference) -> Markup {
         "Navigation, faulted minus twin, arcmin",
     );
     chart.height = 200.0;
-    for (label, role, column) in [("latitude", Role::Primary, 1), ("longitude", Role::Baseline, 2)]
+    for (label, role, column) in [("latitude", ChartRole::Primary, 1), ("longitude", ChartRole::Baseline, 2)]
     {
-        chart.lines.push(Line {
+        chart.lines.push(ChartLine {
             label: label.to_owned(),
             role,
             points: difference.series_hours.iter().map(|p| [p[0], p[column]]).collect(),

@@ -26,7 +26,7 @@ pub struct ReportData {
     /// Dispositions of the discrepancies.
     pub dispositions: Dispositions,
     /// Provenance of the numbers.
-    pub provenance: Provenance,
+    pub provenance: ReportProvenance,
 }
 
 /// Parameters and σ at one time of the calibration.
@@ -77,7 +77,7 @@ pub struct HealthEvent {
 
 /// Provenance of the numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Provenance {
+pub struct ReportProvenance {
     /// Pairs of name and value: versions, hashes, host.
     pub entries: Vec<(String, String)>,
     /// Command that makes the run again.

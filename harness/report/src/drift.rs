@@ -1,21 +1,21 @@
 //! Navigation of a run: errors over time, scores beside their analytic references.
 
-use super::chart::{Band, Chart, Line, Role};
+use super::chart::{Band, Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_score::reference::{Reference, VerticalDrift};
-use octant_score::summary::{Navigation, Summary};
+use octant_score::reference::{AnalyticReference, VerticalDrift};
+use octant_score::summary::{NavigationScore, Summary};
 
 /// Lists the navigations of a summary with their names.
-fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {
+fn navigations(summary: &Summary) -> Vec<(&str, ChartRole, &NavigationScore)> {
     let mut all = Vec::new();
     if let Some(n) = &summary.navigation {
-        all.push((summary.method.as_str(), Role::Primary, n));
+        all.push((summary.method.as_str(), ChartRole::Primary, n));
     }
     if let Some(baseline) = &summary.baseline
         && let Some(n) = &baseline.navigation
     {
-        all.push((baseline.label.as_str(), Role::Baseline, n));
+        all.push((baseline.label.as_str(), ChartRole::Baseline, n));
     }
     all
 }
@@ -36,7 +36,7 @@ pub(super) fn drift(summary: &Summary) -> Markup {
                 });
                 chart.bands.push(Band {
                     label: "±1σ of random walk alone".to_owned(),
-                    role: Role::Reference,
+                    role: ChartRole::Reference,
                     points: points.collect(),
                 });
             }
@@ -48,7 +48,7 @@ pub(super) fn drift(summary: &Summary) -> Markup {
         }
         // The method under test is drawn last, on top.
         for (label, role, n) in all.iter().rev() {
-            chart.lines.push(Line {
+            chart.lines.push(ChartLine {
                 label: (*label).to_owned(),
                 role: *role,
                 points: n.series_hours.iter().map(|p| [p[0], p[column]]).collect(),
@@ -75,11 +75,11 @@ struct DriftRow<'a> {
     about: &'a str,
 }
 
-fn drift_table(summary: &Summary, all: &[(&str, Role, &Navigation)]) -> Markup {
+fn drift_table(summary: &Summary, all: &[(&str, ChartRole, &NavigationScore)]) -> Markup {
     let reference = summary.reference.as_ref();
     let floor = reference.and_then(|r| r.random_walk.as_ref());
     let walk = "random walk alone, expected";
-    let row = |name, value: &dyn Fn(&Navigation) -> Option<f64>, reference, about| DriftRow {
+    let row = |name, value: &dyn Fn(&NavigationScore) -> Option<f64>, reference, about| DriftRow {
         name,
         values: all.iter().map(|(_, _, n)| value(n)).collect(),
         reference,
@@ -139,7 +139,7 @@ fn drift_table(summary: &Summary, all: &[(&str, Role, &Navigation)]) -> Markup {
             thead { tr {
                 th { "Score" }
                 @for (label, role, _) in all {
-                    th.n { span class=(if *role == Role::Primary { "primary-text" } else { "baseline-text" }) { (label) } }
+                    th.n { span class=(if *role == ChartRole::Primary { "primary-text" } else { "baseline-text" }) { (label) } }
                 }
                 th.n { "Reference" } th style="padding-left:14px" { "The reference is" }
             } }
@@ -164,7 +164,7 @@ fn drift_table(summary: &Summary, all: &[(&str, Role, &Navigation)]) -> Markup {
     }
 }
 
-fn closed_forms(r: &Reference) -> Markup {
+fn closed_forms(r: &AnalyticReference) -> Markup {
     let drift = |label: &str, d: Option<VerticalDrift>| {
         html! { @if let Some(d) = d {
             tr {

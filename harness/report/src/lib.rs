@@ -16,4 +16,4 @@ pub mod page;
 mod parameters;
 pub mod run;
 
-pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};
+pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData};

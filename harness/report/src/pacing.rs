@@ -1,15 +1,15 @@
 //! Time keeping of a run.
 
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_score::summary::{Lateness, Pacing, Summary};
+use octant_score::summary::{LatenessQuantiles, PacingRecord, Summary};
 
 /// Renders the section; empty for a run that didn't go by the clock.
 pub(super) fn pacing(summary: &Summary) -> Markup {
     let Some(pacing) = &summary.pacing else { return html! {} };
     let us = |value: f64| number::significant(value, 3);
-    let row = |name: &str, of: &Lateness| {
+    let row = |name: &str, of: &LatenessQuantiles| {
         html! {
             tr {
                 td { (name) }
@@ -51,7 +51,7 @@ pub(super) fn pacing(summary: &Summary) -> Markup {
 }
 
 /// Draws the share of samples that left later than x.
-fn later_than(pacing: &Pacing) -> Chart {
+fn later_than(pacing: &PacingRecord) -> Chart {
     let mut chart = Chart::new("Lateness", "lateness, µs", "Share of the samples that left later");
     chart.hours = false;
     chart.logarithmic = true;
@@ -64,6 +64,6 @@ fn later_than(pacing: &Pacing) -> Chart {
         left = left.saturating_sub(*count);
         points.push([*edge_ns as f64 / 1e3, left as f64 / total as f64]);
     }
-    chart.lines.push(Line { label: "later".to_owned(), role: Role::Primary, points });
+    chart.lines.push(ChartLine { label: "later".to_owned(), role: ChartRole::Primary, points });
     chart
 }

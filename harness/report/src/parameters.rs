@@ -2,27 +2,27 @@
 
 use maud::{Markup, html};
 use octant_base::number;
-use octant_sample::parameters::{Group, NAMES};
-use octant_score::summary::{Calibration, ParameterScore};
+use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_score::summary::{CalibrationScore, ParameterScore};
 
 /// Width of the strip in σ on each side.
 const STRIP_SIGMA: f64 = 5.0;
 
 /// Returns the title of a group.
-pub(super) fn title(group: Group) -> &'static str {
+pub(super) fn title(group: ParameterGroup) -> &'static str {
     match group {
-        Group::GyroBias => "Gyro bias",
-        Group::GyroScale => "Gyro scale factor",
-        Group::GyroMisalignment => "Gyro misalignment",
-        Group::GDependent => "g-dependent gyro bias",
-        Group::AccelBias => "Accelerometer bias",
-        Group::AccelScale => "Accelerometer scale factor",
-        Group::AccelMisalignment => "Accelerometer misalignment",
+        ParameterGroup::GyroBias => "Gyro bias",
+        ParameterGroup::GyroScale => "Gyro scale factor",
+        ParameterGroup::GyroMisalignment => "Gyro misalignment",
+        ParameterGroup::GDependent => "g-dependent gyro bias",
+        ParameterGroup::AccelBias => "Accelerometer bias",
+        ParameterGroup::AccelScale => "Accelerometer scale factor",
+        ParameterGroup::AccelMisalignment => "Accelerometer misalignment",
     }
 }
 
 /// Renders the table of all parameters of a method, with the errors of the baseline in the strip.
-pub(super) fn table(calibration: &Calibration, baseline: Option<&Calibration>) -> Markup {
+pub(super) fn table(calibration: &CalibrationScore, baseline: Option<&CalibrationScore>) -> Markup {
     html! {
         table.parameters {
             thead { tr {
@@ -31,7 +31,7 @@ pub(super) fn table(calibration: &Calibration, baseline: Option<&Calibration>) -
                 th.strip { (scale()) }
             } }
             tbody {
-                @for group in Group::ALL {
+                @for group in ParameterGroup::ALL {
                     (group_rows(group, calibration, baseline))
                 }
             }
@@ -39,7 +39,7 @@ pub(super) fn table(calibration: &Calibration, baseline: Option<&Calibration>) -
     }
 }
 
-fn group_rows(group: Group, calibration: &Calibration, baseline: Option<&Calibration>) -> Markup {
+fn group_rows(group: ParameterGroup, calibration: &CalibrationScore, baseline: Option<&CalibrationScore>) -> Markup {
     let names = &NAMES[group.range()];
     let scores: Vec<_> = names.iter().filter_map(|n| calibration.parameters.get(*n)).collect();
     // Two digits of the smallest σ, the same for the whole group, so that the columns line up.

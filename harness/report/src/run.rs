@@ -1,9 +1,9 @@
 //! `report.html` of one run, for the reader who assesses it.
 
-pub use super::data::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};
+pub use super::data::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData};
 
 use super::calibration::calibration;
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::pacing::pacing;
@@ -12,7 +12,7 @@ use maud::{Markup, html};
 use octant_base::number;
 use octant_evidence::discrepancy;
 use octant_requirements::Verdict;
-use octant_score::summary::{Calibration, HeightChannel, Summary};
+use octant_score::summary::{CalibrationScore, HeightChannel, Summary};
 use octant_score::work::duration;
 
 /// Renders the report as one HTML file.
@@ -118,7 +118,7 @@ pub fn what_was_done(summary: &Summary) -> String {
                 )
             )
         ),
-        (None, Some(Calibration { worst_normalized_error: Some(worst), .. })) => {
+        (None, Some(CalibrationScore { worst_normalized_error: Some(worst), .. })) => {
             format!(" The worst parameter is {} σ from truth.", number::fixed(*worst, 1))
         }
         _ => String::new(),
@@ -296,14 +296,14 @@ fn gimbals(data: &ReportData) -> Markup {
         let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
         Some(if high - low > 500.0 { 180.0 } else { 90.0 })
     };
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "azimuth (inner)".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: angle(&|p| p.azimuth_deg),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "roll (outer)".to_owned(),
-        role: Role::Second,
+        role: ChartRole::Second,
         points: angle(&|p| p.roll_deg),
     });
     let steps = || data.gimbals.windows(2);

@@ -9,7 +9,7 @@
 #![allow(clippy::print_stdout)]
 
 use octant_requirements::Verdict;
-use octant_requirements::trace::{Case, CaseResult, Trace};
+use octant_requirements::trace::{TracedCase, TracedResult, CampaignTrace};
 use octant_requirements::{Requirements, file, reqif, sdoc, strictdoc};
 use std::error::Error;
 use std::path::Path;
@@ -64,11 +64,11 @@ fn show(requirements: &str, cases: &str, folder: &Path) -> Result<(), Box<dyn Er
         let verifies = checks.iter().map(|(id, _)| id.clone()).collect();
         let verdict = checks.iter().map(|(_, v)| *v).max().unwrap_or(Verdict::Inconclusive);
         let recording = Some(format!("runs/{id}/recording.mcap"));
-        let result = Some(CaseResult { verdict, checks, recording, folder: None });
+        let result = Some(TracedResult { verdict, checks, recording, folder: None });
         let draw = all.len();
-        all.push(Case { id, verifies, draw, result });
+        all.push(TracedCase { id, verifies, draw, result });
     }
-    let trace = Trace::new(&requirements, &all);
+    let trace = CampaignTrace::new(&requirements, &all);
     for (path, text) in strictdoc::folder(&requirements, &trace, "Campaign")? {
         let path = folder.join(path);
         if let Some(parent) = path.parent() {

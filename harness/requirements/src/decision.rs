@@ -10,7 +10,7 @@ const NMI_M: f64 = 1852.0;
 /// Rule for a value within the uncertainty of its reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rule {
+pub enum DecisionRule {
     /// Within the uncertainty of a limit the result is inconclusive: the guard band is as wide as the
     /// expanded uncertainty on both sides (JCGM 106, 8.3.2).
     #[default]
@@ -32,7 +32,7 @@ pub struct Uncertainty {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
     /// Rule; `None`: not stated.
-    pub rule: Option<Rule>,
+    pub rule: Option<DecisionRule>,
     /// Expanded uncertainty (95 %) of the reference position, m, in each direction.
     pub position_m: Option<f64>,
     /// Uncertainties of single measures, which take precedence over derived ones.
@@ -41,7 +41,7 @@ pub struct Decision {
 
 /// Place and length of a navigation, and its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Against {
+pub struct NavigationContext {
     /// True if the truth is simulated, and thus exact.
     pub simulated: bool,
     /// Geodetic latitude, rad.
@@ -56,7 +56,7 @@ pub struct Against {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decided {
     /// Rule.
-    pub rule: Rule,
+    pub rule: DecisionRule,
     /// Text of the rule and of the references' uncertainties.
     pub text: String,
 }
@@ -74,7 +74,7 @@ impl Decision {
     ///
     /// # Errors
     /// If a reference is not exact and its uncertainty is not stated.
-    pub fn uncertainty(&self, measure: &str, against: &Against) -> Result<f64, UnknownUncertainty> {
+    pub fn uncertainty(&self, measure: &str, against: &NavigationContext) -> Result<f64, UnknownUncertainty> {
         let bare = measure.trim_matches('|');
         if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
             return Ok(stated.uncertainty);
@@ -86,27 +86,27 @@ impl Decision {
             Some(position_m) if bare.contains("navigation.") => {
                 Ok(of_position(bare, position_m, against))
             }
-            _ if against.simulated || self.rule == Some(Rule::SimpleAcceptance) => Ok(0.0),
+            _ if against.simulated || self.rule == Some(DecisionRule::SimpleAcceptance) => Ok(0.0),
             _ => Err(UnknownUncertainty),
         }
     }
 
     /// Rule that applies.
     #[must_use]
-    pub fn rule(&self) -> Rule {
+    pub fn rule(&self) -> DecisionRule {
         self.rule.unwrap_or_default()
     }
 
     /// Description of the rule and the uncertainties.
     #[must_use]
-    pub fn decided(&self, against: &Against) -> Decided {
+    pub fn decided(&self, against: &NavigationContext) -> Decided {
         let rule = self.rule();
         let how = match rule {
-            Rule::GuardBand => {
+            DecisionRule::GuardBand => {
                 "Within the expanded uncertainty (95 %) of its reference a value is inconclusive \
                  (guard band, JCGM 106)"
             }
-            Rule::SimpleAcceptance => {
+            DecisionRule::SimpleAcceptance => {
                 "A value is held against its limit as it is, whatever its reference is uncertain by (simple \
                  acceptance, JCGM 106)"
             }
@@ -143,7 +143,7 @@ fn is_referred(bare: &str) -> bool {
 }
 
 /// Uncertainty of a measure of the navigation that follows from that of the position.
-fn of_position(bare: &str, position_m: f64, against: &Against) -> f64 {
+fn of_position(bare: &str, position_m: f64, against: &NavigationContext) -> f64 {
     let (sin, cos) = (libm::sin(against.latitude_rad), libm::cos(against.latitude_rad));
     let arcmin = |radius_m: f64| (position_m / radius_m).to_degrees() * 60.0;
     let hours = (against.navigation_s / 3600.0).max(f64::MIN_POSITIVE);
@@ -174,7 +174,7 @@ pub fn in_band(value: f64, limit: f64, uncertainty: f64) -> bool {
 mod tests {
     use super::*;
 
-    const HERE: Against = Against {
+    const HERE: NavigationContext = NavigationContext {
         simulated: false,
         latitude_rad: std::f64::consts::FRAC_PI_3,
         height_m: 0.0,
@@ -208,11 +208,11 @@ mod tests {
     #[test]
     fn what_nobody_stated_is_exact_where_it_is_simulated_alone() {
         let measure = "navigation.radial_error_nmi.max";
-        let simulated = Against { simulated: true, ..HERE };
+        let simulated = NavigationContext { simulated: true, ..HERE };
         assert_eq!(decision(None).uncertainty(measure, &simulated), Ok(0.0));
         let error = decision(None).uncertainty(measure, &HERE).unwrap_err().to_string();
         assert!(error.contains("decision.position") && error.contains("simple-acceptance"));
-        let simple = Decision { rule: Some(Rule::SimpleAcceptance), ..Decision::default() };
+        let simple = Decision { rule: Some(DecisionRule::SimpleAcceptance), ..Decision::default() };
         assert_eq!(simple.uncertainty(measure, &HERE), Ok(0.0));
         assert_eq!(decision(None).uncertainty("calibration.nis_mean", &HERE), Ok(0.0));
         let stated = Decision {

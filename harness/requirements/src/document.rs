@@ -1,6 +1,6 @@
 //! Tables of a TOML file that know their place in it, and collect problems.
 
-use crate::error::{Problem, suggestion};
+use crate::error::{RequirementsProblem, suggestion};
 use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -51,7 +51,7 @@ pub(crate) fn describe(value: &DeValue<'_>) -> String {
 /// All problems of a file.
 pub(crate) struct Problems<'a> {
     pub(crate) lines: Lines<'a>,
-    pub(crate) all: RefCell<Vec<Problem>>,
+    pub(crate) all: RefCell<Vec<RequirementsProblem>>,
 }
 
 /// A table of the file.
@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
     /// Reports a problem at an offset of the file.
     fn problem_at(&self, offset: usize, key: &str, message: impl Into<String>) {
         let place = self.problems.lines.place(offset);
-        self.problems.all.borrow_mut().push(Problem::new(place, self.path_of(key), message));
+        self.problems.all.borrow_mut().push(RequirementsProblem::new(place, self.path_of(key), message));
     }
 
     /// Reports a problem with the value of a key, or with the table if the key is missing.

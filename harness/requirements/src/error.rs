@@ -5,7 +5,7 @@ use std::fmt;
 
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct RequirementsProblem {
     /// Line in the file, from 1.
     pub line: usize,
     /// Column in characters, from 1.
@@ -16,7 +16,7 @@ pub struct Problem {
     pub message: String,
 }
 
-impl Problem {
+impl RequirementsProblem {
     pub(crate) fn new(
         (line, column): (usize, usize),
         path: impl Into<String>,
@@ -32,11 +32,11 @@ pub struct RequirementsError {
     /// Name of the file.
     pub file: String,
     /// The problems.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<RequirementsProblem>,
 }
 
 impl RequirementsError {
-    pub(crate) fn one(file: &str, problem: Problem) -> Self {
+    pub(crate) fn one(file: &str, problem: RequirementsProblem) -> Self {
         Self { file: file.to_owned(), problems: vec![problem] }
     }
 }

@@ -1,6 +1,6 @@
 //! Fields for Octant's keys of a requirement in other formats.
 
-use crate::requirement::{Check, Ensemble, Limit, Requirement, Verification, percent, probability};
+use crate::requirement::{Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability};
 use crate::verdict::Comparison;
 
 pub(crate) const MEASURE: &str = "MEASURE";
@@ -84,7 +84,7 @@ pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, Stri
             },
         };
         let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
-            (Some(pass), Some(confidence)) => Some(Ensemble { pass, confidence }),
+            (Some(pass), Some(confidence)) => Some(EnsembleRequirement { pass, confidence }),
             (None, None) => None,
             _ => {
                 return Err((line, format!("{PASS} and {CONFIDENCE} say something only together")));

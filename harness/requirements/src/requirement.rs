@@ -55,7 +55,7 @@ impl Limit {
 /// Required probability for an ensemble of runs: a run passes with at least this probability, shown
 /// with this confidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ensemble {
+pub struct EnsembleRequirement {
     /// Probability that a run passes, above 0 and below 1.
     pub pass: f64,
     /// One-sided confidence, above 0 and below 1.
@@ -126,7 +126,7 @@ pub struct Check {
     /// The limit.
     pub limit: Limit,
     /// Required probability for many runs; without it every run has to pass.
-    pub ensemble: Option<Ensemble>,
+    pub ensemble: Option<EnsembleRequirement>,
 }
 
 /// Verification of a requirement.
@@ -169,7 +169,7 @@ pub struct Parent {
 
 /// An attribute of another tool, which this program doesn't interpret.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Attribute {
+pub struct ForeignAttribute {
     /// Name.
     pub name: String,
     /// Values: several for a multiple choice, or for a field that occurs several times.
@@ -200,7 +200,7 @@ pub struct Requirement {
     /// Identifier for machines: the MID of StrictDoc, the IDENTIFIER of ReqIF.
     pub identifier: Option<String>,
     /// Attributes of other tools.
-    pub attributes: Vec<Attribute>,
+    pub attributes: Vec<ForeignAttribute>,
 }
 
 impl Requirement {
@@ -234,7 +234,7 @@ impl Requirement {
 
 /// Kind of an attribute's values.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum AttributeKind {
     /// Text, with or without formatting.
     Text,
     /// A whole number.
@@ -251,7 +251,7 @@ pub enum Kind {
     Choices(Vec<String>),
 }
 
-impl Kind {
+impl AttributeKind {
     /// Name used in files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
@@ -282,7 +282,7 @@ pub struct Definition {
     /// Name.
     pub name: String,
     /// Kind of its values.
-    pub kind: Kind,
+    pub kind: AttributeKind,
     /// Name in StrictDoc, which allows only capitals, digits and `_`, if it is another one.
     pub field: Option<String>,
 }
@@ -309,8 +309,8 @@ impl Requirements {
 
     /// Kind of an attribute's values.
     #[must_use]
-    pub fn kind(&self, name: &str) -> Kind {
-        self.definitions.iter().find(|d| d.name == name).map_or(Kind::Text, |d| d.kind.clone())
+    pub fn kind(&self, name: &str) -> AttributeKind {
+        self.definitions.iter().find(|d| d.name == name).map_or(AttributeKind::Text, |d| d.kind.clone())
     }
 
     /// Names of all attributes used or defined, in the order of their occurrence.

@@ -8,7 +8,7 @@
 use crate::error::ExportError;
 use crate::requirement::Requirements;
 use crate::sdoc::legal_uid;
-use crate::trace::{Link, Row, Trace};
+use crate::trace::{TraceLink, TraceRow, CampaignTrace};
 use crate::verdict::Verdict;
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -17,8 +17,8 @@ use std::fmt::Write as _;
 pub const VERIFIES: &str = "Verifies";
 
 /// Cases of a trace with their requirements, in the order in which requirements name them.
-fn cases(trace: &Trace) -> Vec<(&str, Vec<(&Row, &Link)>)> {
-    let mut cases: Vec<(&str, Vec<(&Row, &Link)>)> = Vec::new();
+fn cases(trace: &CampaignTrace) -> Vec<(&str, Vec<(&TraceRow, &TraceLink)>)> {
+    let mut cases: Vec<(&str, Vec<(&TraceRow, &TraceLink)>)> = Vec::new();
     let mut index: HashMap<&str, usize> = HashMap::new();
     for row in &trace.requirements {
         for link in &row.cases {
@@ -37,7 +37,7 @@ fn word(verdict: Option<Verdict>) -> &'static str {
 }
 
 /// Verdict of a case; `None` if none of its checks ran. A missing check makes it at least inconclusive.
-fn worst(links: &[(&Row, &Link)]) -> Option<Verdict> {
+fn worst(links: &[(&TraceRow, &TraceLink)]) -> Option<Verdict> {
     let missing = links.iter().any(|(_, link)| link.verdict.is_none());
     let worst = links.iter().filter_map(|(_, link)| link.verdict).max()?;
     Some(if missing { worst.max(Verdict::Inconclusive) } else { worst })
@@ -49,7 +49,7 @@ fn worst(links: &[(&Row, &Link)]) -> Option<Verdict> {
 /// # Errors
 /// If StrictDoc doesn't accept the id of a case.
 pub fn results(
-    trace: &Trace,
+    trace: &CampaignTrace,
     requirements: &Requirements,
     title: &str,
 ) -> Result<String, ExportError> {
@@ -108,7 +108,7 @@ const REPORT: &str = "campaign.lit.junit.xml";
 /// If StrictDoc can't hold a part of a requirement or case.
 pub fn folder(
     requirements: &Requirements,
-    trace: &Trace,
+    trace: &CampaignTrace,
     title: &str,
 ) -> Result<Vec<(String, String)>, ExportError> {
     let mut files = vec![
@@ -152,7 +152,7 @@ fn config(title: &str) -> String {
 }
 
 /// Test report. A case that hasn't run is skipped.
-fn report(title: &str, cases: &[(&str, Vec<(&Row, &Link)>)]) -> std::io::Result<String> {
+fn report(title: &str, cases: &[(&str, Vec<(&TraceRow, &TraceLink)>)]) -> std::io::Result<String> {
     use quick_xml::events::{BytesDecl, Event};
     let bad = |verdict: Option<Verdict>| verdict.is_some_and(|v| v != Verdict::Pass);
     let failures = cases.iter().filter(|(_, links)| bad(worst(links))).count().to_string();
@@ -188,7 +188,7 @@ fn report(title: &str, cases: &[(&str, Vec<(&Row, &Link)>)]) -> std::io::Result<
                         })?;
                         let verdict = worst(links);
                         if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
-                            let of = |(row, link): &(&Row, &Link)| {
+                            let of = |(row, link): &(&TraceRow, &TraceLink)| {
                                 format!("{}: {}", row.id, word(link.verdict))
                             };
                             let message: Vec<String> = links.iter().map(of).collect();

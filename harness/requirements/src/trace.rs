@@ -1,15 +1,15 @@
 //! Links from requirements to cases, results and recordings, and back.
 
-use crate::requirement::{Ensemble, Requirement, Requirements, Verification};
+use crate::requirement::{EnsembleRequirement, Requirement, Requirements, Verification};
 use crate::verdict::Verdict;
-use octant_statistics::cluster::Draws;
+use octant_statistics::cluster::DrawCounts;
 use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// A case of a campaign, with the requirements that it verifies and its result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Case {
+pub struct TracedCase {
     /// Id of the case.
     pub id: String,
     /// Ids of the requirements that it verifies.
@@ -17,12 +17,12 @@ pub struct Case {
     /// Number of its independent draw: cases of one draw share their instrument and its noise.
     pub draw: usize,
     /// Result; `None` if the case hasn't run.
-    pub result: Option<CaseResult>,
+    pub result: Option<TracedResult>,
 }
 
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CaseResult {
+pub struct TracedResult {
     /// Verdict of the case as a whole.
     pub verdict: Verdict,
     /// Verdict of each check, by the id of the requirement. A requirement that the case should verify
@@ -36,7 +36,7 @@ pub struct CaseResult {
 
 /// One case of a requirement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Link {
+pub struct TraceLink {
     /// The case.
     pub case: String,
     /// Number of its independent draw.
@@ -51,7 +51,7 @@ pub struct Link {
 
 /// Numbers of checks by verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counts {
+pub struct VerdictCounts {
     /// Passed.
     pub pass: u64,
     /// Inconclusive.
@@ -64,7 +64,7 @@ pub struct Counts {
     pub missing: u64,
 }
 
-impl Counts {
+impl VerdictCounts {
     fn add(&mut self, verdict: Option<Verdict>) {
         *match verdict {
             None => &mut self.missing,
@@ -79,17 +79,17 @@ impl Counts {
 
 /// Result of one requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct TraceRow {
     /// Id.
     pub id: String,
     /// Verification: `test`, `analysis`, `inspection`, `open`.
     pub verification: String,
     /// Cases, in the order of the campaign.
-    pub cases: Vec<Link>,
+    pub cases: Vec<TraceLink>,
     /// Numbers of its checks by verdict.
-    pub counts: Counts,
+    pub counts: VerdictCounts,
     /// Numbers of its independent draws by result.
-    pub draws: Draws,
+    pub draws: DrawCounts,
     /// Verdict; `None` if a run can't give one: it is verified by other tests, analysis or inspection.
     pub verdict: Option<Verdict>,
     /// Reason, in plain words.
@@ -98,7 +98,7 @@ pub struct Row {
 
 /// A case that names an unknown requirement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Unknown {
+pub struct UnknownRequirement {
     /// The case.
     pub case: String,
     /// Id that it names.
@@ -107,25 +107,25 @@ pub struct Unknown {
 
 /// Trace of a campaign, in both directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trace {
+pub struct CampaignTrace {
     /// Every requirement with its cases, in the order of the document.
-    pub requirements: Vec<Row>,
+    pub requirements: Vec<TraceRow>,
     /// Requirements without a case, whose verification is by test or open.
     pub without_case: Vec<String>,
     /// Cases that verify no known requirement.
     pub without_requirement: Vec<String>,
     /// Unknown requirements that cases name.
-    pub unknown: Vec<Unknown>,
+    pub unknown: Vec<UnknownRequirement>,
 }
 
-impl Trace {
+impl CampaignTrace {
     /// Traces the cases of a campaign. A case that names a requirement several times counts once for
     /// it, with the worst of its checks.
     #[must_use]
-    pub fn new(requirements: &Requirements, cases: &[Case]) -> Self {
+    pub fn new(requirements: &Requirements, cases: &[TracedCase]) -> Self {
         let index: HashMap<&str, usize> =
             requirements.requirements.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect();
-        let mut links: Vec<Vec<Link>> = vec![Vec::new(); requirements.requirements.len()];
+        let mut links: Vec<Vec<TraceLink>> = vec![Vec::new(); requirements.requirements.len()];
         let (mut without_requirement, mut unknown) = (Vec::new(), Vec::new());
         for case in cases {
             let mut worst: HashMap<&str, Verdict> = HashMap::new();
@@ -145,11 +145,11 @@ impl Trace {
             for id in ids {
                 let Some(&at) = index.get(id) else {
                     let requirement = id.to_owned();
-                    unknown.push(Unknown { case: case.id.clone(), requirement });
+                    unknown.push(UnknownRequirement { case: case.id.clone(), requirement });
                     continue;
                 };
                 known = true;
-                links[at].push(Link {
+                links[at].push(TraceLink {
                     case: case.id.clone(),
                     draw: case.draw,
                     verdict: worst.get(id).copied(),
@@ -161,9 +161,9 @@ impl Trace {
                 without_requirement.push(case.id.clone());
             }
         }
-        let rows: Vec<Row> =
+        let rows: Vec<TraceRow> =
             requirements.requirements.iter().zip(links).map(|(r, cases)| row(r, cases)).collect();
-        let tested = |row: &&Row| row.cases.is_empty() && row.verdict.is_some();
+        let tested = |row: &&TraceRow| row.cases.is_empty() && row.verdict.is_some();
         let without_case = rows.iter().filter(tested).map(|row| row.id.clone()).collect();
         Self { requirements: rows, without_case, without_requirement, unknown }
     }
@@ -180,7 +180,7 @@ impl Trace {
     /// Requirements that a case verifies, with the verdict of each check.
     #[must_use]
     pub fn of_case(&self, case: &str) -> Vec<(&str, Option<Verdict>)> {
-        let of = |row: &Row| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
+        let of = |row: &TraceRow| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
         self.requirements
             .iter()
             .filter_map(|row| of(row).map(|verdict| (row.id.as_str(), verdict)))
@@ -188,13 +188,13 @@ impl Trace {
     }
 }
 
-fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
-    let mut counts = Counts::default();
+fn row(requirement: &Requirement, cases: Vec<TraceLink>) -> TraceRow {
+    let mut counts = VerdictCounts::default();
     for link in &cases {
         counts.add(link.verdict);
     }
-    let passed = |link: &Link| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
-    let draws = Draws::of(cases.iter().map(passed));
+    let passed = |link: &TraceLink| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
+    let draws = DrawCounts::of(cases.iter().map(passed));
     let (verdict, reason) = match &requirement.verification {
         Verification::Test(check) => {
             let (verdict, reason) = judge(check.ensemble, counts, draws);
@@ -208,7 +208,7 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
         }
         other => (None, format!("verified by {}, of which no run can tell", other.name())),
     };
-    Row {
+    TraceRow {
         id: requirement.id.clone(),
         verification: requirement.verification.name().to_owned(),
         cases,
@@ -227,8 +227,8 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
 /// probability that a draw passes (Clopper and Pearson) reaches the required one, fail if the upper
 /// bound doesn't, and inconclusive between. Errors and missing checks never result in a pass.
 #[must_use]
-pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdict, String) {
-    let Counts { pass, inconclusive, fail, error, missing } = counts;
+pub fn judge(ensemble: Option<EnsembleRequirement>, counts: VerdictCounts, draws: DrawCounts) -> (Verdict, String) {
+    let VerdictCounts { pass, inconclusive, fail, error, missing } = counts;
     let all = pass + inconclusive + fail + error + missing;
     if all == 0 {
         return (Verdict::Inconclusive, "no case verifies it".to_owned());
@@ -236,7 +236,7 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdi
     if error > 0 {
         return (Verdict::Error, format!("{error} of {all} checks ended in an error"));
     }
-    let Some(Ensemble { pass: required, confidence }) = ensemble else {
+    let Some(EnsembleRequirement { pass: required, confidence }) = ensemble else {
         let open = inconclusive + missing;
         return if fail > 0 {
             (Verdict::Fail, format!("{fail} of {all} checks failed"))
@@ -249,7 +249,7 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdi
             (Verdict::Pass, format!("all {all} checks passed, of {of}"))
         };
     };
-    let Draws { passed, not_passed, open, .. } = draws;
+    let DrawCounts { passed, not_passed, open, .. } = draws;
     let lower = proportion::success_lower_bound(not_passed, draws.known(), confidence);
     // A draw without a result might pass: the verdict is fail only if that wouldn't help.
     let upper = proportion::success_upper_bound(not_passed, draws.all(), confidence);
@@ -279,7 +279,7 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdi
 /// Sentence about the result of draws that names its basis: `lower` is the bound at this one-sided
 /// confidence.
 #[must_use]
-pub fn claim(draws: Draws, lower: f64, confidence: f64) -> String {
+pub fn claim(draws: DrawCounts, lower: f64, confidence: f64) -> String {
     let all_of = match draws.rows {
         rows if rows > draws.all() => format!(" in all of their {rows} checks"),
         _ => String::new(),

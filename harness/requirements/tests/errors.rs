@@ -2,7 +2,7 @@
 
 use octant_requirements::file::{Anything, Checker};
 use octant_requirements::requirement::{
-    Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements, Verification, percent,
+    Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements, Verification, percent,
     probability,
 };
 use octant_requirements::{file, reqif, sdoc};
@@ -56,7 +56,7 @@ verification = "inspection"
     assert_eq!(first.text, "The longitude error stays below\n20 arcmin over 24 hours.");
     let check = first.check().unwrap();
     assert_eq!(check.limit, Limit::Quantity("20 arcmin".to_owned()));
-    assert_eq!(check.ensemble, Some(Ensemble { pass: 0.995, confidence: 0.95 }));
+    assert_eq!(check.ensemble, Some(EnsembleRequirement { pass: 0.995, confidence: 0.95 }));
     assert_eq!(first.parents[1].role.as_deref(), Some("Refines"));
     assert_eq!(second.check().unwrap().limit, Limit::Number(0.5));
     assert_eq!(third.verification, Verification::Inspection);
@@ -366,7 +366,7 @@ fn what_a_format_has_no_place_for_is_refused() {
     let mut choice = of("A", "x");
     choice.definitions.push(Definition {
         name: "P".to_owned(),
-        kind: Kind::Choice(vec!["a, b".to_owned()]),
+        kind: AttributeKind::Choice(vec!["a, b".to_owned()]),
         field: None,
     });
     let error = sdoc::write(&choice).unwrap_err().to_string();

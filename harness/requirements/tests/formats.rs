@@ -2,7 +2,7 @@
 
 use octant_requirements::Comparison;
 use octant_requirements::requirement::{
-    Attribute, Check, Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements,
+    ForeignAttribute, Check, Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements,
     Verification,
 };
 use octant_requirements::{file, reqif, sdoc};
@@ -46,7 +46,7 @@ fn verification() -> impl Strategy<Value = Verification> {
     let comparison = prop::sample::select(Comparison::ALL.to_vec());
     let test = ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", comparison, limit, ensemble).prop_map(
         |(measure, comparison, limit, ensemble)| {
-            let ensemble = ensemble.map(|(pass, confidence)| Ensemble { pass, confidence });
+            let ensemble = ensemble.map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
             Verification::Test(Check { measure, comparison, limit, ensemble })
         },
     );
@@ -68,18 +68,18 @@ fn attributes() -> Vec<(Definition, Vec<Vec<String>>)> {
     };
     let options = |all: &[&str]| all.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
     vec![
-        define("STATUS", Kind::Text, &[&["Draft"], &["In µ-review"]]),
-        define("Owner of it", Kind::Text, &[&["A. Person"]]),
+        define("STATUS", AttributeKind::Text, &[&["Draft"], &["In µ-review"]]),
+        define("Owner of it", AttributeKind::Text, &[&["A. Person"]]),
         define(
             "Priority",
-            Kind::Choice(options(&["high", "low & slow"])),
+            AttributeKind::Choice(options(&["high", "low & slow"])),
             &[&["high"], &["low & slow"]],
         ),
-        define("Phases", Kind::Choices(options(&["1a", "1b", "2"])), &[&["1a", "2"], &["1b"]]),
-        define("Effort", Kind::Integer, &[&["-12"]]),
-        define("Weight", Kind::Real, &[&["1.5e-3"]]),
-        define("Safe", Kind::Boolean, &[&["true"], &["false"]]),
-        define("Due", Kind::Date, &[&["2026-01-31T00:00:00Z"]]),
+        define("Phases", AttributeKind::Choices(options(&["1a", "1b", "2"])), &[&["1a", "2"], &["1b"]]),
+        define("Effort", AttributeKind::Integer, &[&["-12"]]),
+        define("Weight", AttributeKind::Real, &[&["1.5e-3"]]),
+        define("Safe", AttributeKind::Boolean, &[&["true"], &["false"]]),
+        define("Due", AttributeKind::Date, &[&["2026-01-31T00:00:00Z"]]),
     ]
 }
 
@@ -108,7 +108,7 @@ fn requirement(index: usize) -> impl Strategy<Value = Requirement> {
                 .zip(picks)
                 .filter_map(|((definition, values), pick)| {
                     let values = pick?.get(values).clone();
-                    Some(Attribute { name: definition.name.clone(), values })
+                    Some(ForeignAttribute { name: definition.name.clone(), values })
                 })
                 .collect();
             let id = format!("{id}.{index}");
@@ -150,7 +150,7 @@ fn requirements() -> impl Strategy<Value = Requirements> {
             requirement.parents.dedup_by(|a, b| a.id == b.id);
         }
         let definitions = attributes().into_iter().map(|(definition, _)| definition);
-        let definitions = definitions.filter(|d| d.kind != Kind::Text).collect();
+        let definitions = definitions.filter(|d| d.kind != AttributeKind::Text).collect();
         Requirements { title, document, definitions, requirements }
     })
 }

@@ -3,14 +3,14 @@
 use octant_requirements::Comparison;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::{
-    Check, Ensemble, Limit, Requirement, Requirements, Verification,
+    Check, EnsembleRequirement, Limit, Requirement, Requirements, Verification,
 };
 use octant_requirements::strictdoc;
-use octant_requirements::trace::{Case, CaseResult, Counts, Trace, judge};
-use octant_statistics::cluster::Draws;
+use octant_requirements::trace::{TracedCase, TracedResult, VerdictCounts, CampaignTrace, judge};
+use octant_statistics::cluster::DrawCounts;
 use proptest::prelude::*;
 
-fn tested(id: &str, ensemble: Option<Ensemble>) -> Requirement {
+fn tested(id: &str, ensemble: Option<EnsembleRequirement>) -> Requirement {
     let check = Check {
         measure: "navigation.radial_error_nmi.max".to_owned(),
         comparison: Comparison::AtMost,
@@ -24,14 +24,14 @@ fn document(requirements: Vec<Requirement>) -> Requirements {
     Requirements { title: "T".to_owned(), requirements, ..Requirements::default() }
 }
 
-fn case(id: &str, checks: &[(&str, Verdict)]) -> Case {
+fn case(id: &str, checks: &[(&str, Verdict)]) -> TracedCase {
     let checks: Vec<(String, Verdict)> =
         checks.iter().map(|(id, verdict)| ((*id).to_owned(), *verdict)).collect();
-    Case {
+    TracedCase {
         id: id.to_owned(),
         draw: id.bytes().fold(0, |draw, byte| 256 * draw + usize::from(byte)),
         verifies: checks.iter().map(|(id, _)| id.clone()).collect(),
-        result: Some(CaseResult {
+        result: Some(TracedResult {
             verdict: checks.iter().map(|(_, v)| *v).max().unwrap_or(Verdict::Pass),
             checks,
             recording: Some(format!("runs/{id}/recording.mcap")),
@@ -57,7 +57,7 @@ fn the_trace_goes_both_ways() {
         case("c3", &[]),
         planned,
     ];
-    let trace = Trace::new(&requirements, &cases);
+    let trace = CampaignTrace::new(&requirements, &cases);
     assert_eq!(trace.without_case, ["C", "E"]);
     assert_eq!(trace.without_requirement, ["c3"]);
     assert_eq!(
@@ -81,39 +81,39 @@ fn the_trace_goes_both_ways() {
 
 #[test]
 fn nothing_shows_nothing() {
-    assert_eq!(Trace::new(&document(vec![]), &[]).verdict(), Verdict::Inconclusive);
+    assert_eq!(CampaignTrace::new(&document(vec![]), &[]).verdict(), Verdict::Inconclusive);
     let analysed = document(vec![Requirement::new("D", "x", Verification::Analysis)]);
-    assert_eq!(Trace::new(&analysed, &[]).verdict(), Verdict::Inconclusive);
+    assert_eq!(CampaignTrace::new(&analysed, &[]).verdict(), Verdict::Inconclusive);
     // A run tells nothing about tests outside of it, either.
     let tests = Verification::Tests(vec!["a.rs::b".to_owned(), "c".to_owned()]);
-    let trace = Trace::new(&document(vec![Requirement::new("T", "x", tests)]), &[]);
+    let trace = CampaignTrace::new(&document(vec![Requirement::new("T", "x", tests)]), &[]);
     assert_eq!((trace.verdict(), trace.requirements[0].verdict), (Verdict::Inconclusive, None));
     assert!(trace.requirements[0].reason.ends_with("no run can tell: a.rs::b; c"));
     assert_eq!(trace.requirements[0].verification, "test");
     // An unknown requirement was meant to be verified by something.
     let one = document(vec![tested("A", None)]);
     let cases = [case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)])];
-    assert_eq!(Trace::new(&one, &cases).verdict(), Verdict::Inconclusive);
-    assert_eq!(Trace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
+    assert_eq!(CampaignTrace::new(&one, &cases).verdict(), Verdict::Inconclusive);
+    assert_eq!(CampaignTrace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
     assert_eq!(one.get("A").map(|found| found.id.as_str()), Some("A"));
     assert_eq!(one.get("B"), None);
     // The case should verify the requirement, but didn't check it.
     let mut unchecked = case("c1", &[]);
     unchecked.verifies.push("A".to_owned());
-    assert_eq!(Trace::new(&one, &[unchecked]).verdict(), Verdict::Inconclusive);
+    assert_eq!(CampaignTrace::new(&one, &[unchecked]).verdict(), Verdict::Inconclusive);
     // If a requirement is checked twice in a case, the worst check counts.
     let twice = case("c1", &[("A", Verdict::Fail), ("A", Verdict::Pass)]);
-    assert_eq!(Trace::new(&one, &[twice]).verdict(), Verdict::Fail);
+    assert_eq!(CampaignTrace::new(&one, &[twice]).verdict(), Verdict::Fail);
 }
 
 #[test]
 fn an_ensemble_passes_by_its_bound() {
-    let demand = Some(Ensemble { pass: 0.95, confidence: 0.95 });
+    let demand = Some(EnsembleRequirement { pass: 0.95, confidence: 0.95 });
     let judged = |pass, fail, inconclusive, missing| {
-        let counts = Counts { pass, fail, inconclusive, missing, error: 0 };
+        let counts = VerdictCounts { pass, fail, inconclusive, missing, error: 0 };
         let rows = pass + fail + inconclusive + missing;
         let not_passed = fail + inconclusive;
-        judge(demand, counts, Draws { passed: pass, not_passed, open: missing, rows })
+        judge(demand, counts, DrawCounts { passed: pass, not_passed, open: missing, rows })
     };
     let verdict = |pass, fail| judged(pass, fail, 0, 0).0;
     assert_eq!(verdict(59, 0), Verdict::Pass);
@@ -128,8 +128,8 @@ fn an_ensemble_passes_by_its_bound() {
     assert_eq!(judged(92, 0, 1, 0).0, Verdict::Pass);
     assert_eq!(judged(50, 0, 10, 0).0, Verdict::Fail);
     assert_eq!(judged(1000, 0, 0, 1).0, Verdict::Inconclusive);
-    let counts = Counts { pass: 1000, error: 1, ..Counts::default() };
-    let draws = Draws { passed: 1000, not_passed: 1, open: 0, rows: 1001 };
+    let counts = VerdictCounts { pass: 1000, error: 1, ..VerdictCounts::default() };
+    let draws = DrawCounts { passed: 1000, not_passed: 1, open: 0, rows: 1001 };
     assert_eq!(judge(demand, counts, draws).0, Verdict::Error);
     assert_eq!(
         judged(59, 0, 0, 0).1,
@@ -140,13 +140,13 @@ fn an_ensemble_passes_by_its_bound() {
 
 #[test]
 fn rows_are_not_draws() {
-    let demand = Some(Ensemble { pass: 0.95, confidence: 0.95 });
+    let demand = Some(EnsembleRequirement { pass: 0.95, confidence: 0.95 });
     let one = document(vec![tested("A", demand)]);
     let judged = |cases: u64, of: &dyn Fn(u64) -> usize| {
-        let cases: Vec<Case> = (0..cases)
-            .map(|i| Case { draw: of(i), ..case(&format!("c{i}"), &[("A", Verdict::Pass)]) })
+        let cases: Vec<TracedCase> = (0..cases)
+            .map(|i| TracedCase { draw: of(i), ..case(&format!("c{i}"), &[("A", Verdict::Pass)]) })
             .collect();
-        let row = Trace::new(&one, &cases).requirements.remove(0);
+        let row = CampaignTrace::new(&one, &cases).requirements.remove(0);
         (row.verdict.unwrap(), row.reason)
     };
     // One replicate with 59 labels, and five instruments at twelve longitudes.
@@ -172,13 +172,13 @@ proptest! {
         all in prop::collection::vec(prop::option::of(verdict()), 0..80),
         ensemble in prop::option::of((0.01f64..0.999, 0.01f64..0.999)),
     ) {
-        let ensemble = ensemble.map(|(pass, confidence)| Ensemble { pass, confidence });
+        let ensemble = ensemble.map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
         let requirements = document(vec![tested("A", ensemble)]);
-        let cases: Vec<Case> = all.iter().enumerate().map(|(i, verdict)| match verdict {
+        let cases: Vec<TracedCase> = all.iter().enumerate().map(|(i, verdict)| match verdict {
             Some(verdict) => case(&format!("c{i}"), &[("A", *verdict)]),
-            None => Case { id: format!("c{i}"), verifies: vec!["A".to_owned()], draw: usize::MAX - i, result: None },
+            None => TracedCase { id: format!("c{i}"), verifies: vec!["A".to_owned()], draw: usize::MAX - i, result: None },
         }).collect();
-        let trace = Trace::new(&requirements, &cases);
+        let trace = CampaignTrace::new(&requirements, &cases);
         let counted = trace.requirements[0].counts;
         let sum = counted.pass + counted.inconclusive + counted.fail + counted.error + counted.missing;
         prop_assert_eq!(sum, all.len() as u64);
@@ -195,7 +195,7 @@ proptest! {
         // A further failure never improves the verdict.
         let mut more = cases;
         more.push(case("more", &[("A", Verdict::Fail)]));
-        prop_assert!(Trace::new(&requirements, &more).verdict() >= trace.verdict().max(Verdict::Pass)
+        prop_assert!(CampaignTrace::new(&requirements, &more).verdict() >= trace.verdict().max(Verdict::Pass)
             || ensemble.is_some());
     }
 }
@@ -205,9 +205,9 @@ fn a_campaign_as_a_project_of_strictdoc() {
     let requirements = document(vec![tested("A", None), tested("B", None)]);
     let cases = [
         case("c1", &[("A", Verdict::Pass), ("B", Verdict::Inconclusive)]),
-        Case { id: "c2".to_owned(), verifies: vec!["A".to_owned()], draw: 2, result: None },
+        TracedCase { id: "c2".to_owned(), verifies: vec!["A".to_owned()], draw: 2, result: None },
     ];
-    let trace = Trace::new(&requirements, &cases);
+    let trace = CampaignTrace::new(&requirements, &cases);
     let files = strictdoc::folder(&requirements, &trace, "Night & day").unwrap();
     let text = |path: &str| files.iter().find(|(p, _)| p == path).unwrap().1.as_str();
     assert_eq!(text("cases/c1.toml"), "# @relation(A, B, scope=file)\ncase = \"c1\"\n");
@@ -223,6 +223,6 @@ fn a_campaign_as_a_project_of_strictdoc() {
         results.contains("UID: c1\nSTATUS: inconclusive\nRECORDING: runs/c1/recording.mcap\n"),
         "{results}"
     );
-    let outside = Trace::new(&requirements, &[case("../c1", &[("A", Verdict::Pass)])]);
+    let outside = CampaignTrace::new(&requirements, &[case("../c1", &[("A", Verdict::Pass)])]);
     assert!(strictdoc::folder(&requirements, &outside, "T").is_err());
 }

@@ -7,18 +7,18 @@ use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
-use octant_report::{Provenance, ReportData};
+use octant_report::{ReportProvenance, ReportData};
 use octant_requirements::Verdict;
-use octant_requirements::decision::{Against, Rule};
+use octant_requirements::decision::{NavigationContext, DecisionRule};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
-use octant_scenario::{Motion, Scenario};
+use octant_scenario::{MotionSpec, Scenario};
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
-use octant_score::summary::{AlteredStreams, Baseline, ParameterScore, SCHEMA, Summary, results};
-use octant_turntable::Axis;
+use octant_score::summary::{AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results};
+use octant_turntable::TableAxis;
 use std::collections::BTreeMap;
 
 /// A run of one or two methods, scored and judged.
@@ -106,7 +106,7 @@ pub fn assemble_with(
     findings.extend(equipment::findings(&scenario.equipment, choice.day.as_ref()));
     findings.extend(choice.findings(!scenario.requirements.is_empty()));
     let (planned, done) = primary.watcher.work();
-    let against = Against {
+    let against = NavigationContext {
         simulated: scenario.source.is_simulated(primary.navigation.is_some()),
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
@@ -128,11 +128,11 @@ pub fn assemble_with(
         planned: Some(planned),
         done: Some(done),
         faults: results(&primary.receipts),
-        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
+        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreamSummary::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
-        baseline: baseline.map(|run| Baseline {
+        baseline: baseline.map(|run| BaselineMethod {
             planned: Some(run.watcher.work().0),
             done: Some(run.watcher.work().1),
             label: run.label,
@@ -149,7 +149,7 @@ pub fn assemble_with(
     };
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
     judge_by(&mut summary, &requirements, &findings, |measure| {
-        if scenario.decision.rule() == Rule::SimpleAcceptance {
+        if scenario.decision.rule() == DecisionRule::SimpleAcceptance {
             return Ok(0.0);
         }
         scenario.decision.uncertainty(measure, &against)
@@ -163,7 +163,7 @@ pub fn assemble_with(
         nis: primary.watcher.nis,
         gimbals: primary.watcher.gimbals,
         dispositions: Dispositions::default(),
-        provenance: Provenance::default(),
+        provenance: ReportProvenance::default(),
     };
     Ok(Run { summary, report })
 }
@@ -185,8 +185,8 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         (
             "motion".to_owned(),
             match &scenario.motion {
-                Motion::Static(_) => "static".to_owned(),
-                Motion::Dockside(_) => "on a moored ship".to_owned(),
+                MotionSpec::Static(_) => "static".to_owned(),
+                MotionSpec::Dockside(_) => "on a moored ship".to_owned(),
             },
         ),
         (
@@ -204,7 +204,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
     ];
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
     if let Some(drive) = &scenario.drive {
-        let range = |axis: Axis| {
+        let range = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
             let degrees = |angle_rad: f64| number::plain(angle_rad.to_degrees(), 6);
             format!("{axis} {} to {}°", degrees(limits.least_rad), degrees(limits.most_rad))
@@ -215,8 +215,8 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
                 "{}, {}, {}, {}",
                 drive.port,
                 drive.dialect.0,
-                range(Axis::Azimuth),
-                range(Axis::Roll)
+                range(TableAxis::Azimuth),
+                range(TableAxis::Roll)
             ),
         ));
     }

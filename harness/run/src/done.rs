@@ -1,11 +1,11 @@
 //! Counts the completed work of a run from its stream, and takes the planned work from its
 //! scenario.
 
-use octant_calibration::config::{Config, Estimator, StaticIntervals};
+use octant_calibration::config::{CoreConfig, Estimator, StaticIntervals};
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_endpoint::Tells;
 use octant_sample::{GimbalAngles, Mode, Output};
-use octant_scenario::{Calibration, Method, Scenario};
+use octant_scenario::{CalibrationSpec, Method, Scenario};
 use octant_score::work::Work;
 
 /// Largest deviation of a commanded angle from the planned one, rad: a device may store degrees in
@@ -18,7 +18,7 @@ const ALIGNMENT_SLACK_S: f64 = 60.0;
 
 /// Planned work of a method of a scenario.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub struct PlannedWork {
     /// Planned amounts.
     pub work: Work,
     stops: Vec<PlannedStop>,
@@ -35,7 +35,7 @@ struct PlannedStop {
     dwell_ns: u64,
 }
 
-impl Plan {
+impl PlannedWork {
     /// Returns the quantities that the unit reports, where they are known.
     #[must_use]
     pub fn tells(&self) -> Option<Tells> {
@@ -56,7 +56,7 @@ impl Plan {
     pub fn of(
         scenario: &Scenario,
         method: Method,
-        core: &Config,
+        core: &CoreConfig,
         tells: Tells,
         samples: Option<u64>,
     ) -> Self {
@@ -89,7 +89,7 @@ impl Plan {
 
 /// Lists the stops that the core is to command, in order; empty if nothing commands them, because
 /// the instrument is turned by hand.
-fn stops(calibration: &Calibration, core: &Config) -> Vec<PlannedStop> {
+fn stops(calibration: &CalibrationSpec, core: &CoreConfig) -> Vec<PlannedStop> {
     let by_hand = matches!(
         &calibration.estimator,
         Estimator::LeastSquares(least_squares)
@@ -119,7 +119,7 @@ fn stops(calibration: &Calibration, core: &Config) -> Vec<PlannedStop> {
 }
 
 /// Returns the number of references that a calibration is to get.
-fn references(calibration: &Calibration, period_ns: u64) -> Option<u64> {
+fn references(calibration: &CalibrationSpec, period_ns: u64) -> Option<u64> {
     match &calibration.estimator {
         Estimator::Kalman(kalman) => {
             let duration_ns = (calibration.duration_s * 1e9) as u64;
@@ -132,7 +132,7 @@ fn references(calibration: &Calibration, period_ns: u64) -> Option<u64> {
 /// Counts the completed work.
 #[derive(Clone, Debug, Default)]
 pub struct Done {
-    plan: Plan,
+    plan: PlannedWork,
     mode: Mode,
     first_ns: Option<u64>,
     last_ns: u64,
@@ -158,7 +158,7 @@ struct Began {
 impl Done {
     /// Creates a counter for a plan.
     #[must_use]
-    pub fn towards(plan: Plan) -> Self {
+    pub fn towards(plan: PlannedWork) -> Self {
         Self { plan, ..Self::default() }
     }
 

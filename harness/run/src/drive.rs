@@ -17,8 +17,8 @@ use octant_endpoint::{Endpoint, Sent};
 use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence};
-use octant_realtime::clock::HostTime;
-use octant_recorder::{Extra, Frame, Recorder, RecorderError};
+use octant_realtime::clock::MonotonicTime;
+use octant_recorder::{Extra, EpochFrame, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
 use octant_source::{Epoch, Source};
@@ -230,7 +230,7 @@ pub(super) struct Owed {
     /// Stamp of the source's epoch in that step, ns.
     pub(super) step_ns: u64,
     /// Time at which it was sent.
-    pub(super) at: HostTime,
+    pub(super) at: MonotonicTime,
 }
 
 /// Keeps the results of the steps, and sets their pace: by default none, with each answer at once.
@@ -328,7 +328,7 @@ impl<'a> Books<'a> {
         match step {
             InStep::First(clean) => {
                 watcher.source(clean);
-                recorder.push(Frame { clean, faulted: sent, output })?;
+                recorder.push(EpochFrame { clean, faulted: sent, output })?;
             }
             InStep::Further { step_ns } => {
                 watcher.source_time = Some(DeviceTime { ns: step_ns });

@@ -1,7 +1,7 @@
 //! Reasons why a method gave no result.
 
 use super::ended::RunError;
-use octant_calibration::state_machine::ConfigError;
+use octant_calibration::state_machine::CoreConfigError;
 use octant_recorder::RecorderError;
 use octant_source::SourceError;
 use octant_source::configure::ConfigurationError;
@@ -11,16 +11,16 @@ use octant_source::configure::ConfigurationError;
 pub enum SetupError {
     /// The plant's configuration contradicts itself.
     #[error("set up the plant: {0}")]
-    Plant(#[from] octant_plant::ConfigError),
+    Plant(#[from] octant_plant::PlantConfigError),
     /// The core's configuration contradicts itself.
     #[error("set up the core: {}", core_problem(.0))]
-    Core(#[from] ConfigError),
+    Core(#[from] CoreConfigError),
     /// A source could not be opened.
     #[error(transparent)]
     Source(#[from] SourceError),
     /// An endpoint could not be opened.
     #[error(transparent)]
-    Endpoint(octant_endpoint::OpenError),
+    Endpoint(octant_endpoint::EndpointOpenError),
     /// A fault can't be injected.
     #[error("inject fault {id:?}: {reason}")]
     Fault {
@@ -47,10 +47,10 @@ impl From<ConfigurationError> for SetupError {
     }
 }
 
-impl From<octant_endpoint::OpenError> for SetupError {
-    fn from(error: octant_endpoint::OpenError) -> Self {
+impl From<octant_endpoint::EndpointOpenError> for SetupError {
+    fn from(error: octant_endpoint::EndpointOpenError) -> Self {
         match error {
-            octant_endpoint::OpenError::Core(error) => Self::Core(error),
+            octant_endpoint::EndpointOpenError::Core(error) => Self::Core(error),
             other => Self::Endpoint(other),
         }
     }
@@ -58,14 +58,14 @@ impl From<octant_endpoint::OpenError> for SetupError {
 
 /// Describes why a core can't be set up, in terms of the scenario.
 #[must_use]
-pub fn core_problem(error: &ConfigError) -> String {
+pub fn core_problem(error: &CoreConfigError) -> String {
     use octant_base::number::plain;
     match error {
-        ConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {
+        CoreConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {
             "coarse alignment needs the first stop at azimuth 0 and roll 0, where the gimbals start"
                 .to_owned()
         }
-        ConfigError::Alignment { alignment_s, dwell_s } => format!(
+        CoreConfigError::Alignment { alignment_s, dwell_s } => format!(
             "procedure.alignment.duration is {} s, and the first stop is held for {} s only",
             plain(*alignment_s, 5),
             plain(*dwell_s, 5)

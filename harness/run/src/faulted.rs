@@ -1,6 +1,6 @@
 //! Faults of a run: their station, the host that they act on, and their events.
 
-use super::host::Host;
+use super::host::RunHost;
 use octant_endpoint::Endpoint;
 use octant_faults::Station;
 use octant_faults::host::Hosted;
@@ -20,7 +20,7 @@ pub struct Faulted {
     /// Epochs at which faults are triggered by hand, in order, with their ids.
     pub fires: Vec<(u64, String)>,
     /// Target of the host faults.
-    pub host: Host,
+    pub host: RunHost,
 }
 
 impl Faulted {
@@ -35,7 +35,7 @@ impl Faulted {
 pub(super) struct Behind<'a, S: ?Sized, E: ?Sized>(
     pub(super) &'a mut S,
     pub(super) &'a mut E,
-    pub(super) &'a mut Host,
+    pub(super) &'a mut RunHost,
 );
 
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {

@@ -7,10 +7,10 @@ use octant_base::number;
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_requirements::Verdict;
-use octant_scenario::{Calibration, Method, Realtime, Scenario};
+use octant_scenario::{CalibrationSpec, Method, Realtime, Scenario};
 use octant_score::judge::Finding;
-use octant_score::summary::Pacing;
-use octant_score::work::{Part, duration};
+use octant_score::summary::PacingRecord;
+use octant_score::work::{RunPart, duration};
 
 /// Lists the findings that affect the verdict of a run of one or two methods.
 #[must_use]
@@ -60,7 +60,7 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
 }
 
 /// Lists where the bench was late, lost samples, or did not send them.
-fn too_late(limits: &Realtime, pacing: &Pacing) -> Vec<String> {
+fn too_late(limits: &Realtime, pacing: &PacingRecord) -> Vec<String> {
     let mut reasons = Vec::new();
     if pacing.overruns > limits.overruns {
         reasons.push(format!(
@@ -131,10 +131,10 @@ fn altered<'a>(scenario: &'a Scenario, receipts: &[Receipt], sample: u64) -> Opt
 }
 
 /// Describes parameters that were to be estimated and weren't, or never changed.
-fn not_estimated(scenario: &Scenario, plan: &Calibration, run: &MethodRun) -> Option<String> {
+fn not_estimated(scenario: &Scenario, plan: &CalibrationSpec, run: &MethodRun) -> Option<String> {
     let calibration = run.calibration.as_ref().filter(|c| c.refused.is_none())?;
     let (planned, done) = run.watcher.work();
-    if planned.short_of(&done).iter().any(|short| short.part == Part::Calibration) {
+    if planned.short_of(&done).iter().any(|short| short.part == RunPart::Calibration) {
         return None;
     }
     let planned = planned_of(plan);
@@ -147,7 +147,7 @@ fn not_estimated(scenario: &Scenario, plan: &Calibration, run: &MethodRun) -> Op
     let asked = scenario
         .requirements
         .iter()
-        .any(|requirement| Part::of(&requirement.check.measure) == Some(Part::Calibration));
+        .any(|requirement| RunPart::of(&requirement.check.measure) == Some(RunPart::Calibration));
     if !without.is_empty() && (without.len() < planned.len() || asked) {
         return Some(format!(
             "{} of the {} parameters that were to be estimated have no uncertainty above zero: {}",

@@ -17,7 +17,7 @@ const NIS_LEAST: u64 = 8;
 
 /// Watches one run, without allocating memory.
 #[derive(Clone, Debug)]
-pub struct Follow {
+pub struct RunFollower {
     /// Bits of the navigation solution at the last answer, by part, with the time since which each
     /// stays the same.
     parts: [Standing; 3],
@@ -46,7 +46,7 @@ struct Standing {
 /// Names of the parts.
 const PARTS: [&str; 3] = ["position", "velocity", "attitude"];
 
-impl Follow {
+impl RunFollower {
     /// Creates a watch of a unit that reports these quantities; `None`: its solution isn't checked.
     #[must_use]
     pub fn new(tells: Option<Tells>) -> Self {
@@ -170,7 +170,7 @@ mod tests {
 
     /// Watches 300 s of navigation at 10 Hz; `number` gives the solution of each sample.
     fn watch(number: impl Fn(u64) -> [f64; 3]) -> Vec<String> {
-        let mut follow = Follow::new(Some(Tells::ALL));
+        let mut follow = RunFollower::new(Some(Tells::ALL));
         for k in 1..=3000 {
             let [position, velocity, attitude] = number(k);
             let output = Output {
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn nis_that_are_all_alike_are_found() {
         let with = |nis: &dyn Fn(u64) -> f64| {
-            let mut follow = Follow::new(Some(Tells::ALL));
+            let mut follow = RunFollower::new(Some(Tells::ALL));
             for k in 0..20 {
                 follow.epoch(k, &Output { nis: nis(k), ..Output::default() });
             }

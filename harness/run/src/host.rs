@@ -6,14 +6,14 @@
 //! and threads that were started before the run.
 
 use super::error::SetupError;
-use super::recording::Recording;
-use octant_faults::Kind;
+use super::recording::StreamKeeping;
+use octant_faults::FaultKind;
 use octant_faults::catalogue::Acts;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::kinds::host::{FULL, STALLED, STARVED};
-use octant_realtime::clock::{HostTime, now};
+use octant_realtime::clock::{MonotonicTime, now};
 use octant_realtime::schedule::{self, Granted, Wish};
-use octant_recorder::{Event, Trouble};
+use octant_recorder::{Event, RecorderTrouble};
 use octant_scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -22,12 +22,12 @@ use std::thread::{JoinHandle, Thread};
 
 /// Host of one run. By default it is no target for faults.
 #[derive(Debug, Default)]
-pub struct Host {
-    recorder: Option<Trouble>,
+pub struct RunHost {
+    recorder: Option<RecorderTrouble>,
     burners: Option<Burners>,
 }
 
-impl Host {
+impl RunHost {
     /// Creates the host of a scenario's run, as a target for its faults; `recorder` is the trouble
     /// switch of the run's recorder.
     ///
@@ -35,8 +35,8 @@ impl Host {
     /// If a fault has no target in such a run.
     pub fn new(
         scenario: &Scenario,
-        recording: &Recording<'_>,
-        recorder: &Trouble,
+        recording: &StreamKeeping<'_>,
+        recorder: &RecorderTrouble,
     ) -> Result<Self, SetupError> {
         let mut host = Self::default();
         let of_host = |fault: &&octant_scenario::Fault| fault.spec.kind.acts == Acts::Host;
@@ -71,10 +71,10 @@ impl Host {
 }
 
 /// Returns the reason why a kind has no effect in such a run.
-fn without(kind: &Kind, recording: &Recording<'_>) -> Option<&'static str> {
+fn without(kind: &FaultKind, recording: &StreamKeeping<'_>) -> Option<&'static str> {
     match recording {
-        Recording::File(_) => None,
-        Recording::Hash | Recording::HashAlone | Recording::None => match kind.name {
+        StreamKeeping::File(_) => None,
+        StreamKeeping::Hash | StreamKeeping::HashAlone | StreamKeeping::None => match kind.name {
             name if name == FULL.name => {
                 Some("it happens to the file of a recording, and this run writes none")
             }
@@ -86,7 +86,7 @@ fn without(kind: &Kind, recording: &Recording<'_>) -> Option<&'static str> {
     }
 }
 
-impl Hosted for Host {
+impl Hosted for RunHost {
     fn begin(&mut self, action: &HostAction) -> bool {
         let ns = |time_s: f64| (time_s * 1e9) as u64;
         match (action, &self.recorder, &self.burners) {
@@ -194,7 +194,7 @@ impl Shared {
     fn serve(&self, nth: u64, others: &[Thread]) {
         let mut done_ns = 0;
         while !self.over.load(Ordering::Relaxed) {
-            let until = HostTime { ns: self.until_ns.load(Ordering::Acquire) };
+            let until = MonotonicTime { ns: self.until_ns.load(Ordering::Acquire) };
             if until.ns == done_ns {
                 std::thread::park();
                 continue;
@@ -207,7 +207,7 @@ impl Shared {
         }
     }
 
-    fn burn(&self, until: HostTime) {
+    fn burn(&self, until: MonotonicTime) {
         let began = now();
         let mut at = began;
         while at < until && !self.over.load(Ordering::Relaxed) {

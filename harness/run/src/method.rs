@@ -1,14 +1,14 @@
 //! Runs one method of a scenario, from its configuration to its scores.
 
 pub use super::error::{MethodError, SetupError, core_problem};
-pub use super::recording::Recording;
+pub use super::recording::StreamKeeping;
 
 use super::concluded;
-use super::done::Plan;
+use super::done::PlannedWork;
 use super::drive::{Ended, Line, RunError, drive_in_time};
 use super::faulted::Faulted;
-use super::host::Host;
-use super::realtime::{Kept, drive_by_clock};
+use super::host::RunHost;
+use super::realtime::{TimeKeeping, drive_by_clock};
 use super::watch::Watcher;
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
@@ -16,18 +16,18 @@ use octant_calibration::config as core;
 use octant_calibration::table::CalibrationTable;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
-use octant_recorder::event::{Bench, Link};
+use octant_recorder::event::{BenchRecord, LinkRecord};
 use octant_recorder::{
-    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, RecorderTrouble,
 };
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use octant_sample::{Mode, Output, Parameters};
-use octant_scenario::resolve::Draws;
+use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{self as scenario, Method, Realtime, Scenario};
 use octant_score::parameters::{nees, score, worst_normalized_error};
-use octant_score::summary::{Calibration, HeightChannel, Navigation};
-use octant_score::trace::Trace;
+use octant_score::summary::{CalibrationScore, HeightChannel, NavigationScore};
+use octant_score::trace::RunTrace;
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source, SourceError};
 use std::sync::Arc;
@@ -41,9 +41,9 @@ pub struct MethodRun {
     /// End of the loop.
     pub ended: Ended,
     /// Result of the calibration.
-    pub calibration: Option<Calibration>,
+    pub calibration: Option<CalibrationScore>,
     /// Result of the navigation.
-    pub navigation: Option<Navigation>,
+    pub navigation: Option<NavigationScore>,
     /// Summary of the recorder.
     pub recorder: RecorderSummary,
     /// Observations of the run.
@@ -59,11 +59,11 @@ pub struct MethodRun {
     /// Failure in the middle that ended the run.
     pub broken: Option<RunError>,
     /// Time keeping of a run by the clock.
-    pub kept: Option<Kept>,
+    pub kept: Option<TimeKeeping>,
     /// Device and traffic of a run over a wire; as in the recording.
-    pub link: Option<Box<Link>>,
+    pub link: Option<Box<LinkRecord>>,
     /// Clocks and counts of a real instrument and its table; as in the recording.
-    pub bench: Option<Box<Bench>>,
+    pub bench: Option<Box<BenchRecord>>,
     /// Description of the point where the source ended in the middle of something.
     pub cut_short: Option<String>,
 }
@@ -78,7 +78,7 @@ pub fn label(scenario: &Scenario, method: Method) -> String {
     let Some(calibration) = calibration else { return "navigation alone".to_owned() };
     let estimator = match &calibration.estimator {
         core::Estimator::Kalman(_) => {
-            let g = octant_sample::parameters::Group::GDependent;
+            let g = octant_sample::parameters::ParameterGroup::GDependent;
             if calibration.estimates(g) { "with G states" } else { "without G states" }
         }
         core::Estimator::LeastSquares(_) => "by least squares",
@@ -99,7 +99,7 @@ pub fn core_of(
     scenario: &Scenario,
     method: Method,
     seed: u64,
-) -> Result<core::Config, MethodError> {
+) -> Result<core::CoreConfig, MethodError> {
     let (plant, mut core, _) = configurations(scenario, method, seed).map_err(SetupError::from)?;
     if scenario.source.is_recorded() {
         settle(scenario, &plant, &mut core)?;
@@ -115,7 +115,7 @@ pub fn run_method(
     scenario: &Scenario,
     method: Method,
     seed: u64,
-    recording: Recording<'_>,
+    recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
     let mut run = run_as_far_as_it_goes(scenario, method, seed, recording, control)?;
@@ -134,7 +134,7 @@ pub fn run_as_far_as_it_goes(
     scenario: &Scenario,
     method: Method,
     seed: u64,
-    recording: Recording<'_>,
+    recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
     let (plant, mut core, draws) =
@@ -142,12 +142,12 @@ pub fn run_as_far_as_it_goes(
     if scenario.source.is_recorded() {
         settle(scenario, &plant, &mut core)?;
     }
-    let trouble = Trouble::default();
+    let trouble = RecorderTrouble::default();
     let mut faulted = faulted(scenario, seed)?;
     if let Some(faulted) = &mut faulted {
         // Set up before the session with a device begins: from then on the device waits for its
         // first sample.
-        faulted.host = Host::new(scenario, &recording, &trouble)?;
+        faulted.host = RunHost::new(scenario, &recording, &trouble)?;
     }
     let opened = octant_source::open(scenario, &plant).map_err(SetupError::Source)?;
     let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
@@ -157,21 +157,21 @@ pub fn run_as_far_as_it_goes(
         ..recorder_options(scenario, seed, &draws, method, true_parameters)
     };
     let mut recorder = match recording {
-        Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash => Recorder::hash_only(&options),
-        Recording::HashAlone => Recorder::stream_hash_only(&options),
-        Recording::None => Recorder::none(),
+        StreamKeeping::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
+        StreamKeeping::Hash => Recorder::hash_only(&options),
+        StreamKeeping::HashAlone => Recorder::stream_hash_only(&options),
+        StreamKeeping::None => Recorder::none(),
     };
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
-    let plan = Plan::of(scenario, method, &core, tells, recorded);
+    let plan = PlannedWork::of(scenario, method, &core, tells, recorded);
     let mut watcher = Watcher::new(plan);
     let compared = match recording {
-        Recording::HashAlone => false,
-        Recording::Hash => true,
-        Recording::File(_) | Recording::None => !scenario.faults.is_empty(),
+        StreamKeeping::HashAlone => false,
+        StreamKeeping::Hash => true,
+        StreamKeeping::File(_) | StreamKeeping::None => !scenario.faults.is_empty(),
     };
-    watcher.trace = compared.then(Trace::new);
+    watcher.trace = compared.then(RunTrace::new);
     let samples = scenario.samples().unwrap_or(u64::MAX);
     let realtime =
         scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
@@ -212,9 +212,9 @@ struct Closed {
     last: Option<Output>,
     conclusion: Conclusion,
     estimate: ParameterEstimate,
-    kept: Option<Kept>,
-    link: Option<Box<Link>>,
-    bench: Option<Box<Bench>>,
+    kept: Option<TimeKeeping>,
+    link: Option<Box<LinkRecord>>,
+    bench: Option<Box<BenchRecord>>,
     cut_short: Option<String>,
 }
 
@@ -287,7 +287,7 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
         .flat_map(|fault| fault.fires.iter().map(|at| (*at, fault.spec.id.clone())))
         .collect();
     fires.sort_unstable();
-    Ok(station.map(|station| Faulted { station, fires, host: Host::default() }))
+    Ok(station.map(|station| Faulted { station, fires, host: RunHost::default() }))
 }
 
 /// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
@@ -295,8 +295,8 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
 /// repeatedly until the parameters settle, and the recorded run is one more pass.
 fn settle(
     scenario: &Scenario,
-    plant: &octant_plant::config::Config,
-    core: &mut core::Config,
+    plant: &octant_plant::config::PlantConfig,
+    core: &mut core::CoreConfig,
 ) -> Result<(), MethodError> {
     let least_squares = core
         .calibration
@@ -326,7 +326,7 @@ fn settle(
 fn recorder_options(
     scenario: &Scenario,
     seed: u64,
-    draws: &Draws,
+    draws: &DrawnValues,
     method: Method,
     true_parameters: bool,
 ) -> RecorderOptions {
@@ -389,7 +389,7 @@ fn finish(
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
-        Calibration {
+        CalibrationScore {
             positions: plan.name.clone(),
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
@@ -437,10 +437,10 @@ fn finish(
 
 /// Lists the parameters that a calibration is to estimate, where the plan names them.
 #[must_use]
-pub fn planned_of(plan: &scenario::Calibration) -> Vec<&'static str> {
+pub fn planned_of(plan: &scenario::CalibrationSpec) -> Vec<&'static str> {
     match &plan.estimator {
         core::Estimator::Kalman(_) => {
-            (0..NAMES.len()).filter(|i| plan.estimates(Group::of(*i))).map(|i| NAMES[i]).collect()
+            (0..NAMES.len()).filter(|i| plan.estimates(ParameterGroup::of(*i))).map(|i| NAMES[i]).collect()
         }
         core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => Vec::new(),
     }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Result of a set of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Outcome {
+pub enum SetOutcome {
     /// The run still fails.
     Breaks,
     /// The run doesn't fail.
@@ -21,11 +21,11 @@ pub enum Outcome {
 
 /// One step of the search.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Step {
+pub struct SearchStep {
     /// Numbers of the faults in the set, from 0, in the order of the scenario.
     pub faults: Vec<usize>,
     /// Result of the run with this set.
-    pub outcome: Outcome,
+    pub outcome: SetOutcome,
 }
 
 /// Shrinks the set of faults 0 to `count`. `test` runs a set. `None` if the whole set doesn't fail,
@@ -35,18 +35,18 @@ pub struct Step {
 /// Errors of `test`.
 pub fn minimise<E>(
     count: usize,
-    mut test: impl FnMut(&[usize]) -> Result<Outcome, E>,
-) -> Result<(Option<Vec<usize>>, Vec<Step>), E> {
-    let mut known: BTreeMap<Vec<usize>, Outcome> = BTreeMap::new();
+    mut test: impl FnMut(&[usize]) -> Result<SetOutcome, E>,
+) -> Result<(Option<Vec<usize>>, Vec<SearchStep>), E> {
+    let mut known: BTreeMap<Vec<usize>, SetOutcome> = BTreeMap::new();
     let mut trail = Vec::new();
     let mut breaks = |set: &[usize]| -> Result<bool, E> {
         if let Some(outcome) = known.get(set) {
-            return Ok(*outcome == Outcome::Breaks);
+            return Ok(*outcome == SetOutcome::Breaks);
         }
         let outcome = test(set)?;
         known.insert(set.to_vec(), outcome);
-        trail.push(Step { faults: set.to_vec(), outcome });
-        Ok(outcome == Outcome::Breaks)
+        trail.push(SearchStep { faults: set.to_vec(), outcome });
+        Ok(outcome == SetOutcome::Breaks)
     };
     let mut set: Vec<usize> = (0..count).collect();
     if !breaks(&set)? || breaks(&[])? {
@@ -89,12 +89,12 @@ mod tests {
     use super::*;
 
     /// Minimises with a run that fails if all of `needed` are in the set.
-    fn minimal(count: usize, needed: &[usize]) -> (Option<Vec<usize>>, Vec<Step>) {
+    fn minimal(count: usize, needed: &[usize]) -> (Option<Vec<usize>>, Vec<SearchStep>) {
         minimise(count, |set| {
             Ok::<_, ()>(if needed.iter().all(|fault| set.contains(fault)) {
-                Outcome::Breaks
+                SetOutcome::Breaks
             } else {
-                Outcome::Holds
+                SetOutcome::Holds
             })
         })
         .unwrap()
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn any_one_fault_is_enough_where_each_breaks_alone() {
         let (found, _) = minimise(5, |set| {
-            Ok::<_, ()>(if set.is_empty() { Outcome::Holds } else { Outcome::Breaks })
+            Ok::<_, ()>(if set.is_empty() { SetOutcome::Holds } else { SetOutcome::Breaks })
         })
         .unwrap();
         assert_eq!(found, Some(vec![0]));
@@ -132,13 +132,13 @@ mod tests {
         // Fault 3 makes the run fail, and can't be run without fault 1.
         let (found, trail) = minimise(6, |set| {
             Ok::<_, ()>(match (set.contains(&1), set.contains(&3)) {
-                (true, true) => Outcome::Breaks,
-                (false, true) => Outcome::Impossible,
-                _ => Outcome::Holds,
+                (true, true) => SetOutcome::Breaks,
+                (false, true) => SetOutcome::Impossible,
+                _ => SetOutcome::Holds,
             })
         })
         .unwrap();
         assert_eq!(found, Some(vec![1, 3]));
-        assert!(trail.iter().any(|step| step.outcome == Outcome::Impossible));
+        assert!(trail.iter().any(|step| step.outcome == SetOutcome::Impossible));
     }
 }

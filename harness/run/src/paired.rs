@@ -1,11 +1,11 @@
 //! Runs two methods over many seeds, on the same instruments with the same noise.
 
 use super::drive::Ended;
-use super::method::{MethodError, Recording, label, run_method};
+use super::method::{MethodError, StreamKeeping, label, run_method};
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
 use octant_scenario::{Method, Scenario};
-use octant_score::compare::{Comparison, Maxima, PairedRun, compare};
+use octant_score::compare::{MethodComparison, Maxima, PairedRun, compare};
 use octant_score::floor::Floor;
 use std::sync::atomic::Ordering;
 
@@ -16,7 +16,7 @@ const MARKS_H: [f64; 2] = [24.0, 72.0];
 
 /// A method of a scenario.
 #[derive(Clone, Debug)]
-pub struct Side {
+pub struct MethodSide {
     /// The scenario.
     pub scenario: Scenario,
     /// Method of that scenario.
@@ -48,11 +48,11 @@ pub enum PairedError {
 /// # Errors
 /// If a run gives no result.
 pub fn paired(
-    first: &Side,
-    second: &Side,
+    first: &MethodSide,
+    second: &MethodSide,
     seeds: &[u64],
     controls: &[Control],
-) -> Result<Comparison, PairedError> {
+) -> Result<MethodComparison, PairedError> {
     let scenario = &second.scenario;
     if [first, second].iter().any(|s| !s.scenario.source.has_plant()) {
         return Err(PairedError::NotSimulated);
@@ -97,7 +97,7 @@ fn navigated_h(scenario: &Scenario) -> f64 {
 }
 
 fn ensemble(
-    sides: [&Side; 2],
+    sides: [&MethodSide; 2],
     seeds: &[u64],
     controls: &[Control],
 ) -> Result<Vec<One>, PairedError> {
@@ -117,11 +117,11 @@ struct One {
     refused: Option<String>,
 }
 
-fn one(side: &Side, seed: u64, control: &Control) -> Result<One, PairedError> {
+fn one(side: &MethodSide, seed: u64, control: &Control) -> Result<One, PairedError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(PairedError::Cancelled);
     }
-    let run = run_method(&side.scenario, side.method, seed, Recording::None, control)?;
+    let run = run_method(&side.scenario, side.method, seed, StreamKeeping::None, control)?;
     control.epochs.store(side.scenario.samples().unwrap_or_default(), Ordering::Relaxed);
     if run.ended == Ended::Cancelled {
         return Err(PairedError::Cancelled);

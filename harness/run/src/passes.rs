@@ -4,8 +4,8 @@
 //! each pass starts from the result of the previous one, until the parameters settle.
 
 use super::drive::{Ended, InStep, Keeps, NoFaults, RunError, drive};
-use octant_calibration::state_machine::ConfigError;
-use octant_calibration::{Config, Core};
+use octant_calibration::state_machine::CoreConfigError;
+use octant_calibration::{CoreConfig, Core};
 use octant_endpoint::{Endpoint, InProcess};
 use octant_sample::{Mode, Output};
 use octant_source::{Epoch, Source, SourceError};
@@ -33,7 +33,7 @@ pub struct Passes {
 pub enum PassError {
     /// The configuration contradicts itself.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] CoreConfigError),
     /// A pass was aborted.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -46,7 +46,7 @@ pub enum PassError {
 /// If the configuration contradicts itself or the source fails. A refused calibration is no error:
 /// see [`Core::refusal`].
 pub fn in_passes<S: Source>(
-    config: &Config,
+    config: &CoreConfig,
     mut open: impl FnMut() -> Result<S, SourceError>,
 ) -> Result<Passes, PassError> {
     let mut config = config.clone();
@@ -63,7 +63,7 @@ pub fn in_passes<S: Source>(
 }
 
 /// Makes one pass: until the calibration is over, or the source.
-fn pass(config: &Config, source: &mut impl Source) -> Result<Core, PassError> {
+fn pass(config: &CoreConfig, source: &mut impl Source) -> Result<Core, PassError> {
     let mut endpoint = InProcess::new(config)?;
     if drive(source, &mut NoFaults, &mut endpoint, &mut Calibrates)? == Ended::SourceEnded {
         endpoint.end_of_stream().map_err(RunError::from)?;
@@ -89,7 +89,7 @@ impl<S: Source, E: Endpoint> Keeps<S, E> for Calibrates {
 
 /// Returns whether a pass changed no parameter significantly. A parameter that isn't estimated has
 /// no σ, and doesn't change.
-fn settled(before: &Config, core: &Core) -> bool {
+fn settled(before: &CoreConfig, core: &Core) -> bool {
     let (before, after) = (before.initial_parameters.to_array(), core.parameters().to_array());
     let moved = |((before, after), sigma): ((f64, f64), f64)| {
         (after - before).abs() > SETTLED_SIGMA * sigma
@@ -101,7 +101,7 @@ fn settled(before: &Config, core: &Core) -> bool {
 mod tests {
     use super::*;
     use octant_earth::Vector3;
-    use octant_scenario::resolve::{Draws, Seeded};
+    use octant_scenario::resolve::{DrawnValues, Seeded};
     use octant_scenario::{Method, Scenario};
     use octant_source::PlantSource;
 
@@ -109,7 +109,7 @@ mod tests {
     fn a_source_that_ends_early_concludes_the_calibration() {
         let text = "schema = 1\n[procedure.calibration]\nduration = \"4 h\"\n";
         let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
-        let draws = Draws::of(&scenario, &Seeded(1));
+        let draws = DrawnValues::of(&scenario, &Seeded(1));
         let (q_nb, velocity) = (scenario.mean_attitude(), Vector3::zeros());
         let config = scenario.core(Method::Primary, &draws, &q_nb, &velocity).unwrap();
         // Twelfth part of the calibration's time.

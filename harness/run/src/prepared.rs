@@ -1,6 +1,6 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
-use super::method::{MethodError, MethodRun, Recording, SetupError, run_as_far_as_it_goes};
+use super::method::{MethodError, MethodRun, StreamKeeping, SetupError, run_as_far_as_it_goes};
 use octant_base::control::Control;
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
@@ -90,8 +90,8 @@ impl<'a> Prepared<'a> {
         let one = |(method, is_twin): (Method, bool), control: &Control| {
             let path = folder.join(recording(method));
             let (scenario, recording) = match &self.clean {
-                Some(clean) if is_twin => (clean, Recording::Hash),
-                _ => (self.scenario, Recording::File(&path)),
+                Some(clean) if is_twin => (clean, StreamKeeping::Hash),
+                _ => (self.scenario, StreamKeeping::File(&path)),
             };
             run_as_far_as_it_goes(scenario, method, self.seed, recording, control)
         };

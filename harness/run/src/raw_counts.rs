@@ -2,14 +2,14 @@
 
 use octant_calibration::least_squares::raw::{Nominal, RawModel, accelerometer, gyroscope};
 use octant_sample::Parameters;
-use octant_scenario::Source;
+use octant_scenario::SourceSpec;
 
 /// Renders both sensors in raw numbers; empty where samples don't come from a text file.
 #[must_use]
-pub fn text(source: &Source, parameters: &Parameters) -> String {
+pub fn text(source: &SourceSpec, parameters: &Parameters) -> String {
     use std::fmt::Write as _;
     let Some(mapping) = source.text() else { return String::new() };
-    let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
+    let nominal = |axes: &[octant_scenario::recorded::AxisColumn; 3]| Nominal {
         bias_counts: [0, 1, 2].map(|i| axes[i].offset),
         scale: [0, 1, 2].map(|i| axes[i].scale),
     };

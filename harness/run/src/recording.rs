@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// Parts of a method's stream that are kept.
 #[derive(Clone, Copy, Debug)]
-pub enum Recording<'a> {
+pub enum StreamKeeping<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
     /// Hash of the stream and those of altered streams, and the trace for the comparison with a

@@ -5,7 +5,7 @@ use super::drive::Ended;
 use super::method::MethodRun;
 use octant_faults::Receipt;
 use octant_scenario::Scenario;
-use octant_score::counterfactual::{Counterfactual, Side, counterfactual};
+use octant_score::counterfactual::{Counterfactual, CounterfactualSide, counterfactual};
 
 /// Returns the effects of a run's faults, if it has a twin and both came to their end.
 #[must_use]
@@ -34,8 +34,8 @@ pub fn between(scenario: &Scenario, run: &MethodRun, twin: &MethodRun) -> Option
     ))
 }
 
-fn side(run: &MethodRun) -> Option<Side<'_>> {
-    Some(Side {
+fn side(run: &MethodRun) -> Option<CounterfactualSide<'_>> {
+    Some(CounterfactualSide {
         calibration: run.calibration.as_ref(),
         navigation: run.navigation.as_ref(),
         episodes: run.watcher.health.episodes(),

@@ -4,8 +4,8 @@
 //! [`Watcher::parameters`] and [`Watcher::truth`] where there are any). A rule broken by the unit,
 //! or a real-time limit violated by the bench, ends the observation.
 
-use super::done::{Done, Plan};
-use super::follow::Follow;
+use super::done::{Done, PlannedWork};
+use super::follow::RunFollower;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
 use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
@@ -13,7 +13,7 @@ use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output};
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::health::HealthMonitor;
-use octant_score::trace::Trace;
+use octant_score::trace::RunTrace;
 use octant_score::work::Work;
 use octant_source::Epoch;
 
@@ -45,12 +45,12 @@ pub struct Watcher {
     scored_ns: Option<u64>,
     last_ns: u64,
     check: AnswerCheck,
-    follow: Follow,
+    follow: RunFollower,
     done: Done,
     drift: DriftScorer,
     drift_samples: u64,
     /// Trace for the comparison with a twin, where there is one.
-    pub trace: Option<Trace>,
+    pub trace: Option<RunTrace>,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
     /// Time of the source at the next output, where faults may have altered its stamp.
@@ -83,7 +83,7 @@ pub struct BenchBroke {
 impl Watcher {
     /// Creates a watcher of a run with this plan.
     #[must_use]
-    pub fn new(plan: Plan) -> Self {
+    pub fn new(plan: PlannedWork) -> Self {
         let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
         Self {
             next_score_ns: 0,
@@ -98,7 +98,7 @@ impl Watcher {
             scored_ns: None,
             last_ns: 0,
             check: AnswerCheck::new(),
-            follow: Follow::new(plan.tells()),
+            follow: RunFollower::new(plan.tells()),
             done: Done::towards(plan),
             drift: DriftScorer::new(),
             drift_samples: 0,
@@ -194,7 +194,7 @@ impl Watcher {
         if output.mode == Mode::Navigating {
             // A restarted core navigates anew: the last navigation is the one that is scored.
             (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
-            self.trace.iter_mut().for_each(Trace::navigation_begins);
+            self.trace.iter_mut().for_each(RunTrace::navigation_begins);
             self.navigation_start_ns = Some(output.device_time.ns);
             self.scored_ns = None;
             self.next_score_ns = output.device_time.ns;

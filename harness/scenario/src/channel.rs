@@ -3,13 +3,13 @@
 //! Channels have the names of the variables of Octant's own FMUs; a scenario maps them to the variables
 //! of others.
 
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 
 /// Class of a channel's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// A quantity of a dimension; transmitted in SI.
-    Quantity(Dimension),
+    Quantity(UnitDimension),
     /// A real number without unit.
     Number,
     /// A whole number: counters, flags in bits.
@@ -37,7 +37,7 @@ pub struct Channel {
 
 const fn quantity(
     name: &'static str,
-    dimension: Dimension,
+    dimension: UnitDimension,
     elements: usize,
     doc: &'static str,
 ) -> Channel {
@@ -50,47 +50,47 @@ const fn of(name: &'static str, class: Class, elements: usize, doc: &'static str
 
 /// Channels of samples and references: outputs of a source, and inputs of a core.
 pub mod sample {
-    use super::{Channel, Class, Dimension, of, quantity};
+    use super::{Channel, Class, UnitDimension, of, quantity};
 
     /// Angular rate.
     pub static RATE: Channel = quantity(
         "gyro.rate",
-        Dimension::ANGULAR_RATE,
+        UnitDimension::ANGULAR_RATE,
         3,
         "Angular rate of the body, x y z, taken as constant over the sample's interval.",
     );
     /// Angle increments.
     pub static DELTA_THETA: Channel = quantity(
         "gyro.delta_theta",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         3,
         "Angle increments over the sample's interval, x y z.",
     );
     /// Specific force.
     pub static SPECIFIC_FORCE: Channel = quantity(
         "accelerometer.specific_force",
-        Dimension::ACCELERATION,
+        UnitDimension::ACCELERATION,
         3,
         "Specific force, x y z (at rest it points up), taken as constant over the sample's interval.",
     );
     /// Velocity increments.
     pub static DELTA_VELOCITY: Channel = quantity(
         "accelerometer.delta_velocity",
-        Dimension::VELOCITY,
+        UnitDimension::VELOCITY,
         3,
         "Velocity increments over the sample's interval, x y z.",
     );
     /// Inner gimbal.
     pub static AZIMUTH: Channel = quantity(
         "gimbal.azimuth",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Angle of the inner gimbal at the stamp, cumulative.",
     );
     /// Outer gimbal.
     pub static ROLL: Channel = quantity(
         "gimbal.roll",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Angle of the outer gimbal at the stamp, cumulative.",
     );
@@ -131,28 +131,28 @@ pub mod sample {
     /// Velocity of the reference.
     pub static REFERENCE_VELOCITY: Channel = quantity(
         "reference.velocity",
-        Dimension::VELOCITY,
+        UnitDimension::VELOCITY,
         3,
         "Velocity over ground that the reference measured: north, east, down.",
     );
     /// Latitude of the reference.
     pub static REFERENCE_LATITUDE: Channel = quantity(
         "reference.latitude",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Geodetic latitude that the reference measured.",
     );
     /// Longitude of the reference.
     pub static REFERENCE_LONGITUDE: Channel = quantity(
         "reference.longitude",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Longitude that the reference measured.",
     );
     /// Height of the reference.
     pub static REFERENCE_HEIGHT: Channel = quantity(
         "reference.height",
-        Dimension::LENGTH,
+        UnitDimension::LENGTH,
         1,
         "Height above the ellipsoid that the reference measured.",
     );
@@ -166,14 +166,14 @@ pub mod sample {
     /// Set point of the inner gimbal.
     pub static COMMAND_AZIMUTH: Channel = quantity(
         "gimbal_command.azimuth",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Set point of the inner gimbal, cumulative.",
     );
     /// Set point of the outer gimbal.
     pub static COMMAND_ROLL: Channel = quantity(
         "gimbal_command.roll",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Set point of the outer gimbal, cumulative.",
     );
@@ -181,21 +181,21 @@ pub mod sample {
 
 /// Channels of truth.
 pub mod truth {
-    use super::{Channel, Class, Dimension, of, quantity};
+    use super::{Channel, Class, UnitDimension, of, quantity};
 
     /// True latitude.
     pub static LATITUDE: Channel =
-        quantity("truth.latitude", Dimension::ANGLE, 1, "True geodetic latitude at the stamp.");
+        quantity("truth.latitude", UnitDimension::ANGLE, 1, "True geodetic latitude at the stamp.");
     /// True longitude.
     pub static LONGITUDE: Channel =
-        quantity("truth.longitude", Dimension::ANGLE, 1, "True longitude at the stamp.");
+        quantity("truth.longitude", UnitDimension::ANGLE, 1, "True longitude at the stamp.");
     /// True height.
     pub static HEIGHT: Channel =
-        quantity("truth.height", Dimension::LENGTH, 1, "True height above the ellipsoid.");
+        quantity("truth.height", UnitDimension::LENGTH, 1, "True height above the ellipsoid.");
     /// True velocity.
     pub static VELOCITY: Channel = quantity(
         "truth.velocity",
-        Dimension::VELOCITY,
+        UnitDimension::VELOCITY,
         3,
         "True velocity over ground: north, east, down.",
     );
@@ -209,14 +209,14 @@ pub mod truth {
     /// True gimbal angle.
     pub static AZIMUTH: Channel = quantity(
         "truth.gimbal.azimuth",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "True angle of the inner gimbal, without encoder error.",
     );
     /// True gimbal angle.
     pub static ROLL: Channel = quantity(
         "truth.gimbal.roll",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "True angle of the outer gimbal, without encoder error.",
     );
@@ -224,40 +224,40 @@ pub mod truth {
 
 /// Channels of the motion of the case: of a ship, or of a turntable's base.
 pub mod case {
-    use super::{Channel, Dimension, quantity};
+    use super::{Channel, UnitDimension, quantity};
 
     /// Heading.
     pub static HEADING: Channel =
-        quantity("case.heading", Dimension::ANGLE, 1, "Heading of the case, from north over east.");
+        quantity("case.heading", UnitDimension::ANGLE, 1, "Heading of the case, from north over east.");
     /// Pitch.
     pub static PITCH: Channel =
-        quantity("case.pitch", Dimension::ANGLE, 1, "Pitch of the case, bow up positive.");
+        quantity("case.pitch", UnitDimension::ANGLE, 1, "Pitch of the case, bow up positive.");
     /// Roll.
     pub static ROLL: Channel =
-        quantity("case.roll", Dimension::ANGLE, 1, "Roll of the case, starboard down positive.");
+        quantity("case.roll", UnitDimension::ANGLE, 1, "Roll of the case, starboard down positive.");
     /// Distance north of the site.
     pub static NORTH: Channel =
-        quantity("case.north", Dimension::LENGTH, 1, "Distance of the case north of the site.");
+        quantity("case.north", UnitDimension::LENGTH, 1, "Distance of the case north of the site.");
     /// Distance east of the site.
     pub static EAST: Channel =
-        quantity("case.east", Dimension::LENGTH, 1, "Distance of the case east of the site.");
+        quantity("case.east", UnitDimension::LENGTH, 1, "Distance of the case east of the site.");
     /// Distance below the site.
     pub static DOWN: Channel =
-        quantity("case.down", Dimension::LENGTH, 1, "Distance of the case below the site.");
+        quantity("case.down", UnitDimension::LENGTH, 1, "Distance of the case below the site.");
     /// Latitude.
     pub static LATITUDE: Channel = quantity(
         "case.latitude",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Geodetic latitude of the case, instead of north.",
     );
     /// Longitude.
     pub static LONGITUDE: Channel =
-        quantity("case.longitude", Dimension::ANGLE, 1, "Longitude of the case, instead of east.");
+        quantity("case.longitude", UnitDimension::ANGLE, 1, "Longitude of the case, instead of east.");
     /// Height.
     pub static HEIGHT: Channel = quantity(
         "case.height",
-        Dimension::LENGTH,
+        UnitDimension::LENGTH,
         1,
         "Height of the case above the ellipsoid, instead of down.",
     );
@@ -265,8 +265,8 @@ pub mod case {
 
 /// Channels of a core's outputs, beside its gimbal command.
 pub mod answer {
-    use super::{Channel, Class, Dimension, of, quantity};
-    use octant_sample::parameters::Group;
+    use super::{Channel, Class, UnitDimension, of, quantity};
+    use octant_sample::parameters::ParameterGroup;
 
     /// Mode.
     pub static MODE: Channel = of(
@@ -284,28 +284,28 @@ pub mod answer {
     /// Latitude.
     pub static LATITUDE: Channel = quantity(
         "navigation.latitude",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Geodetic latitude of the navigation solution.",
     );
     /// Longitude.
     pub static LONGITUDE: Channel = quantity(
         "navigation.longitude",
-        Dimension::ANGLE,
+        UnitDimension::ANGLE,
         1,
         "Longitude of the navigation solution.",
     );
     /// Height.
     pub static HEIGHT: Channel = quantity(
         "navigation.height",
-        Dimension::LENGTH,
+        UnitDimension::LENGTH,
         1,
         "Height of the navigation solution above the ellipsoid.",
     );
     /// Velocity.
     pub static VELOCITY: Channel = quantity(
         "navigation.velocity",
-        Dimension::VELOCITY,
+        UnitDimension::VELOCITY,
         3,
         "Velocity over ground of the navigation solution: north, east, down.",
     );
@@ -347,25 +347,25 @@ pub mod answer {
         "Number of times that the estimated parameters have changed; left out, they are looked at with every sample.",
     );
 
-    /// Estimates, in the order of [`Group::ALL`].
+    /// Estimates, in the order of [`ParameterGroup::ALL`].
     pub static PARAMETERS: [Channel; 7] = [
-        quantity("parameters.gyro_bias", Dimension::GYRO_BIAS, 3, "Estimated gyro biases."),
+        quantity("parameters.gyro_bias", UnitDimension::GYRO_BIAS, 3, "Estimated gyro biases."),
         of("parameters.gyro_scale", Class::Number, 3, "Estimated gyro scale factor errors."),
         quantity(
             "parameters.gyro_misalignment",
-            Dimension::SMALL_ANGLE,
+            UnitDimension::SMALL_ANGLE,
             6,
             "Estimated gyro misalignments: xy, xz, yx, yz, zx, zy.",
         ),
         quantity(
             "parameters.g_dependent",
-            Dimension::G_DEPENDENT,
+            UnitDimension::G_DEPENDENT,
             9,
             "Estimated g-dependent gyro biases by rows.",
         ),
         quantity(
             "parameters.accel_bias",
-            Dimension::ACCEL_BIAS,
+            UnitDimension::ACCEL_BIAS,
             3,
             "Estimated accelerometer biases.",
         ),
@@ -377,33 +377,33 @@ pub mod answer {
         ),
         quantity(
             "parameters.accel_misalignment",
-            Dimension::SMALL_ANGLE,
+            UnitDimension::SMALL_ANGLE,
             3,
             "Estimated accelerometer misalignments: yx, zx, zy.",
         ),
     ];
 
-    /// Standard deviations of the estimates, in the order of [`Group::ALL`].
+    /// Standard deviations of the estimates, in the order of [`ParameterGroup::ALL`].
     pub static SIGMA: [Channel; 7] = [
-        quantity("sigma.gyro_bias", Dimension::GYRO_BIAS, 3, "1σ of the gyro biases."),
+        quantity("sigma.gyro_bias", UnitDimension::GYRO_BIAS, 3, "1σ of the gyro biases."),
         of("sigma.gyro_scale", Class::Number, 3, "1σ of the gyro scale factor errors."),
         quantity(
             "sigma.gyro_misalignment",
-            Dimension::SMALL_ANGLE,
+            UnitDimension::SMALL_ANGLE,
             6,
             "1σ of the gyro misalignments.",
         ),
         quantity(
             "sigma.g_dependent",
-            Dimension::G_DEPENDENT,
+            UnitDimension::G_DEPENDENT,
             9,
             "1σ of the g-dependent gyro biases.",
         ),
-        quantity("sigma.accel_bias", Dimension::ACCEL_BIAS, 3, "1σ of the accelerometer biases."),
+        quantity("sigma.accel_bias", UnitDimension::ACCEL_BIAS, 3, "1σ of the accelerometer biases."),
         of("sigma.accel_scale", Class::Number, 3, "1σ of the accelerometer scale factor errors."),
         quantity(
             "sigma.accel_misalignment",
-            Dimension::SMALL_ANGLE,
+            UnitDimension::SMALL_ANGLE,
             3,
             "1σ of the accelerometer misalignments.",
         ),
@@ -411,7 +411,7 @@ pub mod answer {
 
     /// Estimates of a group, with their standard deviations.
     #[must_use]
-    pub fn group(group: Group) -> (&'static Channel, &'static Channel) {
+    pub fn group(group: ParameterGroup) -> (&'static Channel, &'static Channel) {
         (&PARAMETERS[group as usize], &SIGMA[group as usize])
     }
 }
@@ -419,11 +419,11 @@ pub mod answer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_sample::parameters::Group;
+    use octant_sample::parameters::ParameterGroup;
 
     #[test]
     fn the_channels_of_parameters_are_those_of_the_groups() {
-        for of in Group::ALL {
+        for of in ParameterGroup::ALL {
             let (estimate, sigma) = answer::group(of);
             assert_eq!(estimate.name, format!("parameters.{}", of.name()));
             assert_eq!(sigma.name, format!("sigma.{}", of.name()));

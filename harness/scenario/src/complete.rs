@@ -6,17 +6,17 @@
 pub use super::document::join;
 
 use super::condition;
-use super::document::{Node, Table, Value, number, parse_default};
+use super::document::{DocumentNode, DocumentTable, DocumentValue, number, parse_default};
 use super::error::{Place, Problem};
-use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
+use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, Section, Variants};
 use super::ports;
-use super::quantity::{self, Dimension, explain};
+use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
 use octant_faults::Channels;
 
 /// Checks a table and adds its defaults; problems are added to `problems`.
 pub fn complete(
-    table: &mut Table,
+    table: &mut DocumentTable,
     section: &'static Section,
     path: &str,
     place: &Place,
@@ -44,7 +44,7 @@ pub fn complete(
                 Default::Value(text) => table.set(key.name, parse_default(text)),
                 Default::Section => table.set(
                     key.name,
-                    Node { value: Value::Table(Table::default()), place: Place::Default },
+                    DocumentNode { value: DocumentValue::Table(DocumentTable::default()), place: Place::Default },
                 ),
                 Default::Required => {
                     let expected = expected(&key.kind);
@@ -63,9 +63,9 @@ pub fn complete(
 
 /// Checks one value against the kind of its key.
 pub fn check(
-    node: &mut Node,
-    key: &'static Key,
-    kind: &'static Kind,
+    node: &mut DocumentNode,
+    key: &'static KeyDefinition,
+    kind: &'static KeyKind,
     path: &str,
     problems: &mut Vec<Problem>,
 ) {
@@ -75,31 +75,31 @@ pub fn check(
     };
     let found = node.value.describe();
     match (kind, &mut node.value) {
-        (Kind::Refused(reason), _) => report((*reason).to_owned()),
-        (Kind::Either(kinds), value) => match kinds.iter().find(|kind| takes(kind, value)) {
+        (KeyKind::Refused(reason), _) => report((*reason).to_owned()),
+        (KeyKind::Either(kinds), value) => match kinds.iter().find(|kind| takes(kind, value)) {
             Some(kind) => check(node, key, kind, path, problems),
             None => report(format!("found {found}, expected {}", expected(kind))),
         },
-        (Kind::Text, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => {}
-        (Kind::Uri(schemes), Value::Text(text)) => {
+        (KeyKind::Text, DocumentValue::Text(_)) | (KeyKind::Boolean, DocumentValue::Boolean(_)) => {}
+        (KeyKind::Uri(schemes), DocumentValue::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
             if !schemes.iter().any(|(known, _)| *known == scheme) {
                 let known = suggestion(scheme, schemes.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choice(choices), Value::Text(text)) => {
+        (KeyKind::Choice(choices), DocumentValue::Text(text)) => {
             if !choices.iter().any(|(known, _)| known == text) {
                 let known = suggestion(text, choices.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choices(choices), Value::Array(entries)) => {
+        (KeyKind::Choices(choices), DocumentValue::Array(entries)) => {
             for entry in entries.iter() {
                 let known = |text: &String| choices.contains(&text.as_str());
-                if !matches!(&entry.value, Value::Text(text) if known(text)) {
+                if !matches!(&entry.value, DocumentValue::Text(text) if known(text)) {
                     let found = entry.value.describe();
-                    let text = if let Value::Text(text) = &entry.value { text } else { "" };
+                    let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
                     let known = suggestion(text, choices.iter().copied(), "possible");
                     problems.push(Problem {
                         place: entry.place.clone(),
@@ -109,7 +109,7 @@ pub fn check(
                 }
             }
         }
-        (Kind::Integer(from, to), Value::Integer(number)) => {
+        (KeyKind::Integer(from, to), DocumentValue::Integer(number)) => {
             if !(*from..=*to).contains(number) {
                 let kind = expected(kind);
                 report(match (key.name, *number > *to) {
@@ -121,23 +121,23 @@ pub fn check(
                 });
             }
         }
-        (Kind::Number(bounds), value @ (Value::Integer(_) | Value::Number(_))) => {
+        (KeyKind::Number(bounds), value @ (DocumentValue::Integer(_) | DocumentValue::Number(_))) => {
             if !number(value).is_some_and(|value| bounds.contain(value)) {
                 report(format!("found {found}, expected a number {}", bounds.words()));
             }
         }
-        (Kind::Numbers(count), Value::Array(entries)) => {
-            let finite = |entry: &Node| number(&entry.value).is_some_and(f64::is_finite);
+        (KeyKind::Numbers(count), DocumentValue::Array(entries)) => {
+            let finite = |entry: &DocumentNode| number(&entry.value).is_some_and(f64::is_finite);
             if entries.len() != *count || !entries.iter().all(finite) {
                 report(format!("found {found}, expected {count} numbers"));
             }
         }
-        (Kind::Quantity(dimensions, bounds), value) => {
+        (KeyKind::Quantity(dimensions, bounds), value) => {
             if let Err(message) = check_quantity(value, dimensions, *bounds) {
                 report(message);
             }
         }
-        (Kind::Quantities(dimension, count), Value::Array(entries)) => {
+        (KeyKind::Quantities(dimension, count), DocumentValue::Array(entries)) => {
             if entries.len() != *count {
                 report(format!(
                     "found {} entries, expected {count}, each {}",
@@ -146,7 +146,7 @@ pub fn check(
                 ));
             }
             for (index, entry) in entries.iter().enumerate() {
-                if let Err(message) = check_quantity(&entry.value, &[*dimension], Bounds::Any) {
+                if let Err(message) = check_quantity(&entry.value, &[*dimension], KeyBounds::Any) {
                     problems.push(Problem {
                         place: entry.place.clone(),
                         path: format!("{path}[{index}]"),
@@ -155,26 +155,26 @@ pub fn check(
                 }
             }
         }
-        (Kind::Vector(dimensions), Value::Array(entries)) => {
+        (KeyKind::Vector(dimensions), DocumentValue::Array(entries)) => {
             check_vector(entries, dimensions, path, &place, problems);
         }
-        (Kind::Times, Value::Array(entries)) => {
+        (KeyKind::Times, DocumentValue::Array(entries)) => {
             for (index, entry) in entries.iter().enumerate() {
-                let checked = check_quantity(&entry.value, &[Dimension::TIME], Bounds::NotNegative);
+                let checked = check_quantity(&entry.value, &[UnitDimension::TIME], KeyBounds::NotNegative);
                 if let Err(message) = checked {
                     let path = format!("{path}[{index}]");
                     problems.push(Problem { place: entry.place.clone(), path, message });
                 }
             }
         }
-        (Kind::Condition, Value::Text(text)) => {
+        (KeyKind::Condition, DocumentValue::Text(text)) => {
             if let Err(message) = condition::parse(text) {
                 report(format!("found {found}, {message}"));
             }
         }
-        (Kind::Channels, Value::Text(_) | Value::Array(_)) => {
+        (KeyKind::Channels, DocumentValue::Text(_) | DocumentValue::Array(_)) => {
             let entries = match &node.value {
-                Value::Array(entries) => entries.as_slice(),
+                DocumentValue::Array(entries) => entries.as_slice(),
                 _ => std::slice::from_ref(&*node),
             };
             if entries.is_empty() {
@@ -182,7 +182,7 @@ pub fn check(
             }
             let names = Channels::NAMES.iter().map(|(name, _)| *name);
             for entry in entries {
-                let text = if let Value::Text(text) = &entry.value { text } else { "" };
+                let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
                 if Channels::named(text).is_none() {
                     let known = suggestion(text, names.clone(), "possible");
                     let message = format!("found {}, {known}", entry.value.describe());
@@ -191,9 +191,9 @@ pub fn check(
                 }
             }
         }
-        (Kind::Limit, Value::Integer(_)) => {}
-        (Kind::Limit, Value::Number(value)) if value.is_finite() => {}
-        (Kind::Limit, Value::Text(text)) => {
+        (KeyKind::Limit, DocumentValue::Integer(_)) => {}
+        (KeyKind::Limit, DocumentValue::Number(value)) if value.is_finite() => {}
+        (KeyKind::Limit, DocumentValue::Text(text)) => {
             if let Err(error) = quantity::parse(text) {
                 report(format!(
                     "found {found}, {}; expected a quantity or a number",
@@ -201,15 +201,15 @@ pub fn check(
                 ));
             }
         }
-        (Kind::Column, Value::Integer(1..=10_000) | Value::Text(_)) => {}
-        (Kind::Port(channel), _) => problems.extend(ports::ports(node, channel, path).err()),
-        (Kind::Settings, Value::Table(table)) => {
+        (KeyKind::Column, DocumentValue::Integer(1..=10_000) | DocumentValue::Text(_)) => {}
+        (KeyKind::Port(channel), _) => problems.extend(ports::ports(node, channel, path).err()),
+        (KeyKind::Settings, DocumentValue::Table(table)) => {
             problems.extend(ports::settings(table, path).err())
         }
-        (Kind::Values, Value::Array(entries)) if !entries.is_empty() => {}
-        (Kind::Names, Value::Array(entries))
-            if entries.iter().all(|entry| matches!(entry.value, Value::Text(_))) => {}
-        (Kind::Lists, Value::Array(entries)) if !entries.is_empty() => {
+        (KeyKind::Values, DocumentValue::Array(entries)) if !entries.is_empty() => {}
+        (KeyKind::Names, DocumentValue::Array(entries))
+            if entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_))) => {}
+        (KeyKind::Lists, DocumentValue::Array(entries)) if !entries.is_empty() => {
             for entry in entries.iter().filter(|entry| !is_names(entry)) {
                 let found = entry.value.describe();
                 problems.push(Problem {
@@ -219,20 +219,20 @@ pub fn check(
                 });
             }
         }
-        (Kind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
-        (Kind::Table(section), Value::Table(table)) => {
+        (KeyKind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
+        (KeyKind::Table(section), DocumentValue::Table(table)) => {
             complete(table, section, path, &place, problems);
         }
-        (Kind::Variants(variants), Value::Table(table)) => {
+        (KeyKind::Variants(variants), DocumentValue::Table(table)) => {
             complete_variant(table, variants, path, &place, problems);
         }
-        (Kind::VariantTables(variants, at_most), Value::Array(entries)) => {
+        (KeyKind::VariantTables(variants, at_most), DocumentValue::Array(entries)) => {
             if entries.len() > *at_most {
                 report(format!("found {} entries, expected at most {at_most}", entries.len()));
             }
             for (index, entry) in entries.iter_mut().enumerate() {
                 let (path, place) = (format!("{path}[{index}]"), entry.place.clone());
-                if let Value::Table(table) = &mut entry.value {
+                if let DocumentValue::Table(table) = &mut entry.value {
                     complete_variant(table, variants, &path, &place, problems);
                 } else {
                     let message = format!("found {}, expected a table", entry.value.describe());
@@ -240,7 +240,7 @@ pub fn check(
                 }
             }
         }
-        (Kind::Tables(section, at_least, at_most), Value::Array(entries)) => {
+        (KeyKind::Tables(section, at_least, at_most), DocumentValue::Array(entries)) => {
             if !(*at_least..=*at_most).contains(&entries.len()) {
                 let count = entries.len();
                 report(format!("found {count} entries, expected {at_least} to {at_most}"));
@@ -249,7 +249,7 @@ pub fn check(
                 let path = format!("{path}[{index}]");
                 let place = entry.place.clone();
                 match &mut entry.value {
-                    Value::Table(table) => complete(table, section, &path, &place, problems),
+                    DocumentValue::Table(table) => complete(table, section, &path, &place, problems),
                     other => problems.push(Problem {
                         place,
                         path,
@@ -268,7 +268,7 @@ pub fn check(
 
 /// Checks a table against the keys of its form.
 fn complete_variant(
-    table: &mut Table,
+    table: &mut DocumentTable,
     variants: &'static Variants,
     path: &str,
     place: &Place,
@@ -282,8 +282,8 @@ fn complete_variant(
 
 /// Checks x, y, z of a vector: each a quantity, all of the same dimension.
 fn check_vector(
-    entries: &[Node],
-    dimensions: &[Dimension],
+    entries: &[DocumentNode],
+    dimensions: &[UnitDimension],
     path: &str,
     place: &Place,
     problems: &mut Vec<Problem>,
@@ -297,14 +297,14 @@ fn check_vector(
             format!("found {} entries, expected 3 (x, y, z), each {expected}", entries.len());
         return report(place, path.to_owned(), message);
     }
-    let mut of: Option<Dimension> = None;
+    let mut of: Option<UnitDimension> = None;
     for (index, entry) in entries.iter().enumerate() {
         let path = format!("{path}[{index}]");
-        if let Err(message) = check_quantity(&entry.value, dimensions, Bounds::Any) {
+        if let Err(message) = check_quantity(&entry.value, dimensions, KeyBounds::Any) {
             report(&entry.place, path, message);
             continue;
         }
-        let Value::Text(text) = &entry.value else { continue };
+        let DocumentValue::Text(text) = &entry.value else { continue };
         let Ok(quantity) = quantity::parse(text) else { continue };
         let found = dimensions.iter().find(|dimension| quantity.is(**dimension)).copied();
         match (of, found) {
@@ -321,18 +321,18 @@ fn check_vector(
     }
 }
 
-fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Result<(), String> {
+fn check_quantity(value: &DocumentValue, dimensions: &[UnitDimension], bounds: KeyBounds) -> Result<(), String> {
     let expected = quantity_words(dimensions);
-    let Value::Text(text) = value else {
+    let DocumentValue::Text(text) = value else {
         return Err(format!("found {}, expected {expected}", value.describe()));
     };
     let quantity = quantity::parse(text)
         .map_err(|error| format!("found {text:?}, {}; expected {expected}", explain(&error)))?;
     if !dimensions.iter().any(|dimension| quantity.is(*dimension)) {
-        let is = Dimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
+        let is = UnitDimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
         return Err(format!("found {text:?}, {is}; expected {expected}"));
     }
-    if quantity.is(Dimension::SAMPLES) && quantity.si.fract() != 0.0 {
+    if quantity.is(UnitDimension::SAMPLES) && quantity.si.fract() != 0.0 {
         return Err(format!("found {text:?}, expected a whole number of samples"));
     }
     if bounds.contain(quantity.si) {
@@ -342,83 +342,83 @@ fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Re
     }
 }
 
-fn quantity_words(dimensions: &[Dimension]) -> String {
-    let each = |d: &Dimension| format!("{} such as \"{}\"", d.name, d.example);
+fn quantity_words(dimensions: &[UnitDimension]) -> String {
+    let each = |d: &UnitDimension| format!("{} such as \"{}\"", d.name, d.example);
     dimensions.iter().map(each).collect::<Vec<_>>().join(" or ")
 }
 
-fn is_names(node: &Node) -> bool {
-    let Value::Array(entries) = &node.value else { return false };
-    entries.iter().all(|entry| matches!(entry.value, Value::Text(_)))
+fn is_names(node: &DocumentNode) -> bool {
+    let DocumentValue::Array(entries) = &node.value else { return false };
+    entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_)))
 }
 
 /// True if a TOML value of this type is meant for this kind.
-fn takes(kind: &Kind, value: &Value) -> bool {
+fn takes(kind: &KeyKind, value: &DocumentValue) -> bool {
     matches!(
         (kind, value),
-        (Kind::Choice(_) | Kind::Text, Value::Text(_))
-            | (Kind::Boolean, Value::Boolean(_))
-            | (Kind::Integer(..) | Kind::Number(_), Value::Integer(_))
-            | (Kind::Number(_), Value::Number(_))
-            | (Kind::Table(_), Value::Table(_))
-            | (Kind::Tables(..), Value::Array(_))
-            | (Kind::Variants(_), Value::Table(_))
+        (KeyKind::Choice(_) | KeyKind::Text, DocumentValue::Text(_))
+            | (KeyKind::Boolean, DocumentValue::Boolean(_))
+            | (KeyKind::Integer(..) | KeyKind::Number(_), DocumentValue::Integer(_))
+            | (KeyKind::Number(_), DocumentValue::Number(_))
+            | (KeyKind::Table(_), DocumentValue::Table(_))
+            | (KeyKind::Tables(..), DocumentValue::Array(_))
+            | (KeyKind::Variants(_), DocumentValue::Table(_))
     )
 }
 
 /// Description of the values of a kind.
-pub fn expected(kind: &Kind) -> String {
+pub fn expected(kind: &KeyKind) -> String {
     let names = |choices: &[(&str, &str)]| {
         choices.iter().map(|(name, _)| format!("{name:?}")).collect::<Vec<_>>().join(", ")
     };
     match kind {
-        Kind::Text => "a text in quotes".to_owned(),
-        Kind::Uri(choices) | Kind::Choice(choices) if choices.len() == 1 => names(choices),
-        Kind::Uri(choices) | Kind::Choice(choices) => format!("one of {}", names(choices)),
-        Kind::Choices(choices) => format!("a list of some of {}", choices.join(", ")),
-        Kind::Boolean => "true or false".to_owned(),
-        Kind::Integer(from, to) if from == to => format!("{from}"),
-        Kind::Integer(from, to) if *to == i64::MAX => format!("a whole number of {from} or more"),
-        Kind::Integer(from, to) => format!("a whole number from {from} to {to}"),
-        Kind::Number(bounds) => format!("a number {}", bounds.words()),
-        Kind::Numbers(count) => format!("{count} numbers"),
-        Kind::Quantity(dimensions, _) => quantity_words(dimensions),
-        Kind::Quantities(dimension, count) => {
+        KeyKind::Text => "a text in quotes".to_owned(),
+        KeyKind::Uri(choices) | KeyKind::Choice(choices) if choices.len() == 1 => names(choices),
+        KeyKind::Uri(choices) | KeyKind::Choice(choices) => format!("one of {}", names(choices)),
+        KeyKind::Choices(choices) => format!("a list of some of {}", choices.join(", ")),
+        KeyKind::Boolean => "true or false".to_owned(),
+        KeyKind::Integer(from, to) if from == to => format!("{from}"),
+        KeyKind::Integer(from, to) if *to == i64::MAX => format!("a whole number of {from} or more"),
+        KeyKind::Integer(from, to) => format!("a whole number from {from} to {to}"),
+        KeyKind::Number(bounds) => format!("a number {}", bounds.words()),
+        KeyKind::Numbers(count) => format!("{count} numbers"),
+        KeyKind::Quantity(dimensions, _) => quantity_words(dimensions),
+        KeyKind::Quantities(dimension, count) => {
             format!("an array of {count}, each {}", quantity_words(&[*dimension]))
         }
-        Kind::Vector(dimensions) => {
+        KeyKind::Vector(dimensions) => {
             format!("an array of 3 (x, y, z), each {}", quantity_words(dimensions))
         }
-        Kind::Times => format!("an array, each {}", quantity_words(&[Dimension::TIME])),
-        Kind::Condition => format!("a text such as {:?}", condition::EXAMPLE),
-        Kind::Channels => {
+        KeyKind::Times => format!("an array, each {}", quantity_words(&[UnitDimension::TIME])),
+        KeyKind::Condition => format!("a text such as {:?}", condition::EXAMPLE),
+        KeyKind::Channels => {
             let all = Channels::NAMES.iter().map(|(name, _)| format!("{name:?}"));
             format!("a channel or an array of them: {}", all.collect::<Vec<_>>().join(", "))
         }
-        Kind::Limit => "a quantity or a number".to_owned(),
-        Kind::Column => "a column number from 1, or a column's name".to_owned(),
-        Kind::Port(channel) => ports::expected_port(channel),
-        Kind::Settings => "a table of names and values".to_owned(),
-        Kind::Values => "a list of at least one value".to_owned(),
-        Kind::Names => "a list of names".to_owned(),
-        Kind::Lists => "a list of lists of names".to_owned(),
-        Kind::Codes => {
+        KeyKind::Limit => "a quantity or a number".to_owned(),
+        KeyKind::Column => "a column number from 1, or a column's name".to_owned(),
+        KeyKind::Port(channel) => ports::expected_port(channel),
+        KeyKind::Settings => "a table of names and values".to_owned(),
+        KeyKind::Values => "a list of at least one value".to_owned(),
+        KeyKind::Names => "a list of names".to_owned(),
+        KeyKind::Lists => "a list of lists of names".to_owned(),
+        KeyKind::Codes => {
             "a whole number or the name of an enumeration's item, or an array of them".to_owned()
         }
-        Kind::Table(section) if section.one_of => {
+        KeyKind::Table(section) if section.one_of => {
             format!("a table with one of {}", section.names().collect::<Vec<_>>().join(", "))
         }
-        Kind::Table(section) => {
+        KeyKind::Table(section) => {
             format!("a table with {}", section.names().collect::<Vec<_>>().join(", "))
         }
-        Kind::Tables(section, ..) => {
+        KeyKind::Tables(section, ..) => {
             format!("an array of tables with {}", section.names().collect::<Vec<_>>().join(", "))
         }
-        Kind::Variants(variants) => {
+        KeyKind::Variants(variants) => {
             format!("a table with one of {}", variants.names().collect::<Vec<_>>().join(", "))
         }
-        Kind::VariantTables(..) => "an array of tables".to_owned(),
-        Kind::Either(kinds) => kinds.iter().map(expected).collect::<Vec<_>>().join(", or "),
-        Kind::Refused(reason) => (*reason).to_owned(),
+        KeyKind::VariantTables(..) => "an array of tables".to_owned(),
+        KeyKind::Either(kinds) => kinds.iter().map(expected).collect::<Vec<_>>().join(", or "),
+        KeyKind::Refused(reason) => (*reason).to_owned(),
     }
 }

@@ -1,35 +1,35 @@
 //! Conditions of triggers, such as `"nis above 25"`: a signal, a side, and a value.
 
-use super::quantity::{self, Dimension, explain};
+use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
-use octant_faults::trigger::{Comparison, Signal};
+use octant_faults::trigger::{ThresholdSide, Signal};
 use octant_sample::Health;
 
 /// Example of a condition, for messages.
 pub(crate) const EXAMPLE: &str = "nis above 25";
 
 /// Names of signals, with the dimension of their values; `None`: a plain number.
-const SIGNALS: [(&str, Signal, Option<Dimension>); 11] = [
+const SIGNALS: [(&str, Signal, Option<UnitDimension>); 11] = [
     ("nis", Signal::Nis, None),
-    ("velocity north", Signal::Velocity(0), Some(Dimension::VELOCITY)),
-    ("velocity east", Signal::Velocity(1), Some(Dimension::VELOCITY)),
-    ("velocity down", Signal::Velocity(2), Some(Dimension::VELOCITY)),
-    ("latitude error", Signal::LatitudeError, Some(Dimension::ANGLE)),
-    ("longitude error", Signal::LongitudeError, Some(Dimension::ANGLE)),
-    ("true azimuth", Signal::TrueGimbal(0), Some(Dimension::ANGLE)),
-    ("true roll", Signal::TrueGimbal(1), Some(Dimension::ANGLE)),
-    ("true velocity north", Signal::TrueVelocity(0), Some(Dimension::VELOCITY)),
-    ("true velocity east", Signal::TrueVelocity(1), Some(Dimension::VELOCITY)),
-    ("true velocity down", Signal::TrueVelocity(2), Some(Dimension::VELOCITY)),
+    ("velocity north", Signal::Velocity(0), Some(UnitDimension::VELOCITY)),
+    ("velocity east", Signal::Velocity(1), Some(UnitDimension::VELOCITY)),
+    ("velocity down", Signal::Velocity(2), Some(UnitDimension::VELOCITY)),
+    ("latitude error", Signal::LatitudeError, Some(UnitDimension::ANGLE)),
+    ("longitude error", Signal::LongitudeError, Some(UnitDimension::ANGLE)),
+    ("true azimuth", Signal::TrueGimbal(0), Some(UnitDimension::ANGLE)),
+    ("true roll", Signal::TrueGimbal(1), Some(UnitDimension::ANGLE)),
+    ("true velocity north", Signal::TrueVelocity(0), Some(UnitDimension::VELOCITY)),
+    ("true velocity east", Signal::TrueVelocity(1), Some(UnitDimension::VELOCITY)),
+    ("true velocity down", Signal::TrueVelocity(2), Some(UnitDimension::VELOCITY)),
 ];
 
 /// Parses a condition. The error is a fragment that fits after "found X, ".
-pub(crate) fn parse(text: &str) -> Result<(Signal, Comparison, f64), String> {
+pub(crate) fn parse(text: &str) -> Result<(Signal, ThresholdSide, f64), String> {
     let text = text.trim();
     if let Some(flag) = text.strip_prefix("health") {
-        return Ok((Signal::Health(health(flag.trim())?), Comparison::Above, 0.5));
+        return Ok((Signal::Health(health(flag.trim())?), ThresholdSide::Above, 0.5));
     }
-    let split = [(" above ", Comparison::Above), (" below ", Comparison::Below)]
+    let split = [(" above ", ThresholdSide::Above), (" below ", ThresholdSide::Below)]
         .into_iter()
         .find_map(|(word, side)| text.split_once(word).map(|(a, b)| (a, side, b)));
     let Some((name, side, value)) = split else {
@@ -84,18 +84,18 @@ mod tests {
 
     #[test]
     fn conditions_have_a_signal_a_side_and_a_value_in_its_unit() {
-        assert_eq!(parse(EXAMPLE), Ok((Signal::Nis, Comparison::Above, 25.0)));
+        assert_eq!(parse(EXAMPLE), Ok((Signal::Nis, ThresholdSide::Above, 25.0)));
         assert_eq!(
             parse("latitude error above 2 arcmin"),
-            Ok((Signal::LatitudeError, Comparison::Above, 2.0 * ARCMIN))
+            Ok((Signal::LatitudeError, ThresholdSide::Above, 2.0 * ARCMIN))
         );
         assert_eq!(
             parse("true velocity east below -0.1 m/s"),
-            Ok((Signal::TrueVelocity(1), Comparison::Below, -0.1))
+            Ok((Signal::TrueVelocity(1), ThresholdSide::Below, -0.1))
         );
         assert_eq!(
             parse("health innovation-rejected"),
-            Ok((Signal::Health(Health::INNOVATION_REJECTED), Comparison::Above, 0.5))
+            Ok((Signal::Health(Health::INNOVATION_REJECTED), ThresholdSide::Above, 0.5))
         );
         for (text, expected) in [
             ("nis", "above or below"),

@@ -1,15 +1,15 @@
 //! Defaults that depend on other keys, and keys that have no effect beside others.
 
-use super::document::{Node, Table, Value, parse_default};
+use super::document::{DocumentNode, DocumentTable, DocumentValue, parse_default};
 use super::error::Problem;
 use super::keys::{
     Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
 };
-use super::quantity::{self, Dimension};
+use super::quantity::{self, UnitDimension};
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
 /// kind are left for the check.
-pub(crate) fn derive(document: &mut Table) {
+pub(crate) fn derive(document: &mut DocumentTable) {
     if text(document, "motion.kind") == Some("dockside") {
         let own = ["roll", "pitch", "yaw", "surge", "sway", "heave", "spectrum"]
             .iter()
@@ -55,11 +55,11 @@ pub(crate) fn derive(document: &mut Table) {
         if document.at(table).is_some() {
             let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
             let split = match document.at(&format!("{table}.split")).map(|node| &node.value) {
-                Some(Value::Integer(split)) if *split > 1 => *split as f64,
+                Some(DocumentValue::Integer(split)) if *split > 1 => *split as f64,
                 _ => 1.0,
             };
             let rate = match quantity::parse(&rate) {
-                Ok(quantity) if split > 1.0 => Dimension::FREQUENCY.write(quantity.si / split),
+                Ok(quantity) if split > 1.0 => UnitDimension::FREQUENCY.write(quantity.si / split),
                 _ => rate,
             };
             set(document, &format!("{table}.rate"), &rate);
@@ -68,11 +68,11 @@ pub(crate) fn derive(document: &mut Table) {
 }
 
 /// True if the core is at the other end of a wire.
-fn is_live(document: &Table) -> bool {
+fn is_live(document: &DocumentTable) -> bool {
     text(document, "endpoint.uri").is_some_and(octant_link::Uri::is_one)
 }
 
-fn fmu(document: &mut Table, path: &str, keys: &Section) {
+fn fmu(document: &mut DocumentTable, path: &str, keys: &Section) {
     for key in keys.keys {
         if let Default::Value(value) = key.default {
             set(document, &format!("{path}.{}", key.name), value);
@@ -83,7 +83,7 @@ fn fmu(document: &mut Table, path: &str, keys: &Section) {
     }
 }
 
-fn calibration(document: &mut Table) {
+fn calibration(document: &mut DocumentTable) {
     if document.at("procedure.calibration.stops").is_none() {
         set(document, "procedure.calibration.positions", "eight");
     }
@@ -99,30 +99,30 @@ fn calibration(document: &mut Table) {
     let drawn = |key: &str| {
         let text = text(document, &format!("imu.g_dependent.{key}"))?;
         let quantity = quantity::parse(text).ok()?;
-        (quantity.is(Dimension::G_DEPENDENT) && quantity.si > 0.0)
+        (quantity.is(UnitDimension::G_DEPENDENT) && quantity.si > 0.0)
             .then(|| (quantity.si, text.to_owned()))
     };
     let prior = match (drawn("normal"), drawn("uniform")) {
         (Some((_, text)), _) => text,
         // Standard deviation of a uniform distribution of this half width.
-        (None, Some((half_width, _))) => Dimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0)),
+        (None, Some((half_width, _))) => UnitDimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0)),
         (None, None) => "0.0005 deg/h/g".to_owned(),
     };
     set(document, "procedure.calibration.prior.g_dependent", &prior);
 }
 
-fn text<'a>(document: &'a Table, path: &str) -> Option<&'a str> {
+fn text<'a>(document: &'a DocumentTable, path: &str) -> Option<&'a str> {
     match &document.at(path)?.value {
-        Value::Text(text) => Some(text),
+        DocumentValue::Text(text) => Some(text),
         _ => None,
     }
 }
 
 /// Sets a default, unless there is a value or something other than a table is in the way.
-fn set(document: &mut Table, path: &str, value: &str) {
+fn set(document: &mut DocumentTable, path: &str, value: &str) {
     let parents = path.match_indices('.').map(|(index, _)| &path[..index]);
     let blocked = parents.into_iter().any(|parent| {
-        document.at(parent).is_some_and(|node| !matches!(node.value, Value::Table(_)))
+        document.at(parent).is_some_and(|node| !matches!(node.value, DocumentValue::Table(_)))
     });
     if !blocked && document.at(path).is_none() {
         document.set_at(path, parse_default(value));
@@ -131,7 +131,7 @@ fn set(document: &mut Table, path: &str, value: &str) {
 
 /// Keys without effect in a completed document, with the reason: refused if the scenario gives them,
 /// and omitted from the resolved scenario.
-pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
+pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static str)> {
     let is = |path: &str, value: &str| text(document, path) == Some(value);
     let mut all = Vec::new();
     let mut add = |parent: &str, keys: &[&str], reason: &'static str| {
@@ -217,7 +217,7 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
 }
 
 /// Problems of keys that are given and have no effect.
-pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
+pub(crate) fn refuse_without_effect(document: &DocumentTable) -> Vec<Problem> {
     let given = |(path, reason): (String, &'static str)| {
         let node = document.at(&path)?;
         Some(Problem { place: first_given(node)?.place.clone(), path, message: reason.to_owned() })
@@ -226,12 +226,12 @@ pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
 }
 
 /// First value of a tree that isn't a default.
-fn first_given(node: &Node) -> Option<&Node> {
+fn first_given(node: &DocumentNode) -> Option<&DocumentNode> {
     if node.place != super::error::Place::Default {
         return Some(node);
     }
     match &node.value {
-        Value::Table(table) => table.entries.iter().find_map(|entry| first_given(&entry.node)),
+        DocumentValue::Table(table) => table.entries.iter().find_map(|entry| first_given(&entry.node)),
         _ => None,
     }
 }

@@ -6,16 +6,16 @@ use toml::de::{DeTable, DeValue};
 
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct DocumentNode {
     /// The value.
-    pub value: Value,
+    pub value: DocumentValue,
     /// Place of the value.
     pub place: Place,
 }
 
 /// A value of one of the kinds of TOML.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum DocumentValue {
     /// A text.
     Text(String),
     /// A whole number.
@@ -27,12 +27,12 @@ pub enum Value {
     /// A date or time, as written; no key accepts it.
     Date(String),
     /// An array.
-    Array(Vec<Node>),
+    Array(Vec<DocumentNode>),
     /// A table.
-    Table(Table),
+    Table(DocumentTable),
 }
 
-impl Value {
+impl DocumentValue {
     /// Describes the value, for "found …".
     pub fn describe(&self) -> String {
         match self {
@@ -49,39 +49,39 @@ impl Value {
 
 /// A key of a table, with its place and value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct KeyEntry {
     /// The key.
     pub key: String,
     /// Place of the key.
     pub place: Place,
     /// The value.
-    pub node: Node,
+    pub node: DocumentNode,
 }
 
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
+pub struct DocumentTable {
     /// Keys in the order of writing.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<KeyEntry>,
 }
 
-impl Table {
+impl DocumentTable {
     /// Value of a key.
-    pub fn get(&self, key: &str) -> Option<&Node> {
+    pub fn get(&self, key: &str) -> Option<&DocumentNode> {
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
     /// Mutable value of a key.
-    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut DocumentNode> {
         self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
     }
 
     /// Replaces or adds a value.
-    pub fn set(&mut self, key: &str, node: Node) {
+    pub fn set(&mut self, key: &str, node: DocumentNode) {
         match self.get_mut(key) {
             Some(present) => *present = node,
             None => {
-                self.entries.push(Entry { key: key.to_owned(), place: node.place.clone(), node })
+                self.entries.push(KeyEntry { key: key.to_owned(), place: node.place.clone(), node })
             }
         }
     }
@@ -92,11 +92,11 @@ impl Table {
     }
 
     /// Value at a dotted path.
-    pub fn at(&self, path: &str) -> Option<&Node> {
+    pub fn at(&self, path: &str) -> Option<&DocumentNode> {
         let (first, rest) = path.split_once('.').map_or((path, None), |(a, b)| (a, Some(b)));
         match (self.get(first)?, rest) {
             (node, None) => Some(node),
-            (Node { value: Value::Table(table), .. }, Some(rest)) => table.at(rest),
+            (DocumentNode { value: DocumentValue::Table(table), .. }, Some(rest)) => table.at(rest),
             _ => None,
         }
     }
@@ -106,7 +106,7 @@ impl Table {
         match path.split_once('.') {
             None => self.remove(path),
             Some((first, rest)) => {
-                if let Some(Node { value: Value::Table(table), .. }) = self.get_mut(first) {
+                if let Some(DocumentNode { value: DocumentValue::Table(table), .. }) = self.get_mut(first) {
                     table.remove_at(rest);
                 }
             }
@@ -115,20 +115,20 @@ impl Table {
 
     /// Sets the value at a dotted path and makes missing tables. A value in the way that is not a table
     /// is replaced by one.
-    pub fn set_at(&mut self, path: &str, node: Node) {
+    pub fn set_at(&mut self, path: &str, node: DocumentNode) {
         let Some((first, rest)) = path.split_once('.') else { return self.set(path, node) };
-        if !matches!(self.get(first), Some(Node { value: Value::Table(_), .. })) {
+        if !matches!(self.get(first), Some(DocumentNode { value: DocumentValue::Table(_), .. })) {
             let place = node.place.clone();
-            self.set(first, Node { value: Value::Table(Self::default()), place });
+            self.set(first, DocumentNode { value: DocumentValue::Table(Self::default()), place });
         }
-        if let Some(Node { value: Value::Table(table), .. }) = self.get_mut(first) {
+        if let Some(DocumentNode { value: DocumentValue::Table(table), .. }) = self.get_mut(first) {
             table.set_at(rest, node);
         }
     }
 }
 
 /// Parses TOML text.
-pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
+pub fn parse(text: &str) -> Result<DocumentTable, Vec<Problem>> {
     let lines = Lines::new(text);
     match DeTable::parse(text) {
         Ok(table) => {
@@ -149,7 +149,7 @@ const NAMES: [&str; 6] = ["title", "id", "name", "label", "serial", "certificate
 
 /// Finds control characters in texts and keys, which a terminal would execute and other file formats
 /// can't hold. A text that isn't a name may have line breaks and tabs.
-fn controls(table: &Table, path: &str) -> Vec<Problem> {
+fn controls(table: &DocumentTable, path: &str) -> Vec<Problem> {
     let mut found = Vec::new();
     for entry in &table.entries {
         let path =
@@ -163,16 +163,16 @@ fn controls(table: &Table, path: &str) -> Vec<Problem> {
     found
 }
 
-fn controls_of(node: &Node, path: &str, is_name: bool, found: &mut Vec<Problem>) {
+fn controls_of(node: &DocumentNode, path: &str, is_name: bool, found: &mut Vec<Problem>) {
     match &node.value {
-        Value::Text(text) => {
+        DocumentValue::Text(text) => {
             let c = control(text, is_name);
             found.extend(c.map(|c| problem_of(c, &node.place, path.to_owned())));
         }
-        Value::Array(entries) => {
+        DocumentValue::Array(entries) => {
             entries.iter().for_each(|entry| controls_of(entry, path, is_name, found));
         }
-        Value::Table(table) => found.extend(controls(table, path)),
+        DocumentValue::Table(table) => found.extend(controls(table, path)),
         _ => {}
     }
 }
@@ -191,7 +191,7 @@ fn control(text: &str, is_name: bool) -> Option<char> {
 }
 
 /// First problem of a control character in the value of an argument.
-pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
+pub fn controls_of_argument(path: &str, node: &DocumentNode) -> Option<Problem> {
     let mut found = Vec::new();
     let name = path.rsplit('.').next().unwrap_or(path);
     controls_of(node, &path.escape_debug().to_string(), NAMES.contains(&name), &mut found);
@@ -199,40 +199,40 @@ pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
 }
 
 /// Parses the value of a `--set KEY=VALUE`: TOML, or a text without quotes.
-pub fn parse_argument(value: &str, argument: &str) -> Node {
+pub fn parse_argument(value: &str, argument: &str) -> DocumentNode {
     let place = Place::Argument(argument.to_owned());
     let value = value.trim();
     let node = match parse_value(value) {
         Some(node) => node,
-        None => Node { value: Value::Text(value.to_owned()), place: place.clone() },
+        None => DocumentNode { value: DocumentValue::Text(value.to_owned()), place: place.clone() },
     };
     replace_places(node, &place)
 }
 
 /// Parses a default of the key table.
-pub fn parse_default(value: &str) -> Node {
-    let text = Value::Text(value.to_owned());
-    let node = parse_value(value).unwrap_or(Node { value: text, place: Place::Default });
+pub fn parse_default(value: &str) -> DocumentNode {
+    let text = DocumentValue::Text(value.to_owned());
+    let node = parse_value(value).unwrap_or(DocumentNode { value: text, place: Place::Default });
     replace_places(node, &Place::Default)
 }
 
-fn parse_value(value: &str) -> Option<Node> {
+fn parse_value(value: &str) -> Option<DocumentNode> {
     // A line break would allow further keys.
     let table = (!value.contains('\n')).then(|| parse(&format!("x = {value}")).ok())??;
     table.entries.into_iter().next().map(|entry| entry.node)
 }
 
-fn replace_places(mut node: Node, place: &Place) -> Node {
+fn replace_places(mut node: DocumentNode, place: &Place) -> DocumentNode {
     node.place = place.clone();
     node.value = match node.value {
-        Value::Array(entries) => {
-            Value::Array(entries.into_iter().map(|n| replace_places(n, place)).collect())
+        DocumentValue::Array(entries) => {
+            DocumentValue::Array(entries.into_iter().map(|n| replace_places(n, place)).collect())
         }
-        Value::Table(table) => Value::Table(Table {
+        DocumentValue::Table(table) => DocumentValue::Table(DocumentTable {
             entries: table
                 .entries
                 .into_iter()
-                .map(|entry| Entry {
+                .map(|entry| KeyEntry {
                     key: entry.key,
                     place: place.clone(),
                     node: replace_places(entry.node, place),
@@ -265,12 +265,12 @@ impl<'a> Lines<'a> {
         Place::File { line, column: before.chars().count() + 1 }
     }
 
-    fn table(&self, table: DeTable<'_>) -> Table {
-        let mut entries: Vec<(usize, Entry)> = table
+    fn table(&self, table: DeTable<'_>) -> DocumentTable {
+        let mut entries: Vec<(usize, KeyEntry)> = table
             .into_iter()
             .map(|(key, value)| {
                 let at = key.span().start;
-                let entry = Entry {
+                let entry = KeyEntry {
                     key: key.into_inner().into_owned(),
                     place: self.place(at),
                     node: self.node(value),
@@ -280,42 +280,42 @@ impl<'a> Lines<'a> {
             .collect();
         // Sorted in the order of writing, so that problems are reported in that order.
         entries.sort_by_key(|(at, _)| *at);
-        Table { entries: entries.into_iter().map(|(_, entry)| entry).collect() }
+        DocumentTable { entries: entries.into_iter().map(|(_, entry)| entry).collect() }
     }
 
-    fn node(&self, value: toml::Spanned<DeValue<'_>>) -> Node {
+    fn node(&self, value: toml::Spanned<DeValue<'_>>) -> DocumentNode {
         let place = self.place(value.span().start);
         let value = match value.into_inner() {
-            DeValue::String(text) => Value::Text(text.into_owned()),
+            DeValue::String(text) => DocumentValue::Text(text.into_owned()),
             DeValue::Integer(number) => {
                 match i64::from_str_radix(number.as_str(), number.radix()) {
-                    Ok(integer) => Value::Integer(integer),
+                    Ok(integer) => DocumentValue::Integer(integer),
                     // Beyond 64 bits the number becomes a float, which every key for integers refuses.
-                    Err(_) => Value::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
+                    Err(_) => DocumentValue::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
                 }
             }
             // `nan`, `inf` and invalid numbers all become not finite, which every key refuses.
-            DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
-            DeValue::Boolean(value) => Value::Boolean(value),
-            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Float(number) => DocumentValue::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(value) => DocumentValue::Boolean(value),
+            DeValue::Datetime(date) => DocumentValue::Date(date.to_string()),
             DeValue::Array(entries) => {
-                Value::Array(entries.into_iter().map(|entry| self.node(entry)).collect())
+                DocumentValue::Array(entries.into_iter().map(|entry| self.node(entry)).collect())
             }
-            DeValue::Table(table) => Value::Table(self.table(table)),
+            DeValue::Table(table) => DocumentValue::Table(self.table(table)),
         };
-        Node { value, place }
+        DocumentNode { value, place }
     }
 }
 
 /// Writes a value on one line.
-pub fn write_value(value: &Value, out: &mut String) {
+pub fn write_value(value: &DocumentValue, out: &mut String) {
     match value {
-        Value::Text(text) => write_quoted(text, out),
-        Value::Integer(number) => _ = write!(out, "{number}"),
-        Value::Number(number) => _ = write!(out, "{number:?}"),
-        Value::Boolean(value) => _ = write!(out, "{value}"),
-        Value::Date(text) => out.push_str(text),
-        Value::Array(entries) => {
+        DocumentValue::Text(text) => write_quoted(text, out),
+        DocumentValue::Integer(number) => _ = write!(out, "{number}"),
+        DocumentValue::Number(number) => _ = write!(out, "{number:?}"),
+        DocumentValue::Boolean(value) => _ = write!(out, "{value}"),
+        DocumentValue::Date(text) => out.push_str(text),
+        DocumentValue::Array(entries) => {
             out.push('[');
             for (index, entry) in entries.iter().enumerate() {
                 if index > 0 {
@@ -325,7 +325,7 @@ pub fn write_value(value: &Value, out: &mut String) {
             }
             out.push(']');
         }
-        Value::Table(table) => {
+        DocumentValue::Table(table) => {
             out.push_str("{ ");
             for (index, entry) in table.entries.iter().enumerate() {
                 if index > 0 {
@@ -357,24 +357,24 @@ fn write_key(key: &str, out: &mut String) {
 }
 
 /// Converts a value to JSON.
-pub fn json(value: &Value) -> serde_json::Value {
+pub fn json(value: &DocumentValue) -> serde_json::Value {
     match value {
-        Value::Text(text) | Value::Date(text) => serde_json::Value::from(text.as_str()),
-        Value::Integer(number) => serde_json::Value::from(*number),
-        Value::Number(number) => serde_json::Value::from(*number),
-        Value::Boolean(value) => serde_json::Value::from(*value),
-        Value::Array(entries) => entries.iter().map(|entry| json(&entry.value)).collect(),
-        Value::Table(table) => {
+        DocumentValue::Text(text) | DocumentValue::Date(text) => serde_json::Value::from(text.as_str()),
+        DocumentValue::Integer(number) => serde_json::Value::from(*number),
+        DocumentValue::Number(number) => serde_json::Value::from(*number),
+        DocumentValue::Boolean(value) => serde_json::Value::from(*value),
+        DocumentValue::Array(entries) => entries.iter().map(|entry| json(&entry.value)).collect(),
+        DocumentValue::Table(table) => {
             table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value))).collect()
         }
     }
 }
 
 /// Value of a plain number, whole or not.
-pub fn number(value: &Value) -> Option<f64> {
+pub fn number(value: &DocumentValue) -> Option<f64> {
     match value {
-        Value::Integer(number) => Some(*number as f64),
-        Value::Number(number) => Some(*number),
+        DocumentValue::Integer(number) => Some(*number as f64),
+        DocumentValue::Number(number) => Some(*number),
         _ => None,
     }
 }

@@ -31,14 +31,14 @@ pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use model::{
-    Alignment, Calibration, Code, Component, Distribution, Dockside, Drive, Endpoint, Fault,
+    AlignmentSpec, CalibrationSpec, Code, MotionComponent, ParameterDistribution, DocksideSpec, Drive, EndpointSpec, Fault,
     FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made, Mapped, Messages,
-    Method, Motion, Port, Process, Realtime, Record, Requirement, Scenario, Set, Setting,
-    ShipSpectrum, Source, Speaks, UnknownFault, Written,
+    Method, MotionSpec, ChannelElement, Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting,
+    ShipSpectrum, SourceSpec, Speaks, UnknownFault, EntryPlace,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
-pub use quantity::{Dimension, Quantity};
+pub use quantity::{UnitDimension, Quantity};
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};

@@ -4,9 +4,9 @@
 //! `{ constant = "90 deg" }`; a channel of several elements takes an array of them, or the name of
 //! an array variable.
 
-use super::document::{Node, Table, Value, join, number, parse_argument};
+use super::document::{DocumentNode, DocumentTable, DocumentValue, join, number, parse_argument};
 use super::error::{Place, Problem};
-use super::model::{Code, Made, Port, Set, Setting, Written};
+use super::model::{Code, Made, ChannelElement, Set, Setting, EntryPlace};
 use super::quantity::{self, explain};
 use crate::channel::{Channel, Class};
 use octant_base::names::suggestion;
@@ -31,9 +31,9 @@ pub(super) fn example_port(channel: &Channel) -> String {
 }
 
 /// Reads the ports of a channel: one for all elements, or one for each.
-pub(super) fn ports(node: &Node, channel: &Channel, path: &str) -> Result<Vec<Port>, Problem> {
-    let at = |node: &Node, path: &str| Written { place: node.place.clone(), path: path.to_owned() };
-    let Value::Array(entries) = &node.value else {
+pub(super) fn ports(node: &DocumentNode, channel: &Channel, path: &str) -> Result<Vec<ChannelElement>, Problem> {
+    let at = |node: &DocumentNode, path: &str| EntryPlace { place: node.place.clone(), path: path.to_owned() };
+    let DocumentValue::Array(entries) = &node.value else {
         return Ok(vec![port(node, channel, at(node, path))?]);
     };
     if entries.len() != channel.elements {
@@ -43,18 +43,18 @@ pub(super) fn ports(node: &Node, channel: &Channel, path: &str) -> Result<Vec<Po
             expected_port(channel)
         )));
     }
-    let each = |(index, entry): (usize, &Node)| {
+    let each = |(index, entry): (usize, &DocumentNode)| {
         port(entry, channel, at(entry, &format!("{path}[{index}]")))
     };
     entries.iter().enumerate().map(each).collect()
 }
 
-fn port(node: &Node, channel: &Channel, at: Written) -> Result<Port, Problem> {
+fn port(node: &DocumentNode, channel: &Channel, at: EntryPlace) -> Result<ChannelElement, Problem> {
     let what = match &node.value {
-        Value::Text(name) if !name.trim().is_empty() => {
+        DocumentValue::Text(name) if !name.trim().is_empty() => {
             Made::Variable { name: name.clone(), unit: None, scale: 1.0 }
         }
-        Value::Table(table) => made(table, channel, &at)?,
+        DocumentValue::Table(table) => made(table, channel, &at)?,
         other => {
             return Err(at.problem(format!(
                 "found {}, expected {}",
@@ -63,32 +63,32 @@ fn port(node: &Node, channel: &Channel, at: Written) -> Result<Port, Problem> {
             )));
         }
     };
-    Ok(Port { what, at })
+    Ok(ChannelElement { what, at })
 }
 
-fn made(table: &Table, channel: &Channel, at: &Written) -> Result<Made, Problem> {
+fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Made, Problem> {
     let known = ["variable", "unit", "scale", "constant"];
     for entry in &table.entries {
         if !known.contains(&entry.key.as_str()) {
             let known = suggestion(&entry.key, known.into_iter(), "known here");
             let path = join(&at.path, &entry.key);
-            let at = Written { place: entry.place.clone(), path };
+            let at = EntryPlace { place: entry.place.clone(), path };
             return Err(at.problem(format!("unknown key, {known}")));
         }
     }
-    let wrong = |key: &str, node: &Node, expected: &str| {
-        let at = Written { place: node.place.clone(), path: join(&at.path, key) };
+    let wrong = |key: &str, node: &DocumentNode, expected: &str| {
+        let at = EntryPlace { place: node.place.clone(), path: join(&at.path, key) };
         at.problem(format!("found {}, expected {expected}", node.value.describe()))
     };
     match (table.get("variable"), table.get("constant")) {
         (Some(node), None) => {
-            let Value::Text(name) = &node.value else {
+            let DocumentValue::Text(name) = &node.value else {
                 return Err(wrong("variable", node, "the name of a variable"));
             };
             let unit = match table.get("unit") {
                 None => None,
                 Some(node) => match (&node.value, channel.class) {
-                    (Value::Text(unit), Class::Quantity(dimension)) => {
+                    (DocumentValue::Text(unit), Class::Quantity(dimension)) => {
                         constant(&format!("1 {unit}"), dimension)
                             .map_err(|expected| wrong("unit", node, &expected))?;
                         Some(unit.clone())
@@ -100,8 +100,8 @@ fn made(table: &Table, channel: &Channel, at: &Written) -> Result<Made, Problem>
                             &format!("a unit such as {:?}", dimension.unit),
                         ));
                     }
-                    (Value::Text(unit), Class::Nanoseconds) => {
-                        constant(&format!("1 {unit}"), quantity::Dimension::TIME)
+                    (DocumentValue::Text(unit), Class::Nanoseconds) => {
+                        constant(&format!("1 {unit}"), quantity::UnitDimension::TIME)
                             .map_err(|expected| wrong("unit", node, &expected))?;
                         Some(unit.clone())
                     }
@@ -123,13 +123,13 @@ fn made(table: &Table, channel: &Channel, at: &Written) -> Result<Made, Problem>
                 );
             }
             let value = match (&node.value, channel.class) {
-                (Value::Text(text), Class::Quantity(dimension)) => constant(text, dimension)
+                (DocumentValue::Text(text), Class::Quantity(dimension)) => constant(text, dimension)
                     .map_err(|expected| wrong("constant", node, &expected))?,
-                (Value::Boolean(value), Class::Flag) => f64::from(u8::from(*value)),
-                (Value::Integer(_) | Value::Number(_), Class::Number) => {
+                (DocumentValue::Boolean(value), Class::Flag) => f64::from(u8::from(*value)),
+                (DocumentValue::Integer(_) | DocumentValue::Number(_), Class::Number) => {
                     number(&node.value).unwrap_or_default()
                 }
-                (Value::Integer(value), Class::Whole | Class::Code | Class::Nanoseconds) => {
+                (DocumentValue::Integer(value), Class::Whole | Class::Code | Class::Nanoseconds) => {
                     *value as f64
                 }
                 (_, Class::Quantity(dimension)) => {
@@ -149,29 +149,29 @@ fn made(table: &Table, channel: &Channel, at: &Written) -> Result<Made, Problem>
 }
 
 /// Parses a quantity of a dimension, SI; the error is the expected form.
-fn constant(text: &str, dimension: quantity::Dimension) -> Result<f64, String> {
+fn constant(text: &str, dimension: quantity::UnitDimension) -> Result<f64, String> {
     let expected = || format!("{} such as {:?}", dimension.name, dimension.example);
     let found = quantity::parse(text).map_err(|e| format!("{} ({})", expected(), explain(&e)))?;
     if found.is(dimension) { Ok(found.si) } else { Err(expected()) }
 }
 
 /// Reads the settings of an FMU. Nested tables are parts of a name.
-pub(super) fn settings(table: &Table, path: &str) -> Result<Vec<Setting>, Problem> {
+pub(super) fn settings(table: &DocumentTable, path: &str) -> Result<Vec<Setting>, Problem> {
     let mut all = Vec::new();
     collect(table, "", path, &mut all)?;
     Ok(all)
 }
 
-fn collect(table: &Table, prefix: &str, path: &str, all: &mut Vec<Setting>) -> Result<(), Problem> {
+fn collect(table: &DocumentTable, prefix: &str, path: &str, all: &mut Vec<Setting>) -> Result<(), Problem> {
     for entry in &table.entries {
         let name = join(prefix, &entry.key);
-        let at = Written { place: entry.node.place.clone(), path: join(path, &entry.key) };
+        let at = EntryPlace { place: entry.node.place.clone(), path: join(path, &entry.key) };
         match &entry.node.value {
-            Value::Table(inner) => {
+            DocumentValue::Table(inner) => {
                 collect(inner, &name, &at.path, all)?;
                 continue;
             }
-            Value::Array(entries) => {
+            DocumentValue::Array(entries) => {
                 let values = entries.iter().map(|entry| set(&entry.value, &at));
                 all.push(Setting { name, values: values.collect::<Result<_, _>>()?, at });
             }
@@ -184,12 +184,12 @@ fn collect(table: &Table, prefix: &str, path: &str, all: &mut Vec<Setting>) -> R
     Ok(())
 }
 
-fn set(value: &Value, at: &Written) -> Result<Set, Problem> {
+fn set(value: &DocumentValue, at: &EntryPlace) -> Result<Set, Problem> {
     match value {
-        Value::Integer(number) => Ok(Set::Number(*number as f64)),
-        Value::Number(number) if number.is_finite() => Ok(Set::Number(*number)),
-        Value::Boolean(flag) => Ok(Set::Flag(*flag)),
-        Value::Text(text) => Ok(Set::Text(text.clone())),
+        DocumentValue::Integer(number) => Ok(Set::Number(*number as f64)),
+        DocumentValue::Number(number) if number.is_finite() => Ok(Set::Number(*number)),
+        DocumentValue::Boolean(flag) => Ok(Set::Flag(*flag)),
+        DocumentValue::Text(text) => Ok(Set::Text(text.clone())),
         other => Err(at.problem(format!(
             "found {}, expected a finite number, true or false, a text, or an array of them",
             other.describe()
@@ -207,7 +207,7 @@ pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
         let message = "expected NAME=VALUE, such as ship.mass=3.2e6".to_owned();
         return Err(Problem { place, path: String::new(), message });
     };
-    let mut table = Table::default();
+    let mut table = DocumentTable::default();
     table.set(name.trim(), parse_argument(value, argument));
     let mut all = settings(&table, "")?;
     match (all.pop(), all.is_empty()) {
@@ -220,14 +220,14 @@ pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
 }
 
 /// Reads the values that stand for a mode; `None` if one is invalid.
-pub(super) fn codes(value: &Value) -> Option<Vec<Code>> {
-    let one = |value: &Value| match value {
-        Value::Integer(number) => Some(Code::Number(*number)),
-        Value::Text(name) => Some(Code::Name(name.clone())),
+pub(super) fn codes(value: &DocumentValue) -> Option<Vec<Code>> {
+    let one = |value: &DocumentValue| match value {
+        DocumentValue::Integer(number) => Some(Code::Number(*number)),
+        DocumentValue::Text(name) => Some(Code::Name(name.clone())),
         _ => None,
     };
     match value {
-        Value::Array(entries) => entries.iter().map(|entry| one(&entry.value)).collect(),
+        DocumentValue::Array(entries) => entries.iter().map(|entry| one(&entry.value)).collect(),
         value => one(value).map(|code| vec![code]),
     }
 }
@@ -238,7 +238,7 @@ mod tests {
     use crate::channel::{answer, sample};
     use crate::document;
 
-    fn node(text: &str) -> Node {
+    fn node(text: &str) -> DocumentNode {
         let mut table = document::parse(&format!("x = {text}")).unwrap();
         table.entries.remove(0).node
     }

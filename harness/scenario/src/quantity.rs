@@ -10,7 +10,7 @@ use octant_base::names::nearest;
 
 /// Dimension of a quantity: the powers of its unit, with texts for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dimension {
+pub struct UnitDimension {
     powers: Powers,
     /// Name with its article: `an angular rate`.
     pub name: &'static str,
@@ -28,11 +28,11 @@ const fn dimension(
     example: &'static str,
     unit: &'static str,
     si_unit: &'static str,
-) -> Dimension {
-    Dimension { powers: [m, s, rad, k, samples], name, example, unit, si_unit }
+) -> UnitDimension {
+    UnitDimension { powers: [m, s, rad, k, samples], name, example, unit, si_unit }
 }
 
-impl Dimension {
+impl UnitDimension {
     /// Duration or period.
     pub const TIME: Self = dimension([0, 2, 0, 0, 0], "a time", "12 h", "s", "s");
     /// Number of samples, distinguished from a ratio: `"20 samples"`.
@@ -250,7 +250,7 @@ impl Quantity {
 
     /// True if this is a quantity of the dimension.
     #[must_use]
-    pub fn is(self, dimension: Dimension) -> bool {
+    pub fn is(self, dimension: UnitDimension) -> bool {
         self.powers == dimension.powers
     }
 }
@@ -323,25 +323,25 @@ mod tests {
     #[test]
     fn the_units_of_the_field_have_their_si_values() {
         let cases = [
-            ("0.005 deg/h", 0.005 * units::DEG_PER_HOUR, Dimension::GYRO_BIAS),
-            ("0.005°/h", 0.005 * units::DEG_PER_HOUR, Dimension::GYRO_BIAS),
-            ("12 h", 43200.0, Dimension::TIME),
-            ("200 Hz", 200.0, Dimension::FREQUENCY),
-            ("30.5 deg", 30.5 * units::DEG, Dimension::ANGLE),
-            ("18 arcsec", 18.0 * units::ARCSEC, Dimension::ANGLE),
-            ("18″", 18.0 * units::ARCSEC, Dimension::ANGLE),
-            ("50 ug/sqrt(Hz)", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
-            ("50 µg/√Hz", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
-            ("50 μg/√(Hz)", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
-            ("7e-4 deg/sqrt(h)", 7e-4 * units::DEG_PER_SQRT_HOUR, Dimension::ANGLE_RANDOM_WALK),
-            ("30 ppm", 30.0 * units::PPM, Dimension::RATIO),
-            ("5e-4 deg/h/g", 5e-4 * units::DEG_PER_HOUR_PER_G, Dimension::G_DEPENDENT),
-            ("10 deg/s", 10.0 * units::DEG, Dimension::ANGULAR_RATE),
-            ("10 deg/s^2", 10.0 * units::DEG, Dimension::ANGULAR_ACCELERATION),
-            ("10 °/s²", 10.0 * units::DEG, Dimension::ANGULAR_ACCELERATION),
-            ("1 mm/s", 1e-3, Dimension::VELOCITY),
-            ("2.4 m/s^2", 2.4, Dimension::ACCELERATION),
-            ("40 g", 40.0 * units::STANDARD_GRAVITY_MPS2, Dimension::ACCELERATION),
+            ("0.005 deg/h", 0.005 * units::DEG_PER_HOUR, UnitDimension::GYRO_BIAS),
+            ("0.005°/h", 0.005 * units::DEG_PER_HOUR, UnitDimension::GYRO_BIAS),
+            ("12 h", 43200.0, UnitDimension::TIME),
+            ("200 Hz", 200.0, UnitDimension::FREQUENCY),
+            ("30.5 deg", 30.5 * units::DEG, UnitDimension::ANGLE),
+            ("18 arcsec", 18.0 * units::ARCSEC, UnitDimension::ANGLE),
+            ("18″", 18.0 * units::ARCSEC, UnitDimension::ANGLE),
+            ("50 ug/sqrt(Hz)", 50.0 * units::MICRO_G, UnitDimension::VELOCITY_RANDOM_WALK),
+            ("50 µg/√Hz", 50.0 * units::MICRO_G, UnitDimension::VELOCITY_RANDOM_WALK),
+            ("50 μg/√(Hz)", 50.0 * units::MICRO_G, UnitDimension::VELOCITY_RANDOM_WALK),
+            ("7e-4 deg/sqrt(h)", 7e-4 * units::DEG_PER_SQRT_HOUR, UnitDimension::ANGLE_RANDOM_WALK),
+            ("30 ppm", 30.0 * units::PPM, UnitDimension::RATIO),
+            ("5e-4 deg/h/g", 5e-4 * units::DEG_PER_HOUR_PER_G, UnitDimension::G_DEPENDENT),
+            ("10 deg/s", 10.0 * units::DEG, UnitDimension::ANGULAR_RATE),
+            ("10 deg/s^2", 10.0 * units::DEG, UnitDimension::ANGULAR_ACCELERATION),
+            ("10 °/s²", 10.0 * units::DEG, UnitDimension::ANGULAR_ACCELERATION),
+            ("1 mm/s", 1e-3, UnitDimension::VELOCITY),
+            ("2.4 m/s^2", 2.4, UnitDimension::ACCELERATION),
+            ("40 g", 40.0 * units::STANDARD_GRAVITY_MPS2, UnitDimension::ACCELERATION),
         ];
         for (text, si, dimension) in cases {
             let quantity = parse(text).unwrap();
@@ -372,9 +372,9 @@ mod tests {
             value in prop::num::f64::NORMAL.prop_filter("of instruments", |v| {
                 (1e-25..1e25).contains(&v.abs())
             }),
-            index in 0..Dimension::ALL.len(),
+            index in 0..UnitDimension::ALL.len(),
         ) {
-            let dimension = Dimension::ALL[index];
+            let dimension = UnitDimension::ALL[index];
             let text = dimension.write(value);
             let parsed = parse(&text).unwrap();
             prop_assert!(parsed.is(dimension), "{text}");
@@ -385,8 +385,8 @@ mod tests {
     #[test]
     fn round_numbers_are_written_round() {
         let bias = parse("0.005 deg/h").unwrap().si;
-        assert_eq!(Dimension::GYRO_BIAS.write(bias), "0.005 deg/h");
-        assert_eq!(Dimension::SMALL_ANGLE.write(parse("40 arcsec").unwrap().si), "40 arcsec");
-        assert_eq!(Dimension::TIME.write(0.0), "0 s");
+        assert_eq!(UnitDimension::GYRO_BIAS.write(bias), "0.005 deg/h");
+        assert_eq!(UnitDimension::SMALL_ANGLE.write(parse("40 arcsec").unwrap().si), "40 arcsec");
+        assert_eq!(UnitDimension::TIME.write(0.0), "0 s");
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Quantity of a file's inertial columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quantity {
+pub enum RecordedQuantity {
     /// Angular rate, rad/s, and specific force, m/s², taken as constant over the interval that ends at
     /// the stamp.
     #[default]
@@ -18,7 +18,7 @@ pub const SPLIT_MAX: u32 = 1000;
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Column {
+pub enum RecordedColumn {
     /// Number, from 1.
     Number(usize),
     /// Name in the header line.
@@ -27,9 +27,9 @@ pub enum Column {
 
 /// A column with its conversion to SI: `(value − offset) · scale`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct AxisColumn {
     /// Column. The order of the axes assigns columns to body axes.
-    pub column: Column,
+    pub column: RecordedColumn,
     /// Reading of the instrument at zero, in units of the file.
     pub offset: f64,
     /// SI units per unit of the file; negative reverses the axis.
@@ -67,7 +67,7 @@ impl TimeUnit {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimeColumn {
     /// Column.
-    pub column: Column,
+    pub column: RecordedColumn,
     /// Unit.
     pub unit: TimeUnit,
 }
@@ -112,9 +112,9 @@ impl TextFiles {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GimbalColumns {
     /// Inner gimbal, rad after scaling.
-    pub azimuth: Axis,
+    pub azimuth: AxisColumn,
     /// Outer gimbal, rad after scaling.
-    pub roll: Axis,
+    pub roll: AxisColumn,
 }
 
 /// Mapping of text files to samples.
@@ -125,11 +125,11 @@ pub struct TextMapping {
     /// Time; without it the stamps follow from the nominal rate.
     pub time: Option<TimeColumn>,
     /// Gyros of body axes x y z: rad/s (rad, for increments) after scaling.
-    pub gyro: [Axis; 3],
+    pub gyro: [AxisColumn; 3],
     /// Accelerometers of body axes x y z: m/s² (m/s) after scaling.
-    pub accelerometer: [Axis; 3],
+    pub accelerometer: [AxisColumn; 3],
     /// Quantity of these columns.
-    pub quantity: Quantity,
+    pub quantity: RecordedQuantity,
     /// Nominal rate of the rows, Hz: determines the interval of the first row, and all stamps if there
     /// is no time column.
     pub nominal_rate_hz: f64,
@@ -192,7 +192,7 @@ pub struct McapMapping {
     /// Accelerometers x y z of the body: m/s² (m/s) after scaling.
     pub accelerometer: [MappedField; 3],
     /// Quantity of these fields.
-    pub quantity: Quantity,
+    pub quantity: RecordedQuantity,
     /// Stamps.
     pub stamp: MappedStamp,
     /// Nominal rate of the messages, Hz: determines the interval of the first.
@@ -214,7 +214,7 @@ impl McapMapping {
             topic: topic.into(),
             gyro: axes("angular_velocity"),
             accelerometer: axes("linear_acceleration"),
-            quantity: Quantity::Rates,
+            quantity: RecordedQuantity::Rates,
             stamp: MappedStamp::Field {
                 path: "header.stamp.sec".into(),
                 unit: TimeUnit::Second,

@@ -4,7 +4,7 @@
 //! same draws.
 
 use super::model::{
-    Alignment, Distribution, Dockside, MOTIONS, Method, Motion, Scenario, case_attitude,
+    AlignmentSpec, ParameterDistribution, DocksideSpec, MOTIONS, Method, MotionSpec, Scenario, case_attitude,
 };
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
@@ -12,12 +12,12 @@ use octant_plant::sea::Spectrum;
 use octant_plant::{config as plant, draw};
 use octant_sample::Parameters;
 #[cfg(doc)]
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// Source of random values. No value depends on whether another one was drawn.
 pub trait Drawing {
-    /// Draws true parameters from the distribution of each group, in the order of [`Group::ALL`].
-    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters;
+    /// Draws true parameters from the distribution of each group, in the order of [`ParameterGroup::ALL`].
+    fn parameters(&self, distributions: &[ParameterDistribution; 7]) -> Parameters;
     /// Draws attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad)
     /// and velocity (m/s).
     fn alignment_error(
@@ -37,7 +37,7 @@ pub trait Drawing {
 pub struct Seeded(pub u64);
 
 impl Drawing for Seeded {
-    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters {
+    fn parameters(&self, distributions: &[ParameterDistribution; 7]) -> Parameters {
         let [bias, scale, misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment] =
             distributions;
         let draws = draw::ParameterDraws {
@@ -74,11 +74,11 @@ impl Drawing for Seeded {
 
 /// Distribution of the plant for a group of N. The check of the scenario has counted the values; the
 /// plant would refuse a missing one as not finite.
-fn of_group<const N: usize>(distribution: &Distribution) -> draw::Draw<N> {
+fn of_group<const N: usize>(distribution: &ParameterDistribution) -> draw::Draw<N> {
     match distribution {
-        Distribution::Normal(sigma) => draw::Draw::Normal { sigma: *sigma },
-        Distribution::Uniform(half_width) => draw::Draw::Uniform { half_width: *half_width },
-        Distribution::Constant(values) => draw::Draw::Constant(std::array::from_fn(|index| {
+        ParameterDistribution::Normal(sigma) => draw::Draw::Normal { sigma: *sigma },
+        ParameterDistribution::Uniform(half_width) => draw::Draw::Uniform { half_width: *half_width },
+        ParameterDistribution::Constant(values) => draw::Draw::Constant(std::array::from_fn(|index| {
             values.get(index).copied().unwrap_or(f64::NAN)
         })),
     }
@@ -86,7 +86,7 @@ fn of_group<const N: usize>(distribution: &Distribution) -> draw::Draw<N> {
 
 /// Values drawn from the seed before a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Draws {
+pub struct DrawnValues {
     /// True parameters.
     pub parameters: Parameters,
     /// Roll, pitch, yaw, surge, sway, heave of the ship: components with their phases, then those of
@@ -98,18 +98,18 @@ pub struct Draws {
     pub velocity_error_mps: [f64; 3],
 }
 
-impl Draws {
+impl DrawnValues {
     /// Draws the values that the scenario leaves open, and takes the given ones.
     pub fn of(scenario: &Scenario, drawing: &impl Drawing) -> Self {
         let mut motion: [Vec<plant::Sinusoid>; 6] = Default::default();
-        if let Motion::Dockside(ship) = &scenario.motion {
+        if let MotionSpec::Dockside(ship) = &scenario.motion {
             for (index, name) in MOTIONS.into_iter().enumerate() {
                 motion[index] = sinusoids(ship, index, name, drawing);
             }
         }
         let (attitude_error_rad, velocity_error_mps) = match scenario.alignment {
-            Alignment::Coarse { .. } => ([0.0; 3], [0.0; 3]),
-            Alignment::Given {
+            AlignmentSpec::Coarse { .. } => ([0.0; 3], [0.0; 3]),
+            AlignmentSpec::Given {
                 tilt_rad,
                 azimuth_rad,
                 velocity_mps,
@@ -131,7 +131,7 @@ impl Draws {
 
 /// Sinusoids of one of a ship's motions.
 fn sinusoids(
-    ship: &Dockside,
+    ship: &DocksideSpec,
     index: usize,
     name: &str,
     drawing: &impl Drawing,
@@ -156,8 +156,8 @@ fn sinusoids(
 impl Scenario {
     /// Configuration of the plant.
     #[must_use]
-    pub fn plant(&self, seed: u64, draws: &Draws) -> plant::Config {
-        plant::Config {
+    pub fn plant(&self, seed: u64, draws: &DrawnValues) -> plant::PlantConfig {
+        plant::PlantConfig {
             sample_period_ns: self.sample_period_ns,
             seed,
             calibration_samples: self.calibration_samples(),
@@ -169,10 +169,10 @@ impl Scenario {
         }
     }
 
-    fn plant_motion(&self, draws: &Draws) -> plant::Motion {
+    fn plant_motion(&self, draws: &DrawnValues) -> plant::Motion {
         let ship = match &self.motion {
-            Motion::Static(mean) => return plant::Motion::Static(*mean),
-            Motion::Dockside(ship) => ship,
+            MotionSpec::Static(mean) => return plant::Motion::Static(*mean),
+            MotionSpec::Dockside(ship) => ship,
         };
         let [roll, pitch, yaw, surge, sway, heave] = draws.motion.clone();
         let (mean, mooring_offset_m) = (ship.mean, ship.mooring_offset_m);
@@ -196,15 +196,15 @@ impl Scenario {
     pub fn core(
         &self,
         method: Method,
-        draws: &Draws,
+        draws: &DrawnValues,
         true_q_nb: &UnitQuaternion<f64>,
         true_velocity_mps: &Vector3<f64>,
-    ) -> Option<core::Config> {
+    ) -> Option<core::CoreConfig> {
         let calibration = match method {
             Method::Primary => self.calibration.as_ref(),
             Method::Baseline => Some(self.baseline.as_ref()?),
         };
-        Some(core::Config {
+        Some(core::CoreConfig {
             sample_period_ns: self.sample_period_ns,
             site: core::Site {
                 latitude_rad: self.site.latitude_rad,
@@ -212,8 +212,8 @@ impl Scenario {
                 height_m: self.site.height_m,
             },
             alignment: match self.alignment {
-                Alignment::Coarse { duration_s } => core::Alignment::Coarse { duration_s },
-                Alignment::Given { .. } => core::Alignment::Given {
+                AlignmentSpec::Coarse { duration_s } => core::Alignment::Coarse { duration_s },
+                AlignmentSpec::Given { .. } => core::Alignment::Given {
                     q_nb: with_error(true_q_nb, draws.attitude_error_rad),
                     velocity_mps: true_velocity_mps + Vector3::from(draws.velocity_error_mps),
                 },
@@ -239,7 +239,7 @@ impl Scenario {
 
     /// Screening with its bounds: motion of the base, noise of the encoders, resolution of the
     /// increments, vibration.
-    fn screening_for(&self, draws: &Draws) -> core::Screening {
+    fn screening_for(&self, draws: &DrawnValues) -> core::Screening {
         let extensions = &self.imu.extensions;
         let vibration = extensions.vibration.map_or((0.0, 0.0), |vibration| {
             // Two increments differ by at most four amplitudes of the angle, and of the velocity;
@@ -266,8 +266,8 @@ impl Scenario {
     #[must_use]
     pub fn mean_attitude(&self) -> UnitQuaternion<f64> {
         match &self.motion {
-            Motion::Static(mean) => case_attitude(mean),
-            Motion::Dockside(ship) => case_attitude(&ship.mean),
+            MotionSpec::Static(mean) => case_attitude(mean),
+            MotionSpec::Dockside(ship) => case_attitude(&ship.mean),
         }
     }
 }
@@ -303,15 +303,15 @@ mod tests {
     use super::*;
     use octant_earth::{Matrix3, frames, units::DEG};
 
-    fn drawn(text: &str) -> Draws {
+    fn drawn(text: &str) -> DrawnValues {
         let text = format!("schema = 1\n[procedure.calibration]\n{text}");
         let scenario = Scenario::parse(&text, "f", std::path::Path::new(""), &[]).unwrap();
-        Draws::of(&scenario, &Seeded(7))
+        DrawnValues::of(&scenario, &Seeded(7))
     }
 
     #[test]
     fn a_changed_distribution_moves_no_other_draw() {
-        use octant_sample::parameters::Group;
+        use octant_sample::parameters::ParameterGroup;
         let ship = "[motion]\nkind = \"dockside\"\n[motion.ship]\n\
                     roll = [{ amplitude = \"1 deg\", period = \"8 s\" }]\n";
         let all = drawn(ship);
@@ -324,14 +324,14 @@ mod tests {
             "normal = \"1 ppm\"",
             "normal = \"1 arcsec\"",
         ];
-        for (group, change) in Group::ALL.into_iter().zip(changes) {
+        for (group, change) in ParameterGroup::ALL.into_iter().zip(changes) {
             let other = drawn(&format!("{ship}[imu.{}]\n{change}\n", group.name()));
             let [before, after] = [&all, &other].map(|draws| draws.parameters.to_array());
             for index in 0..before.len() {
                 let moved = before[index] != after[index];
                 assert_eq!(moved, group.range().contains(&index), "{change}: {index}");
             }
-            assert_eq!(Draws { parameters: all.parameters, ..other }, all, "{change}");
+            assert_eq!(DrawnValues { parameters: all.parameters, ..other }, all, "{change}");
         }
         // A spectrum beside a component, or another alignment, doesn't change other draws either.
         let spectrum = "spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n";

@@ -2,8 +2,8 @@
 
 use super::complete::expected;
 use super::document::parse_default;
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
-use super::quantity::Dimension;
+use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, SCENARIO, SCHEMA, Section, Variants};
+use super::quantity::UnitDimension;
 use crate::channel::Channel;
 use serde_json::{Map, Value, json};
 
@@ -23,7 +23,7 @@ pub fn schema() -> Value {
 }
 
 fn object(section: &Section) -> Value {
-    let possible = || section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_)));
+    let possible = || section.keys.iter().filter(|key| !matches!(key.kind, KeyKind::Refused(_)));
     let properties: Map<String, Value> =
         possible().map(|key| (key.name.to_owned(), property(key))).collect();
     let required: Vec<&str> = possible()
@@ -45,7 +45,7 @@ fn object(section: &Section) -> Value {
     object
 }
 
-fn property(key: &Key) -> Value {
+fn property(key: &KeyDefinition) -> Value {
     let mut property = kind(&key.kind);
     let mut description = format!("{} Takes {}.", key.doc, expected(&key.kind));
     match key.default {
@@ -61,77 +61,77 @@ fn property(key: &Key) -> Value {
     property
 }
 
-fn kind(kind: &Kind) -> Value {
+fn kind(kind: &KeyKind) -> Value {
     match kind {
-        Kind::Text => json!({ "type": "string" }),
-        Kind::Uri(schemes) => {
+        KeyKind::Text => json!({ "type": "string" }),
+        KeyKind::Uri(schemes) => {
             let names: Vec<&str> = schemes.iter().map(|(name, _)| *name).collect();
             json!({ "type": "string", "pattern": format!("^({})(:.+)?$", names.join("|")) })
         }
-        Kind::Choice(choices) => {
+        KeyKind::Choice(choices) => {
             json!({ "enum": choices.iter().map(|(name, _)| *name).collect::<Vec<_>>() })
         }
-        Kind::Choices(choices) => json!({ "type": "array", "items": { "enum": choices } }),
-        Kind::Boolean => json!({ "type": "boolean" }),
-        Kind::Integer(from, to) => {
+        KeyKind::Choices(choices) => json!({ "type": "array", "items": { "enum": choices } }),
+        KeyKind::Boolean => json!({ "type": "boolean" }),
+        KeyKind::Integer(from, to) => {
             json!({ "type": "integer", "minimum": from, "maximum": to })
         }
-        Kind::Number(bounds) => match bounds {
+        KeyKind::Number(bounds) => match bounds {
             // Bounds that schemas of numbers can't express briefly are left to the program.
-            Bounds::Any | Bounds::NotZero => json!({ "type": "number" }),
-            Bounds::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-            Bounds::NotNegative => json!({ "type": "number", "minimum": 0 }),
-            Bounds::Within(from, to, _) => {
+            KeyBounds::Any | KeyBounds::NotZero => json!({ "type": "number" }),
+            KeyBounds::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+            KeyBounds::NotNegative => json!({ "type": "number", "minimum": 0 }),
+            KeyBounds::Within(from, to, _) => {
                 json!({ "type": "number", "minimum": from, "maximum": to })
             }
         },
-        Kind::Numbers(count) => {
+        KeyKind::Numbers(count) => {
             json!({ "type": "array", "items": { "type": "number" }, "minItems": count, "maxItems": count })
         }
-        Kind::Quantity(dimensions, _) => quantity(dimensions),
-        Kind::Quantities(dimension, count) => {
+        KeyKind::Quantity(dimensions, _) => quantity(dimensions),
+        KeyKind::Quantities(dimension, count) => {
             let items = quantity(&[*dimension]);
             json!({ "type": "array", "items": items, "minItems": count, "maxItems": count })
         }
-        Kind::Vector(dimensions) => {
+        KeyKind::Vector(dimensions) => {
             json!({ "type": "array", "items": quantity(dimensions), "minItems": 3, "maxItems": 3 })
         }
-        Kind::Times => json!({ "type": "array", "items": quantity(&[Dimension::TIME]) }),
-        Kind::Condition => {
+        KeyKind::Times => json!({ "type": "array", "items": quantity(&[UnitDimension::TIME]) }),
+        KeyKind::Condition => {
             json!({ "type": "string", "examples": [crate::condition::EXAMPLE] })
         }
-        Kind::Channels => {
+        KeyKind::Channels => {
             let names = octant_faults::Channels::NAMES.map(|(name, _)| name);
             let one = json!({ "enum": names });
             json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
         }
-        Kind::Limit => json!({ "anyOf": [{ "type": "number" }, quantity(&[])] }),
-        Kind::Column => {
+        KeyKind::Limit => json!({ "anyOf": [{ "type": "number" }, quantity(&[])] }),
+        KeyKind::Column => {
             json!({ "anyOf": [{ "type": "integer", "minimum": 1 }, { "type": "string" }] })
         }
-        Kind::Port(channel) => port(channel),
-        Kind::Settings => json!({ "type": "object" }),
-        Kind::Values => json!({ "type": "array", "minItems": 1 }),
-        Kind::Names => json!({ "type": "array", "items": { "type": "string" } }),
-        Kind::Lists => {
+        KeyKind::Port(channel) => port(channel),
+        KeyKind::Settings => json!({ "type": "object" }),
+        KeyKind::Values => json!({ "type": "array", "minItems": 1 }),
+        KeyKind::Names => json!({ "type": "array", "items": { "type": "string" } }),
+        KeyKind::Lists => {
             let names = json!({ "type": "array", "items": { "type": "string" } });
             json!({ "type": "array", "items": names, "minItems": 1 })
         }
-        Kind::Codes => {
+        KeyKind::Codes => {
             let one = json!({ "anyOf": [{ "type": "integer" }, { "type": "string" }] });
             json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
         }
-        Kind::Table(section) => object(section),
-        Kind::Tables(section, at_least, at_most) => {
+        KeyKind::Table(section) => object(section),
+        KeyKind::Tables(section, at_least, at_most) => {
             json!({ "type": "array", "items": object(section), "minItems": at_least, "maxItems": at_most })
         }
-        Kind::Variants(variants) => one_of(variants),
-        Kind::VariantTables(variants, at_most) => {
+        KeyKind::Variants(variants) => one_of(variants),
+        KeyKind::VariantTables(variants, at_most) => {
             json!({ "type": "array", "items": one_of(variants), "maxItems": at_most })
         }
-        Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() }),
+        KeyKind::Either(kinds) => json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() }),
         // Never used as a property: only the check knows such a key.
-        Kind::Refused(_) => json!(false),
+        KeyKind::Refused(_) => json!(false),
     }
 }
 
@@ -159,7 +159,7 @@ fn port(channel: &Channel) -> Value {
     json!({ "anyOf": [one, each] })
 }
 
-fn quantity(dimensions: &[Dimension]) -> Value {
+fn quantity(dimensions: &[UnitDimension]) -> Value {
     let mut quantity = json!({ "type": "string", "pattern": QUANTITY });
     if !dimensions.is_empty() {
         let examples: Vec<&str> = dimensions.iter().map(|d| d.example).collect();

@@ -17,7 +17,7 @@ use super::complete::complete;
 use super::document;
 use super::error::{Place, Problem, ScenarioError};
 use super::keys::{CaseKeys, Keys, SuiteKeys};
-use super::read::Reader;
+use super::read::TableReader;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
@@ -25,12 +25,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suite {
     /// Cases, in the order of the file.
-    pub cases: Vec<Case>,
+    pub cases: Vec<SuiteCase>,
 }
 
 /// A scenario with its expected result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Case {
+pub struct SuiteCase {
     /// File of the scenario.
     pub scenario: PathBuf,
     /// Expected verdict.
@@ -63,13 +63,13 @@ impl Suite {
         if !problems.is_empty() {
             return Err(with_file(problems));
         }
-        let keys = SuiteKeys::of(&Reader::root(&document));
+        let keys = SuiteKeys::of(&TableReader::root(&document));
         keys.and_then(|keys| cases(keys, folder)).map_err(|problem| with_file(vec![problem]))
     }
 }
 
 fn cases(keys: SuiteKeys, folder: &Path) -> Result<Suite, Problem> {
-    let mut cases: Vec<Case> = Vec::new();
+    let mut cases: Vec<SuiteCase> = Vec::new();
     for CaseKeys { scenario: name, expect, because } in keys.cases {
         let scenario = folder.join(&*name);
         if cases.iter().any(|case| case.scenario == scenario) {
@@ -92,7 +92,7 @@ fn cases(keys: SuiteKeys, folder: &Path) -> Result<Suite, Problem> {
         if let Some(message) = problem {
             return Err(because.problem(message));
         }
-        cases.push(Case { scenario, expect, because: because.value });
+        cases.push(SuiteCase { scenario, expect, because: because.value });
     }
     Ok(Suite { cases })
 }
@@ -117,7 +117,7 @@ pub struct Unexpected {
     pub because: Option<String>,
 }
 
-impl Case {
+impl SuiteCase {
     /// Compares a result with the expected one: the verdict must be equal, and every reason the
     /// expected one.
     ///

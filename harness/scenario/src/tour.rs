@@ -4,9 +4,9 @@
 
 use super::complete::expected;
 use super::document::{join, parse_default, write_value};
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
+use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, SCENARIO, Section};
 use super::ports;
-use super::quantity::{self, Dimension};
+use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
 
 /// Settings of the tour beside the defaults: path and TOML value.
@@ -99,7 +99,7 @@ const EXAMPLES: &[(&str, &str)] = &[
 const SHOWN_FAULT: &str = "spike";
 
 /// Example for the key at a path, as TOML.
-fn example_at(path: &str, kind: &Kind) -> String {
+fn example_at(path: &str, kind: &KeyKind) -> String {
     let own = EXAMPLES.iter().find(|(name, _)| *name == path);
     own.map_or_else(|| example(kind), |(_, text)| (*text).to_owned())
 }
@@ -124,7 +124,7 @@ pub fn tour() -> String {
 
 /// Writes the keys of a table: values first, then tables under their headers.
 fn table(section: &Section, path: &str, open: bool, out: &mut String) {
-    let possible = || section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_)));
+    let possible = || section.keys.iter().filter(|key| !matches!(key.kind, KeyKind::Refused(_)));
     for key in possible().filter(|key| headed(key, path).is_none()) {
         comment(key, out);
         let path = join(path, key.name);
@@ -154,31 +154,31 @@ fn table(section: &Section, path: &str, open: bool, out: &mut String) {
 }
 
 /// Keys of a table with its own header, and whether it is one of an array.
-fn headed(key: &Key, path: &str) -> Option<(&'static Section, bool)> {
+fn headed(key: &KeyDefinition, path: &str) -> Option<(&'static Section, bool)> {
     match &key.kind {
-        Kind::Table(section) if !section.one_of => Some((section, false)),
-        Kind::Tables(section, ..) if path.is_empty() => Some((section, true)),
+        KeyKind::Table(section) if !section.one_of => Some((section, false)),
+        KeyKind::Tables(section, ..) if path.is_empty() => Some((section, true)),
         // A fault has many forms: one of them shows the common keys.
-        Kind::VariantTables(variants, _) => {
+        KeyKind::VariantTables(variants, _) => {
             let (_, section) = (variants.forms)().iter().find(|(name, _)| *name == SHOWN_FAULT)?;
             Some((section, true))
         }
-        Kind::Either(kinds) => kinds.iter().find_map(Kind::section).map(|section| (section, false)),
+        KeyKind::Either(kinds) => kinds.iter().find_map(KeyKind::section).map(|section| (section, false)),
         _ => None,
     }
 }
 
 /// Writes meaning, kind and default of a key as a comment.
-fn comment(key: &Key, out: &mut String) {
+fn comment(key: &KeyDefinition, out: &mut String) {
     let mut text = key.doc.to_owned();
     match &key.kind {
-        Kind::Table(section) if section.one_of => {
+        KeyKind::Table(section) if section.one_of => {
             let each = section.keys.iter().map(|key| {
                 format!("{} = {} ({})", key.name, example(&key.kind), key.doc.trim_end_matches('.'))
             });
             text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
         }
-        Kind::Variants(variants) => {
+        KeyKind::Variants(variants) => {
             let each = (variants.forms)().iter().map(|(_, section)| {
                 let key = &section.keys[0];
                 let doc = key.doc.trim_end_matches('.');
@@ -195,25 +195,25 @@ fn comment(key: &Key, out: &mut String) {
             });
             text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
         }
-        Kind::Choice(choices) | Kind::Uri(choices) => {
+        KeyKind::Choice(choices) | KeyKind::Uri(choices) => {
             let each = choices.iter().map(|(name, doc)| {
                 if doc.is_empty() { format!("{name:?}") } else { format!("{name:?} ({doc})") }
             });
             text += &format!(" {}.", each.collect::<Vec<_>>().join("; "));
         }
-        Kind::Either(kinds) if !kinds.iter().any(|kind| matches!(kind, Kind::Table(_))) => {
+        KeyKind::Either(kinds) if !kinds.iter().any(|kind| matches!(kind, KeyKind::Table(_))) => {
             text += &format!(" Takes {}.", expected(&key.kind));
         }
-        Kind::Either(kinds) => {
-            let texts = kinds.iter().filter(|kind| !matches!(kind, Kind::Table(_)));
+        KeyKind::Either(kinds) => {
+            let texts = kinds.iter().filter(|kind| !matches!(kind, KeyKind::Table(_)));
             let each = texts.map(|kind| format!("{} = {}", key.name, example(kind)));
             text += &format!(" Instead of the table: {}.", each.collect::<Vec<_>>().join(" or "));
         }
-        Kind::Table(_) | Kind::Tables(..) | Kind::VariantTables(..) => {}
+        KeyKind::Table(_) | KeyKind::Tables(..) | KeyKind::VariantTables(..) => {}
         kind => text += &format!(" Takes {}.", expected(kind)),
     }
     match key.default {
-        Default::Value(default) if !matches!(key.kind, Kind::Either(_)) => {
+        Default::Value(default) if !matches!(key.kind, KeyKind::Either(_)) => {
             text += &format!(" Default {}.", written(default));
         }
         Default::Value(_) | Default::Section => {}
@@ -243,49 +243,49 @@ fn written(default: &str) -> String {
 }
 
 /// Example value of a kind, as TOML.
-fn example(kind: &Kind) -> String {
+fn example(kind: &KeyKind) -> String {
     let repeat = |text: &str, count: usize| format!("[{}]", vec![text; count].join(", "));
     match kind {
-        Kind::Text => "\"text\"".to_owned(),
-        Kind::Choice(choices) | Kind::Uri(choices) => format!("{:?}", choices[0].0),
-        Kind::Choices(choices) => format!("[{:?}]", choices[0]),
-        Kind::Boolean => "true".to_owned(),
-        Kind::Integer(from, _) => from.to_string(),
-        Kind::Number(_) => "1.0".to_owned(),
-        Kind::Numbers(count) => repeat("1.0", *count),
-        Kind::Quantity(dimensions, _) => format!("{:?}", dimensions[0].example),
-        Kind::Quantities(dimension, count) => repeat(&format!("{:?}", dimension.example), *count),
-        Kind::Vector(dimensions) => repeat(&format!("{:?}", dimensions[0].example), 3),
-        Kind::Times => "[\"5050 s\"]".to_owned(),
-        Kind::Condition => format!("{:?}", super::condition::EXAMPLE),
-        Kind::Channels => format!("{:?}", octant_faults::Channels::NAMES[0].0),
-        Kind::Limit => "\"20 arcmin\"".to_owned(),
-        Kind::Column => "2".to_owned(),
-        Kind::Port(channel) => ports::example_port(channel),
-        Kind::Settings => r#"{ "ship.mass" = 3.2e6 }"#.to_owned(),
-        Kind::Values => "[1]".to_owned(),
-        Kind::Names => "[]".to_owned(),
-        Kind::Lists => "[[]]".to_owned(),
-        Kind::Codes => "1".to_owned(),
-        Kind::Table(section) | Kind::Tables(section, ..) => {
+        KeyKind::Text => "\"text\"".to_owned(),
+        KeyKind::Choice(choices) | KeyKind::Uri(choices) => format!("{:?}", choices[0].0),
+        KeyKind::Choices(choices) => format!("[{:?}]", choices[0]),
+        KeyKind::Boolean => "true".to_owned(),
+        KeyKind::Integer(from, _) => from.to_string(),
+        KeyKind::Number(_) => "1.0".to_owned(),
+        KeyKind::Numbers(count) => repeat("1.0", *count),
+        KeyKind::Quantity(dimensions, _) => format!("{:?}", dimensions[0].example),
+        KeyKind::Quantities(dimension, count) => repeat(&format!("{:?}", dimension.example), *count),
+        KeyKind::Vector(dimensions) => repeat(&format!("{:?}", dimensions[0].example), 3),
+        KeyKind::Times => "[\"5050 s\"]".to_owned(),
+        KeyKind::Condition => format!("{:?}", super::condition::EXAMPLE),
+        KeyKind::Channels => format!("{:?}", octant_faults::Channels::NAMES[0].0),
+        KeyKind::Limit => "\"20 arcmin\"".to_owned(),
+        KeyKind::Column => "2".to_owned(),
+        KeyKind::Port(channel) => ports::example_port(channel),
+        KeyKind::Settings => r#"{ "ship.mass" = 3.2e6 }"#.to_owned(),
+        KeyKind::Values => "[1]".to_owned(),
+        KeyKind::Names => "[]".to_owned(),
+        KeyKind::Lists => "[[]]".to_owned(),
+        KeyKind::Codes => "1".to_owned(),
+        KeyKind::Table(section) | KeyKind::Tables(section, ..) => {
             let keys = section.keys.iter().take(if section.one_of { 1 } else { usize::MAX });
             let each = keys.map(|key| match key.default {
                 Default::Value(text) => format!("{} = {}", key.name, written(text)),
                 _ => format!("{} = {}", key.name, example(&key.kind)),
             });
             let table = format!("{{ {} }}", each.collect::<Vec<_>>().join(", "));
-            if matches!(kind, Kind::Tables(..)) { format!("[{table}]") } else { table }
+            if matches!(kind, KeyKind::Tables(..)) { format!("[{table}]") } else { table }
         }
-        Kind::Variants(variants) => {
+        KeyKind::Variants(variants) => {
             let (_, section) = &(variants.forms)()[0];
             format!("{{ {} }}", given(section).join(", "))
         }
-        Kind::VariantTables(variants, _) => {
+        KeyKind::VariantTables(variants, _) => {
             let (_, section) = &(variants.forms)()[0];
             format!("[{{ {} }}]", given(section).join(", "))
         }
-        Kind::Either(kinds) => example(&kinds[0]),
-        Kind::Refused(reason) => format!("{reason:?}"),
+        KeyKind::Either(kinds) => example(&kinds[0]),
+        KeyKind::Refused(reason) => format!("{reason:?}"),
     }
 }
 
@@ -306,14 +306,14 @@ const FORM_EXAMPLES: &[(&str, &str)] = &[
 ];
 
 /// Example for a key of a form.
-fn example_in_form(key: &Key) -> String {
+fn example_in_form(key: &KeyDefinition) -> String {
     let own = FORM_EXAMPLES.iter().find(|(name, _)| *name == key.name);
     own.map_or_else(|| example(&key.kind), |(_, text)| (*text).to_owned())
 }
 
 /// Required keys of a table, and those with a default value, as TOML.
 fn given(section: &Section) -> Vec<String> {
-    let line = |key: &Key| match key.default {
+    let line = |key: &KeyDefinition| match key.default {
         Default::Required => Some(format!("{} = {}", key.name, example_in_form(key))),
         Default::Value(text) => Some(format!("{} = {}", key.name, written(text))),
         Default::Derived(_) | Default::Absent(_) | Default::Section => None,
@@ -323,10 +323,10 @@ fn given(section: &Section) -> Vec<String> {
 
 /// Example of a quantity within its bounds: that of the dimension if possible, else one between the
 /// bounds.
-fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
+fn quantity_within(dimension: UnitDimension, bounds: KeyBounds) -> String {
     let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
     match bounds {
-        Bounds::Within(from, to, _) if !example => dimension.write(0.5 * (from + to)),
+        KeyBounds::Within(from, to, _) if !example => dimension.write(0.5 * (from + to)),
         _ => dimension.example.to_owned(),
     }
 }
@@ -339,9 +339,9 @@ fn section_of(kind: &str) -> Option<&'static Section> {
 /// Descriptions of the parameters of a kind of fault, with their bounds.
 #[must_use]
 pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
-    let takes = |key: &'static Key| {
+    let takes = |key: &'static KeyDefinition| {
         let choices = match &key.kind {
-            Kind::Choice(choices) => choices
+            KeyKind::Choice(choices) => choices
                 .iter()
                 .filter(|(_, doc)| !doc.is_empty())
                 .map(|(name, doc)| format!("{name:?}: {doc}"))
@@ -351,7 +351,7 @@ pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
         let more =
             if choices.is_empty() { String::new() } else { format!(" ({})", choices.join("; ")) };
         let bounds = match &key.kind {
-            Kind::Quantity(_, bounds) => format!(", {}", bounds.words()),
+            KeyKind::Quantity(_, bounds) => format!(", {}", bounds.words()),
             _ => String::new(),
         };
         (key.name, format!("{}{bounds}{more}", expected(&key.kind)))
@@ -376,14 +376,14 @@ pub fn fault_example(kind: &str) -> Option<String> {
                 "trigger" => r#"{ at = "100 s" }"#.to_owned(),
                 "connection" => r#""calibrator.gyro.delta_theta[1]""#.to_owned(),
                 _ => match &key.kind {
-                    Kind::Quantity(dimensions, bounds) => {
+                    KeyKind::Quantity(dimensions, bounds) => {
                         format!("{:?}", quantity_within(dimensions[0], *bounds))
                     }
                     kind => example(kind),
                 },
             },
             (None, Default::Absent(_)) if key.name == "duration" => match key.kind {
-                Kind::Refused(_) => continue,
+                KeyKind::Refused(_) => continue,
                 _ => r#""1 s""#.to_owned(),
             },
             (None, Default::Absent(_) | Default::Derived(_) | Default::Section) => continue,
@@ -401,12 +401,12 @@ mod tests {
     use super::*;
 
     /// Collects every path of the table of keys, with its key.
-    fn paths(section: &'static Section, path: &str, all: &mut Vec<(String, &'static Key)>) {
-        for key in section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_))) {
+    fn paths(section: &'static Section, path: &str, all: &mut Vec<(String, &'static KeyDefinition)>) {
+        for key in section.keys.iter().filter(|key| !matches!(key.kind, KeyKind::Refused(_))) {
             let path = join(path, key.name);
             all.push((path.clone(), key));
             let inner = match &key.kind {
-                Kind::Tables(section, ..) => Some(*section),
+                KeyKind::Tables(section, ..) => Some(*section),
                 kind => kind.section(),
             };
             if let Some(section) = inner {

@@ -1,13 +1,13 @@
 //! The resolved scenario, with every default and every drawn value.
 
 use super::derive::without_effect;
-use super::document::{Entry, Node, Table, Value, write_value};
+use super::document::{KeyEntry, DocumentNode, DocumentTable, DocumentValue, write_value};
 use super::error::Place;
-use super::keys::{Kind, SCENARIO, Section};
-use super::model::{Alignment, MOTIONS, Motion, Scenario};
-use super::quantity::Dimension;
-use super::resolve::Draws;
-use octant_sample::parameters::Group;
+use super::keys::{KeyKind, SCENARIO, Section};
+use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
+use super::quantity::UnitDimension;
+use super::resolve::DrawnValues;
+use octant_sample::parameters::ParameterGroup;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -15,38 +15,38 @@ impl Scenario {
     /// Writes the scenario as TOML with every default and every drawn value. Parsed again, with the
     /// same seed, it gives the same run.
     #[must_use]
-    pub fn to_resolved_toml(&self, seed: u64, draws: &Draws) -> String {
+    pub fn to_resolved_toml(&self, seed: u64, draws: &DrawnValues) -> String {
         let mut document = self.document.clone();
         for (path, _) in without_effect(&document) {
             document.remove_at(&path);
         }
-        document.set("seed", node(Value::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
+        document.set("seed", node(DocumentValue::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
         let parameters = draws.parameters.to_array();
-        for group in Group::ALL {
+        for group in ParameterGroup::ALL {
             let values = quantities(dimension_of(group), &parameters[group.range()]);
             let constant = table(vec![("constant", values)]);
             document.set_at(&format!("imu.{}", group.name()), node(constant));
         }
-        if let Motion::Dockside(_) = &self.motion {
+        if let MotionSpec::Dockside(_) = &self.motion {
             document.remove_at("motion.ship.spectrum");
-            document.set_at("motion.ship.preset", node(Value::Text("calm".to_owned())));
+            document.set_at("motion.ship.preset", node(DocumentValue::Text("calm".to_owned())));
             for (index, name) in MOTIONS.into_iter().enumerate() {
-                let amplitude = if index < 3 { Dimension::ANGLE } else { Dimension::LENGTH };
+                let amplitude = if index < 3 { UnitDimension::ANGLE } else { UnitDimension::LENGTH };
                 let component = |sinusoid: &octant_plant::config::Sinusoid| {
                     node(table(vec![
                         ("amplitude", text(amplitude.write(sinusoid.amplitude))),
-                        ("period", text(Dimension::TIME.write(sinusoid.period_s))),
-                        ("phase", text(Dimension::ANGLE.write(sinusoid.phase_rad))),
+                        ("period", text(UnitDimension::TIME.write(sinusoid.period_s))),
+                        ("phase", text(UnitDimension::ANGLE.write(sinusoid.phase_rad))),
                     ]))
                 };
                 let components = draws.motion[index].iter().map(component);
-                let components = Value::Array(components.collect());
+                let components = DocumentValue::Array(components.collect());
                 document.set_at(&format!("motion.ship.{name}"), node(components));
             }
         }
-        if let Alignment::Given { .. } = self.alignment {
-            let attitude = quantities(Dimension::SMALL_ANGLE, &draws.attitude_error_rad);
-            let velocity = quantities(Dimension::VELOCITY, &draws.velocity_error_mps);
+        if let AlignmentSpec::Given { .. } = self.alignment {
+            let attitude = quantities(UnitDimension::SMALL_ANGLE, &draws.attitude_error_rad);
+            let velocity = quantities(UnitDimension::VELOCITY, &draws.velocity_error_mps);
             document.set_at("procedure.alignment.attitude_error", node(attitude));
             document.set_at("procedure.alignment.velocity_error", node(velocity));
         }
@@ -59,7 +59,7 @@ impl Scenario {
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.
-    fn write_files(&self, document: &mut Table) {
+    fn write_files(&self, document: &mut DocumentTable) {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let absolute = |file: &str| {
             if file.starts_with("${") || Path::new(file).is_absolute() {
@@ -77,7 +77,7 @@ impl Scenario {
             "source.live.database",
             "source.live.mapping",
         ] {
-            let Some(Node { value: Value::Text(written), .. }) = document.at(path) else {
+            let Some(DocumentNode { value: DocumentValue::Text(written), .. }) = document.at(path) else {
                 continue;
             };
             let resolved = match (path, written.split_once(':')) {
@@ -95,66 +95,66 @@ impl Scenario {
                 }
                 _ => absolute(written),
             };
-            document.set_at(path, node(Value::Text(resolved)));
+            document.set_at(path, node(DocumentValue::Text(resolved)));
         }
     }
 }
 
 /// Dimension in which a group is written.
-fn dimension_of(group: Group) -> Dimension {
+fn dimension_of(group: ParameterGroup) -> UnitDimension {
     match group {
-        Group::GyroBias => Dimension::GYRO_BIAS,
-        Group::GyroScale | Group::AccelScale => Dimension::RATIO,
-        Group::GyroMisalignment | Group::AccelMisalignment => Dimension::SMALL_ANGLE,
-        Group::GDependent => Dimension::G_DEPENDENT,
-        Group::AccelBias => Dimension::ACCEL_BIAS,
+        ParameterGroup::GyroBias => UnitDimension::GYRO_BIAS,
+        ParameterGroup::GyroScale | ParameterGroup::AccelScale => UnitDimension::RATIO,
+        ParameterGroup::GyroMisalignment | ParameterGroup::AccelMisalignment => UnitDimension::SMALL_ANGLE,
+        ParameterGroup::GDependent => UnitDimension::G_DEPENDENT,
+        ParameterGroup::AccelBias => UnitDimension::ACCEL_BIAS,
     }
 }
 
-fn node(value: Value) -> Node {
-    Node { value, place: Place::Default }
+fn node(value: DocumentValue) -> DocumentNode {
+    DocumentNode { value, place: Place::Default }
 }
 
-fn text(text: String) -> Value {
-    Value::Text(text)
+fn text(text: String) -> DocumentValue {
+    DocumentValue::Text(text)
 }
 
-fn quantities(dimension: Dimension, values: &[f64]) -> Value {
-    Value::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
+fn quantities(dimension: UnitDimension, values: &[f64]) -> DocumentValue {
+    DocumentValue::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
 }
 
-fn table(entries: Vec<(&str, Value)>) -> Value {
-    let entry = |(key, value): (&str, Value)| Entry {
+fn table(entries: Vec<(&str, DocumentValue)>) -> DocumentValue {
+    let entry = |(key, value): (&str, DocumentValue)| KeyEntry {
         key: key.to_owned(),
         place: Place::Default,
         node: node(value),
     };
-    Value::Table(Table { entries: entries.into_iter().map(entry).collect() })
+    DocumentValue::Table(DocumentTable { entries: entries.into_iter().map(entry).collect() })
 }
 
 /// Writes a table in the order of its keys: values first, then tables with their headers.
-fn write_table(table: &Table, section: &Section, path: &str, out: &mut String) {
+fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut String) {
     let mut later = Vec::new();
     for key in section.keys {
         let Some(node) = table.get(key.name) else { continue };
         let kind = match &key.kind {
-            Kind::Either(kinds) => kinds.iter().find(|kind| kind.section().is_some()),
+            KeyKind::Either(kinds) => kinds.iter().find(|kind| kind.section().is_some()),
             kind => Some(kind),
         };
         match (kind, &node.value) {
-            (Some(Kind::Table(inner)), Value::Table(table)) if !inner.one_of => {
+            (Some(KeyKind::Table(inner)), DocumentValue::Table(table)) if !inner.one_of => {
                 later.push((key.name, *inner, vec![table], false));
             }
-            (Some(Kind::Tables(inner, ..)), Value::Array(entries)) if path.is_empty() => {
+            (Some(KeyKind::Tables(inner, ..)), DocumentValue::Array(entries)) if path.is_empty() => {
                 let tables = entries.iter().filter_map(|entry| match &entry.value {
-                    Value::Table(table) => Some(table),
+                    DocumentValue::Table(table) => Some(table),
                     _ => None,
                 });
                 later.push((key.name, *inner, tables.collect(), true));
             }
-            (Some(Kind::VariantTables(variants, _)), Value::Array(entries)) => {
+            (Some(KeyKind::VariantTables(variants, _)), DocumentValue::Array(entries)) => {
                 for entry in entries {
-                    if let Value::Table(table) = &entry.value
+                    if let DocumentValue::Table(table) = &entry.value
                         && let Some(inner) = variants.section(table)
                     {
                         later.push((key.name, inner, vec![table], true));

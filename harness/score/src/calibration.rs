@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Calibration of one method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Calibration {
+pub struct CalibrationScore {
     /// Name of the position sequence.
     pub positions: String,
     /// Name of the estimator.

@@ -2,11 +2,11 @@
 
 use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
-use super::summary::Navigation;
+use super::summary::NavigationScore;
 use octant_statistics::convergence::pass;
 use octant_statistics::paired::PassPairs;
 use octant_statistics::power;
-use octant_statistics::sample::Interval;
+use octant_statistics::sample::ConfidenceInterval;
 use serde::{Deserialize, Serialize};
 
 /// Version of the schema of `compare.json`.
@@ -31,7 +31,7 @@ pub struct Maxima {
 impl Maxima {
     /// Maxima of a scored navigation.
     #[must_use]
-    pub fn of(navigation: &Navigation) -> Self {
+    pub fn of(navigation: &NavigationScore) -> Self {
         let mark = |name: &str| navigation.marks.get(name);
         Self {
             latitude_24h: mark("24h").map(|m| m.latitude_max_arcmin),
@@ -135,9 +135,9 @@ pub struct Refusals {
     /// Number of seeds that both refused.
     pub both: u64,
     /// Rate of the first method, with its 95 % interval (Clopper and Pearson).
-    pub first_rate: Interval,
+    pub first_rate: ConfidenceInterval,
     /// Rate of the second method, likewise.
-    pub second_rate: Interval,
+    pub second_rate: ConfidenceInterval,
     /// Two-sided probability of a difference at least as large, if both refuse equally often (McNemar).
     pub p: f64,
     /// Smallest fraction of seeds refused by only one of the methods that this test detects at 5 % with
@@ -172,7 +172,7 @@ impl Refusals {
     }
 
     fn words(&self, names: [&str; 2]) -> Vec<String> {
-        let one = |name: &str, count: u64, rate: &Interval| {
+        let one = |name: &str, count: u64, rate: &ConfidenceInterval| {
             format!(
                 "{name} refused {count} of {} seeds ({} %, 95 % interval [{} %, {} %])",
                 self.seeds,
@@ -209,7 +209,7 @@ impl Refusals {
 
 /// One measure over all seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct MeasureCell {
     /// Measure.
     pub measure: Measure,
     /// Number of pairs that have it.
@@ -265,7 +265,7 @@ impl Claim {
 
 /// Comparison of two methods.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
+pub struct MethodComparison {
     /// Version of the schema: [`SCHEMA`].
     pub schema: u32,
     /// Version of the program.
@@ -280,7 +280,7 @@ pub struct Comparison {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refusals: Option<Refusals>,
     /// Every measure that at least two pairs have.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<MeasureCell>,
     /// Verdict on the claim in plain words, then the reasons.
     pub words: Vec<String>,
     /// Every pair of runs.
@@ -298,11 +298,11 @@ pub fn compare(
     second: &str,
     runs: &[PairedRun],
     floor: &[MaximumFloor],
-) -> Comparison {
-    let cells: Vec<Cell> =
+) -> MethodComparison {
+    let cells: Vec<MeasureCell> =
         Measure::ALL.into_iter().filter_map(|measure| cell(measure, runs, floor)).collect();
     let refusals = Refusals::of(runs);
-    Comparison {
+    MethodComparison {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         scenario: scenario.to_owned(),
@@ -315,12 +315,12 @@ pub fn compare(
     }
 }
 
-fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<Cell> {
+fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<MeasureCell> {
     let pairs: Vec<(f64, f64)> =
         runs.iter().filter_map(|r| r.first.get(measure).zip(r.second.get(measure))).collect();
     let (first, second): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
     let improvement = improvement(&first, &second, CONFIDENCE)?;
-    Some(Cell {
+    Some(MeasureCell {
         measure,
         runs: first.len() as u32,
         first: rms(&first)?,
@@ -351,7 +351,7 @@ fn words(
     first: &str,
     second: &str,
     seeds: usize,
-    cells: &[Cell],
+    cells: &[MeasureCell],
     refusals: Option<&Refusals>,
 ) -> Vec<String> {
     let told = refusals.map(|refusals| refusals.words([first, second])).unwrap_or_default();
@@ -424,6 +424,6 @@ fn words(
 }
 
 /// True if the second method is within a factor of 2 of the random walk.
-fn near_floor(cell: &Cell) -> bool {
+fn near_floor(cell: &MeasureCell) -> bool {
     cell.floor.is_some_and(|floor| cell.second < 2.0 * floor)
 }

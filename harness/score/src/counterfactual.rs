@@ -4,10 +4,10 @@
 //! Every difference between the two is caused by the faults, because nothing else differs. Reports of
 //! the core in the faulted run that its twin doesn't have show that the core noticed the faults.
 
-use super::calibration::Calibration;
+use super::calibration::CalibrationScore;
 use super::health::{Episode, name};
-use super::navigation::Navigation;
-use super::trace::Trace;
+use super::navigation::NavigationScore;
+use super::trace::RunTrace;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use serde::{Deserialize, Serialize};
@@ -99,15 +99,15 @@ pub struct Noticed {
 
 /// Data of one run for the comparison.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<'a> {
+pub struct CounterfactualSide<'a> {
     /// Calibration.
-    pub calibration: Option<&'a Calibration>,
+    pub calibration: Option<&'a CalibrationScore>,
     /// Navigation.
-    pub navigation: Option<&'a Navigation>,
+    pub navigation: Option<&'a NavigationScore>,
     /// Episodes of the core's reports.
     pub episodes: &'a [Episode],
     /// Trace.
-    pub trace: &'a Trace,
+    pub trace: &'a RunTrace,
     /// Hash of the stream.
     pub stream_hash: &'a str,
     /// Length of the run, s of device time.
@@ -118,8 +118,8 @@ pub struct Side<'a> {
 /// that each altered, s; `latitude_rad` and `height_m` are those of the site.
 #[must_use]
 pub fn counterfactual(
-    faulted: &Side<'_>,
-    twin: &Side<'_>,
+    faulted: &CounterfactualSide<'_>,
+    twin: &CounterfactualSide<'_>,
     onsets: &[(String, Option<f64>)],
     sample_s: f64,
     latitude_rad: f64,
@@ -131,7 +131,7 @@ pub fn counterfactual(
         .map(|(name, shift)| (name, shift.sigma.abs()))
         .max_by(|a, b| a.1.total_cmp(&b.1));
     let worst_shift_sigma = worst.map(|(_, sigma)| sigma);
-    let refused_by = |side: &Side<'_>| side.calibration.is_some_and(|c| c.refused.is_some());
+    let refused_by = |side: &CounterfactualSide<'_>| side.calibration.is_some_and(|c| c.refused.is_some());
     let refused = refused_by(faulted) && !refused_by(twin);
     let navigation = difference(faulted, twin, latitude_rad, height_m);
     let shifted = worst_shift_sigma.is_some_and(|sigma| sigma >= HARMFUL_SHIFT_SIGMA);
@@ -170,7 +170,7 @@ pub fn counterfactual(
 }
 
 /// Shifts of the parameters that both runs estimated.
-fn shifts(faulted: &Side<'_>, twin: &Side<'_>) -> BTreeMap<String, Shift> {
+fn shifts(faulted: &CounterfactualSide<'_>, twin: &CounterfactualSide<'_>) -> BTreeMap<String, Shift> {
     let (Some(faulted), Some(twin)) = (faulted.calibration, twin.calibration) else {
         return BTreeMap::new();
     };
@@ -186,8 +186,8 @@ fn shifts(faulted: &Side<'_>, twin: &Side<'_>) -> BTreeMap<String, Shift> {
 }
 
 fn difference(
-    faulted: &Side<'_>,
-    twin: &Side<'_>,
+    faulted: &CounterfactualSide<'_>,
+    twin: &CounterfactualSide<'_>,
     latitude_rad: f64,
     height_m: f64,
 ) -> Option<DriftDifference> {
@@ -264,7 +264,7 @@ mod tests {
     use crate::summary::{HealthCounts, ParameterScore};
     use octant_sample::{DeviceTime, Health};
 
-    fn calibration(estimate: f64, refused: Option<&str>) -> Calibration {
+    fn calibration(estimate: f64, refused: Option<&str>) -> CalibrationScore {
         let score = |estimate, sigma| ParameterScore {
             r#true: None,
             estimate,
@@ -273,7 +273,7 @@ mod tests {
             normalized: None,
             unit: "deg/h".to_owned(),
         };
-        Calibration {
+        CalibrationScore {
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -296,8 +296,8 @@ mod tests {
         Episode { cause, start: at(start_s), end: at(end_s), epochs: 1 }
     }
 
-    fn side<'a>(c: &'a Calibration, episodes: &'a [Episode], trace: &'a Trace) -> Side<'a> {
-        Side {
+    fn side<'a>(c: &'a CalibrationScore, episodes: &'a [Episode], trace: &'a RunTrace) -> CounterfactualSide<'a> {
+        CounterfactualSide {
             calibration: Some(c),
             navigation: None,
             episodes,
@@ -308,11 +308,11 @@ mod tests {
     }
 
     fn compare(
-        faulted: (&Calibration, &[Episode]),
-        twin: (&Calibration, &[Episode]),
+        faulted: (&CalibrationScore, &[Episode]),
+        twin: (&CalibrationScore, &[Episode]),
         onset_s: Option<f64>,
     ) -> Counterfactual {
-        let trace = Trace::new();
+        let trace = RunTrace::new();
         counterfactual(
             &side(faulted.0, faulted.1, &trace),
             &side(twin.0, twin.1, &trace),

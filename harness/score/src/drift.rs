@@ -2,7 +2,7 @@
 
 use super::regression::{SecularSlope, Slopes};
 use super::series::Series;
-use super::summary::{ErrorScore, HeightChannel, Mark, Navigation, RadialScore, SlopeWindow};
+use super::summary::{ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use std::collections::BTreeMap;
@@ -208,7 +208,7 @@ impl DriftScorer {
     ///
     /// # Errors
     /// If there are fewer than two samples, one was not finite, or time did not increase.
-    pub fn finish(&self, height: HeightChannel) -> Result<Navigation, DriftError> {
+    pub fn finish(&self, height: HeightChannel) -> Result<NavigationScore, DriftError> {
         if let Some(broken) = self.broken {
             return Err(broken);
         }
@@ -221,7 +221,7 @@ impl DriftScorer {
             r#final: last,
             slope_per_day,
         };
-        Ok(Navigation {
+        Ok(NavigationScore {
             duration_h: duration_s / 3600.0,
             height,
             latitude_error_arcmin: score(

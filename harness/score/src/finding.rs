@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Subject of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum About {
+pub enum FindingSubject {
     /// The unit under test, whose misbehaviour counts against it.
     Unit,
     /// The bench; the unit isn't judged from then on.
@@ -24,7 +24,7 @@ pub struct Finding {
     /// Verdict of the finding.
     pub verdict: Verdict,
     /// Subject of the finding.
-    pub about: About,
+    pub about: FindingSubject,
     /// Event, in plain words.
     pub reason: String,
 }
@@ -33,18 +33,18 @@ impl Finding {
     /// Finding about an error of the unit.
     #[must_use]
     pub fn of_unit(verdict: Verdict, reason: String) -> Self {
-        Self { verdict, about: About::Unit, reason }
+        Self { verdict, about: FindingSubject::Unit, reason }
     }
 
     /// Finding about a failure of the bench.
     #[must_use]
     pub fn of_bench(verdict: Verdict, reason: String) -> Self {
-        Self { verdict, about: About::Bench, reason }
+        Self { verdict, about: FindingSubject::Bench, reason }
     }
 
     /// Inconclusive finding about the run.
     #[must_use]
     pub fn of_run(reason: String) -> Self {
-        Self { verdict: Verdict::Inconclusive, about: About::Run, reason }
+        Self { verdict: Verdict::Inconclusive, about: FindingSubject::Run, reason }
     }
 }

@@ -4,11 +4,11 @@
 //! done, on refusals, faults and findings. All of them are in the summary, so that every reader can
 //! derive its verdict again.
 
-pub use super::finding::{About, Finding};
+pub use super::finding::{FindingSubject, Finding};
 
-use super::summary::{Baseline, Calibration, FaultResult, Summary, WITH_FINDINGS};
+use super::summary::{BaselineMethod, CalibrationScore, FaultResult, Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
-use super::work::{Part, Short, Work};
+use super::work::{RunPart, Short, Work};
 use octant_requirements::Verdict;
 use octant_requirements::verdict::LimitCheck;
 use std::convert::Infallible;
@@ -141,10 +141,10 @@ fn sides(
     let (mut unit, mut bench) = (Vec::new(), Vec::new());
     for finding in &summary.findings {
         match finding.about {
-            About::Bench | About::Equipment => {
+            FindingSubject::Bench | FindingSubject::Equipment => {
                 bench.push((finding.verdict, finding.reason.clone()));
             }
-            About::Unit | About::Run => unit.push((finding.verdict, Some(finding.reason.clone()))),
+            FindingSubject::Unit | FindingSubject::Run => unit.push((finding.verdict, Some(finding.reason.clone()))),
         }
     }
     for (method, calibration, primary) in refusals(summary) {
@@ -169,7 +169,7 @@ fn sides(
     (unit, bench)
 }
 
-fn refusals(summary: &Summary) -> impl Iterator<Item = (&str, &Calibration, bool)> {
+fn refusals(summary: &Summary) -> impl Iterator<Item = (&str, &CalibrationScore, bool)> {
     let primary = summary.calibration.iter().map(|c| (summary.method.as_str(), c, true));
     let baseline = summary.baseline.iter();
     primary.chain(baseline.filter_map(|b| Some((b.label.as_str(), b.calibration.as_ref()?, false))))
@@ -179,7 +179,7 @@ fn refusals(summary: &Summary) -> impl Iterator<Item = (&str, &Calibration, bool
 /// the bench failed.
 fn shortfalls(summary: &Summary) -> Vec<(Short, String)> {
     let broke = bench_broke(summary);
-    let refused = |calibration: Option<&Calibration>| {
+    let refused = |calibration: Option<&CalibrationScore>| {
         !broke && calibration.is_some_and(|calibration| calibration.refused.is_some())
     };
     let of = |planned: Option<&Work>, done: Option<&Work>, refused: bool, place: String| {
@@ -201,12 +201,12 @@ fn shortfalls(summary: &Summary) -> Vec<(Short, String)> {
 
 /// True if the bench failed: nothing was judged from then on.
 fn bench_broke(summary: &Summary) -> bool {
-    summary.findings.iter().any(|finding| finding.about == About::Bench)
+    summary.findings.iter().any(|finding| finding.about == FindingSubject::Bench)
 }
 
 /// True if equipment without a valid certificate was used.
 fn is_uncertified(summary: &Summary) -> bool {
-    summary.findings.iter().any(|finding| finding.about == About::Equipment)
+    summary.findings.iter().any(|finding| finding.about == FindingSubject::Equipment)
 }
 
 /// Result of a requirement as far as its part of the run was done: without the complete part it can't
@@ -216,7 +216,7 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
         let reason = Some("measured with equipment whose certificate didn't hold".to_owned());
         return RequirementResult { verdict: Verdict::Inconclusive, reason, ..result };
     }
-    let part = Part::of(&result.measure);
+    let part = RunPart::of(&result.measure);
     let baseline = result.measure.trim_start_matches('|').starts_with("baseline.");
     let short = shortfalls(summary)
         .into_iter()
@@ -227,7 +227,7 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
     let misbehaved = summary
         .findings
         .iter()
-        .any(|finding| finding.about == About::Unit && finding.verdict == Verdict::Fail);
+        .any(|finding| finding.about == FindingSubject::Unit && finding.verdict == Verdict::Fail);
     let broke = bench_broke(summary);
     let reason = match result.verdict {
         Verdict::Pass if broke => "met until the bench failed, and not judged after".to_owned(),
@@ -258,18 +258,18 @@ fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
         || path.starts_with("pacing.");
     let baseline = path.starts_with("baseline.");
     let works = match (&summary.baseline, baseline) {
-        (Some(Baseline { planned, done, .. }), true) => (planned, done),
+        (Some(BaselineMethod { planned, done, .. }), true) => (planned, done),
         _ => (&summary.planned, &summary.done),
     };
     let calibrated = match works {
         (Some(planned), Some(done)) => {
-            !planned.short_of(done).iter().any(|short| short.part == Part::Calibration)
+            !planned.short_of(done).iter().any(|short| short.part == RunPart::Calibration)
         }
         _ => false,
     };
     (upper && grows)
         || path.contains(".marks.")
-        || (calibrated && Part::of(path) == Some(Part::Calibration))
+        || (calibrated && RunPart::of(path) == Some(RunPart::Calibration))
 }
 
 /// Worst verdict of a judged summary without its requirements: of a refused calibration, a fault that

@@ -17,7 +17,7 @@ pub enum HeightChannel {
 
 /// Navigation of one method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Navigation {
+pub struct NavigationScore {
     /// Duration, h.
     pub duration_h: f64,
     /// Treatment of the vertical channel.

@@ -4,7 +4,7 @@
 use super::summary::ParameterScore;
 use nalgebra::{SMatrix, SVector};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
+use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
 use std::collections::BTreeMap;
 
 /// Scores every parameter, in the units for users. A σ that isn't positive means that the parameter was
@@ -19,7 +19,7 @@ pub fn score(
     let estimate = estimate.to_array();
     (0..PARAMETER_COUNT)
         .map(|i| {
-            let group = Group::of(i);
+            let group = ParameterGroup::of(i);
             let unit = group.si_per_unit();
             let error_si = truth.map(|t| estimate[i] - t[i]);
             let sigma_si = (sigma[i] > 0.0).then_some(sigma[i]);
@@ -41,7 +41,7 @@ pub fn score(
 #[must_use]
 pub fn nees(parameters: &BTreeMap<String, ParameterScore>) -> BTreeMap<String, f64> {
     let mut groups = BTreeMap::new();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let normalized: Vec<f64> = group
             .range()
             .filter_map(|i| parameters.get(NAMES[i]).and_then(|p| p.normalized))
@@ -69,7 +69,7 @@ pub fn nees_full(
 ) -> BTreeMap<String, f64> {
     let (truth, estimate) = (truth.to_array(), estimate.to_array());
     let mut groups = BTreeMap::new();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let (first, size) = (group.range().start, group.range().len());
         // Computed in the group's own unit: squared SI values of g-dependent biases would be as small
         // as 1e-20.
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn errors_are_in_users_units_and_normalized_by_sigma() {
-        let unit = Group::GyroBias.si_per_unit();
+        let unit = ParameterGroup::GyroBias.si_per_unit();
         let (truth, estimate) = bias_error([0.001 * unit, -0.002 * unit, 0.0]);
         let mut sigma = [0.0; PARAMETER_COUNT];
         sigma[..3].fill(0.0005 * unit);
@@ -164,7 +164,7 @@ mod tests {
     fn correlation_enters_the_full_form_alone() {
         // Two errors of one σ each, in the direction that a correlation of 0.8 favours:
         // eᵀP⁻¹e = 2/(1 + 0.8); and against it: 2/(1 − 0.8).
-        let unit = Group::GyroBias.si_per_unit();
+        let unit = ParameterGroup::GyroBias.si_per_unit();
         let s = 0.001 * unit;
         let mut covariance = [[0.0; PARAMETER_COUNT]; PARAMETER_COUNT];
         for i in 0..3 {

@@ -4,7 +4,7 @@
 //! all of which are in the summary too. Every reader derives the verdict again; if it differs, the
 //! summary contradicts itself, and its file is evidence of nothing.
 
-use super::judge::{About, Finding, as_far_as_done, derive};
+use super::judge::{FindingSubject, Finding, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
 use octant_requirements::verdict::LimitCheck;
@@ -103,14 +103,14 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
 
 /// Verdict on a stored run by the rules of this program.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rejudged {
+pub struct RederivedVerdict {
     /// Summary with its requirements, findings, verdict and reasons derived again.
     pub summary: Summary,
     /// Parts that could not be derived because they were never stored.
     pub not_stored: Vec<String>,
 }
 
-impl Rejudged {
+impl RederivedVerdict {
     /// True if nothing stored contradicts a pass, but too little is stored for one.
     #[must_use]
     pub fn is_unknown(&self) -> bool {
@@ -132,7 +132,7 @@ const NOT_HELD: &str = "its summary doesn't hold what a pass rests on";
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
-pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<Rejudged, serde_json::Error> {
+pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<RederivedVerdict, serde_json::Error> {
     let mut summary = stored.clone();
     let mut not_stored = Vec::new();
     if stored.schema < WITH_FINDINGS {
@@ -157,7 +157,7 @@ pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<Rejudged, serde_
         if derive(&summary).verdict < stored.verdict {
             summary.findings.push(Finding {
                 verdict: stored.verdict,
-                about: About::Run,
+                about: FindingSubject::Run,
                 reason: format!(
                     "it was judged {} then: {}",
                     stored.verdict.name(),
@@ -174,5 +174,5 @@ pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<Rejudged, serde_
     summary.requirements = results(&summary)?;
     let derived = derive(&summary);
     (summary.verdict, summary.reasons) = (derived.verdict, derived.reasons);
-    Ok(Rejudged { summary, not_stored })
+    Ok(RederivedVerdict { summary, not_stored })
 }

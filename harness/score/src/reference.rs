@@ -4,12 +4,12 @@
 use super::floor::{Floor, FloorSummary};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_earth::units::{ARCMIN, DEG_PER_HOUR_PER_G};
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use serde::{Deserialize, Serialize};
 
 /// Analytic references of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reference {
+pub struct AnalyticReference {
     /// Schuler period of the site, min.
     pub schuler_period_min: f64,
     /// Effect of an uncompensated g_zz of 5e-4 deg/h/g at this site.
@@ -51,7 +51,7 @@ pub fn vertical_drift(g_zz: f64, latitude_rad: f64, height_m: f64) -> VerticalDr
     let earth = Ellipsoid::at(latitude_rad, height_m);
     let drift = g_zz * earth.gravity_mps2;
     VerticalDrift {
-        g_zz_deg_per_h_per_g: g_zz / Group::GDependent.si_per_unit(),
+        g_zz_deg_per_h_per_g: g_zz / ParameterGroup::GDependent.si_per_unit(),
         longitude_arcmin_per_day: drift * earth.sin_latitude * 86_400.0 / ARCMIN,
         latitude_bound_arcmin: 2.0 * drift * earth.cos_latitude / EARTH_RATE_RADPS / ARCMIN,
     }
@@ -101,12 +101,12 @@ pub struct ReferenceInput {
 
 /// All references of one run.
 #[must_use]
-pub fn reference(input: &ReferenceInput) -> Reference {
+pub fn reference(input: &ReferenceInput) -> AnalyticReference {
     let drift = |g_zz| vertical_drift(g_zz, input.latitude_rad, input.height_m);
     let residual =
         |estimate: Option<f64>| input.true_g_zz.zip(estimate).map(|(truth, e)| drift(truth - e));
     let earth = Ellipsoid::at(input.latitude_rad, input.height_m);
-    Reference {
+    AnalyticReference {
         schuler_period_min: earth.schuler_period_s() / 60.0,
         table_g_zz: drift(5e-4 * DEG_PER_HOUR_PER_G),
         true_g_zz: input.true_g_zz.map(drift),
@@ -115,7 +115,7 @@ pub fn reference(input: &ReferenceInput) -> Reference {
         isotropic_g_sigma_floor_deg_per_h_per_g: input.calibration_s.filter(|t| *t > 0.0).map(
             |t| {
                 isotropic_g_sigma(input.angle_random_walk, input.latitude_rad, input.height_m, t)
-                    / Group::GDependent.si_per_unit()
+                    / ParameterGroup::GDependent.si_per_unit()
             },
         ),
         random_walk: input.navigation_s.filter(|t| *t >= 60.0).map(|t| {

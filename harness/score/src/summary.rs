@@ -2,16 +2,16 @@
 //!
 //! The file contains nothing about host or clock: the same scenario, seed and core give the same bytes.
 
-pub use super::calibration::{Calibration, HealthCounts, ParameterScore};
+pub use super::calibration::{CalibrationScore, HealthCounts, ParameterScore};
 pub use super::navigation::{
-    ErrorScore, HeightChannel, Mark, Navigation, RadialScore, SlopeWindow,
+    ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };
 
-pub use octant_recorder::event::{DeviceClock, FaultResult, Lateness, Pacing};
+pub use octant_recorder::event::{DeviceClock, FaultResult, LatenessQuantiles, PacingRecord};
 
 use super::counterfactual::Counterfactual;
 use super::finding::Finding;
-use super::reference::Reference;
+use super::reference::AnalyticReference;
 use super::verdict::RequirementResult;
 use super::work::Work;
 use octant_requirements::Verdict;
@@ -60,23 +60,23 @@ pub struct Summary {
     pub faults: Vec<FaultResult>,
     /// Checksums of clean and faulted stream; null if they are the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub altered_streams: Option<AlteredStreams>,
+    pub altered_streams: Option<AlteredStreamSummary>,
     /// Name of the method of `calibration` and `navigation`.
     pub method: String,
     /// Calibration; null if the run had none.
-    pub calibration: Option<Calibration>,
+    pub calibration: Option<CalibrationScore>,
     /// Navigation; null if the run had none, or no truth to compare it with.
-    pub navigation: Option<Navigation>,
+    pub navigation: Option<NavigationScore>,
     /// Effect of the faults, compared with the twin without them; null without faults or without a
     /// twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,
     /// Second method of the same run: same instrument, same noise.
-    pub baseline: Option<Baseline>,
+    pub baseline: Option<BaselineMethod>,
     /// Physical references for the scores.
-    pub reference: Option<Reference>,
+    pub reference: Option<AnalyticReference>,
     /// Pacing against a real clock; null in simulated time.
-    pub pacing: Option<Pacing>,
+    pub pacing: Option<PacingRecord>,
     /// BLAKE3 of the canonical bytes of samples, aiding and outputs.
     pub stream_hash: String,
 }
@@ -183,7 +183,7 @@ pub fn results(receipts: &[octant_faults::Receipt]) -> Vec<FaultResult> {
 /// Checksums of the two streams of a run in which faults altered something: as delivered by the source
 /// and as received by the core, both from the first difference on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AlteredStreams {
+pub struct AlteredStreamSummary {
     /// Sequence number of the first sample that was altered, lost or added.
     pub first_sample: u64,
     /// BLAKE3 of the source's stream from then on.
@@ -192,7 +192,7 @@ pub struct AlteredStreams {
     pub faulted_blake3: String,
 }
 
-impl From<&octant_recorder::AlteredStreams> for AlteredStreams {
+impl From<&octant_recorder::AlteredStreams> for AlteredStreamSummary {
     fn from(streams: &octant_recorder::AlteredStreams) -> Self {
         Self {
             first_sample: streams.first_sample,
@@ -204,13 +204,13 @@ impl From<&octant_recorder::AlteredStreams> for AlteredStreams {
 
 /// Second method of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Baseline {
+pub struct BaselineMethod {
     /// Name of the method.
     pub label: String,
     /// Calibration.
-    pub calibration: Option<Calibration>,
+    pub calibration: Option<CalibrationScore>,
     /// Navigation.
-    pub navigation: Option<Navigation>,
+    pub navigation: Option<NavigationScore>,
     /// Effect of the faults on it, compared with its own twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,

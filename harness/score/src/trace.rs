@@ -10,7 +10,7 @@ const POINTS_MAX: usize = 4096;
 
 /// Trace of one run.
 #[derive(Clone, Debug)]
-pub struct Trace {
+pub struct RunTrace {
     running: u64,
     outputs: u64,
     /// One digest for every [`DIGEST_OUTPUTS`] outputs, each over all outputs so far.
@@ -20,13 +20,13 @@ pub struct Trace {
     points: Vec<(u64, f64, f64)>,
 }
 
-impl Default for Trace {
+impl Default for RunTrace {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Trace {
+impl RunTrace {
     /// Makes an empty trace.
     #[must_use]
     pub fn new() -> Self {
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn runs_part_where_an_output_differs() {
         let run = |changed: u64| {
-            let mut trace = Trace::new();
+            let mut trace = RunTrace::new();
             for k in 0..10_050u64 {
                 let mut output = Output::default();
                 output.navigation.latitude_rad = k as f64;
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(run(4321).parts_from(&clean), Some(4200));
         assert_eq!(run(0).parts_from(&clean), Some(0));
         assert_eq!(run(10_049).parts_from(&clean), Some(10_000));
-        let mut shorter = Trace::new();
+        let mut shorter = RunTrace::new();
         shorter.output(&Output::default());
         assert_eq!(shorter.parts_from(&clean), Some(0));
     }
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn a_long_drift_keeps_a_common_grid_with_a_shorter_one() {
         let run = |seconds: u64, slope: f64| {
-            let mut trace = Trace::new();
+            let mut trace = RunTrace::new();
             for t in 0..=seconds {
                 trace.drift(t as f64, slope * t as f64, -slope * t as f64);
                 trace.drift(t as f64 + 0.5, f64::NAN, f64::NAN);

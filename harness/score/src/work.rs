@@ -26,14 +26,14 @@ pub struct Work {
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum RunPart {
     /// Calibration.
     Calibration,
     /// Navigation.
     Navigation,
 }
 
-impl Part {
+impl RunPart {
     /// Part that a measure of a summary belongs to, by its dotted path; `None`: no part, or both.
     #[must_use]
     pub fn of(measure: &str) -> Option<Self> {
@@ -52,7 +52,7 @@ impl Part {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Short {
     /// Part.
-    pub part: Part,
+    pub part: RunPart,
     /// Text such as `navigation: planned 24 h, done 1 s`.
     pub text: String,
 }
@@ -66,8 +66,8 @@ impl Work {
             short.push(Short { part, text: format!("{what}: planned {planned}, done {done}") });
         };
         let durations = [
-            (Part::Calibration, "calibration", self.calibration_s, done.calibration_s),
-            (Part::Navigation, "navigation", self.navigation_s, done.navigation_s),
+            (RunPart::Calibration, "calibration", self.calibration_s, done.calibration_s),
+            (RunPart::Navigation, "navigation", self.navigation_s, done.navigation_s),
         ];
         for (part, what, planned_s, done_s) in durations {
             let Some(planned_s) = planned_s else { continue };
@@ -81,13 +81,13 @@ impl Work {
         if let (Some(planned), Some(done)) = (self.stops, done.stops)
             && done < planned
         {
-            let part = Part::Calibration;
+            let part = RunPart::Calibration;
             add(part, "stops of the calibration", planned.to_string(), done.to_string());
         }
         if let (Some(planned), Some(done)) = (self.references, done.references)
             && (done as f64) < planned as f64 * (1.0 - REFERENCE_SLACK) - 1.0
         {
-            let part = Part::Calibration;
+            let part = RunPart::Calibration;
             add(part, "references for the calibration", planned.to_string(), done.to_string());
         }
         short
@@ -152,14 +152,14 @@ mod tests {
     #[test]
     fn a_measure_belongs_to_its_part() {
         for (path, part) in [
-            ("navigation.longitude_error_arcmin.max", Some(Part::Navigation)),
-            ("|baseline.navigation.latitude_error_arcmin.final|", Some(Part::Navigation)),
-            ("counterfactual.navigation.radial_max_nmi", Some(Part::Navigation)),
-            ("|calibration.parameters.g_zz.error|", Some(Part::Calibration)),
-            ("counterfactual.parameters.g_zz.shift", Some(Part::Calibration)),
+            ("navigation.longitude_error_arcmin.max", Some(RunPart::Navigation)),
+            ("|baseline.navigation.latitude_error_arcmin.final|", Some(RunPart::Navigation)),
+            ("counterfactual.navigation.radial_max_nmi", Some(RunPart::Navigation)),
+            ("|calibration.parameters.g_zz.error|", Some(RunPart::Calibration)),
+            ("counterfactual.parameters.g_zz.shift", Some(RunPart::Calibration)),
             ("pacing.overruns", None),
         ] {
-            assert_eq!(Part::of(path), part, "{path}");
+            assert_eq!(RunPart::of(path), part, "{path}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Starts the program for a case, in a folder of its own, as a user would.
 
 use super::error::{BenchError, FileError};
-use super::judge::Outcome;
+use super::judge::CaseOutcome;
 use octant_base::child::{ChildEnded, finish};
 use octant_campaign::process;
 use octant_score::summary::Summary;
@@ -27,7 +27,7 @@ const UNHEARD: [&str; 8] = [
 
 /// Folder of a case, and the program.
 #[derive(Debug)]
-pub struct Bench<'a> {
+pub struct CaseBench<'a> {
     program: &'a Path,
     folder: PathBuf,
     cancel: &'a AtomicBool,
@@ -35,7 +35,7 @@ pub struct Bench<'a> {
 
 /// Output of a process, and its exit status.
 #[derive(Clone, Debug)]
-pub struct Said {
+pub struct ProcessOutput {
     /// Exit status; `None` if there is none.
     pub status: Option<i32>,
     /// Standard output.
@@ -44,7 +44,7 @@ pub struct Said {
     pub err: String,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> CaseBench<'a> {
     /// Creates a folder.
     ///
     /// # Errors
@@ -102,15 +102,15 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// If it can't be started.
-    pub fn octant(&self, words: &[&str]) -> Result<Said, BenchError> {
+    pub fn octant(&self, words: &[&str]) -> Result<ProcessOutput, BenchError> {
         self.octant_with(words, &[])
     }
 
-    /// Starts as [`Bench::octant`], with environment variables.
+    /// Starts as [`CaseBench::octant`], with environment variables.
     ///
     /// # Errors
     /// If it can't be started.
-    pub fn octant_with(&self, words: &[&str], more: &[(&str, &str)]) -> Result<Said, BenchError> {
+    pub fn octant_with(&self, words: &[&str], more: &[(&str, &str)]) -> Result<ProcessOutput, BenchError> {
         let system = FileError::of("start", self.program);
         let mut command = process::command(self.program);
         command.args(words).current_dir(&self.folder).stdin(Stdio::null());
@@ -128,7 +128,7 @@ impl<'a> Bench<'a> {
                 return Err(BenchError::Outside { program: self.program.to_owned(), by });
             }
         };
-        Ok(Said { status, out: outcome.out, err: outcome.err })
+        Ok(ProcessOutput { status, out: outcome.out, err: outcome.err })
     }
 
     /// Runs a scenario, given as text, into the folder `run`; returns its summary if it was
@@ -146,8 +146,8 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl From<Said> for Outcome {
-    fn from(said: Said) -> Self {
+impl From<ProcessOutput> for CaseOutcome {
+    fn from(said: ProcessOutput) -> Self {
         Self { status: said.status, said: said.err + &said.out, ..Self::default() }
     }
 }
@@ -156,7 +156,7 @@ impl From<Said> for Outcome {
 #[derive(Clone, Debug)]
 pub struct Ran {
     /// Output of the program.
-    pub said: Said,
+    pub said: ProcessOutput,
     /// Summary.
     pub summary: Option<Summary>,
 }
@@ -174,7 +174,7 @@ impl Ran {
     }
 }
 
-impl From<Ran> for Outcome {
+impl From<Ran> for CaseOutcome {
     fn from(ran: Ran) -> Self {
         let reasons = ran.summary.as_ref().map(|summary| summary.reasons.join("\n"));
         let verdict = ran.summary.as_ref().map(|summary| summary.verdict);

@@ -1,12 +1,12 @@
 //! Case of the self-test: an action, and its expected outcome.
 
-use crate::bench::Bench;
-use crate::error::CaseError;
-use crate::judge::{Expectation, Outcome};
+use crate::bench::CaseBench;
+use crate::error::CaseSetupError;
+use crate::judge::{Expectation, CaseOutcome};
 
 /// Case: an action, and its expected outcome.
 #[derive(Debug)]
-pub struct Case {
+pub struct SelftestCase {
     /// Name.
     pub id: &'static str,
     /// Purpose, as a sentence.
@@ -15,5 +15,5 @@ pub struct Case {
     pub expectation: Expectation,
     /// Runs the case in a folder of its own. An error is one of the self-test itself: the case
     /// could not be prepared.
-    pub run: fn(&Bench) -> Result<Outcome, CaseError>,
+    pub run: fn(&CaseBench) -> Result<CaseOutcome, CaseSetupError>,
 }

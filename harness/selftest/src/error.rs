@@ -48,7 +48,7 @@ pub enum BenchError {
 
 /// Reasons why a case could not be prepared.
 #[derive(Debug, thiserror::Error)]
-pub enum CaseError {
+pub enum CaseSetupError {
     /// The program could not be run.
     #[error(transparent)]
     Bench(#[from] BenchError),
@@ -57,13 +57,13 @@ pub enum CaseError {
     Step(String),
 }
 
-impl From<String> for CaseError {
+impl From<String> for CaseSetupError {
     fn from(step: String) -> Self {
         Self::Step(step)
     }
 }
 
-impl From<&str> for CaseError {
+impl From<&str> for CaseSetupError {
     fn from(step: &str) -> Self {
         Self::Step(step.to_owned())
     }
@@ -72,4 +72,4 @@ impl From<&str> for CaseError {
 /// Error of a self-test without a folder for its cases.
 #[derive(Debug, thiserror::Error)]
 #[error("make a folder: {0}")]
-pub struct FolderError(#[from] pub std::io::Error);
+pub struct CaseFolderError(#[from] pub std::io::Error);

@@ -1,9 +1,9 @@
 //! Numbers known from other sources: closed forms, matrix exponentials, an independent filter.
 
-use super::bench::Bench;
-use super::case::Case;
-use super::error::CaseError;
-use super::judge::{Expectation, Known, Outcome};
+use super::bench::CaseBench;
+use super::case::SelftestCase;
+use super::error::CaseSetupError;
+use super::judge::{Expectation, Known, CaseOutcome};
 use super::scenarios::{BELIEVING, MOSTLY, SHORT, SPIKE, campaign};
 use serde_json::Value;
 
@@ -21,10 +21,10 @@ fn known(name: &str, value: f64, tolerance: f64) -> Known {
     Known { name: name.to_owned(), value, tolerance }
 }
 
-pub(super) fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<SelftestCase> {
     let numbers = |known: Vec<Known>, source| Expectation::Numbers { known, source };
     vec![
-        Case {
+        SelftestCase {
             id: "free-inertial-growth",
             about: "A gyro error of 0.01 deg/h to the north grows over 24 h as the free-inertial \
                     system says.",
@@ -35,7 +35,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: free_inertial,
         },
-        Case {
+        SelftestCase {
             id: "g-dependent-drift",
             about: "What an uncompensated g_zz of 5e-4 deg/h/g leaves in navigation, and Schuler's \
                     period at 30.5°.",
@@ -50,7 +50,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: drift,
         },
-        Case {
+        SelftestCase {
             id: "observability",
             about: "Six positions don't see Gxx, Gyy and Gzz, eight see all but their sum.",
             expectation: numbers(
@@ -65,7 +65,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: ranks,
         },
-        Case {
+        SelftestCase {
             id: "posterior-sigma",
             about: "σ of all 39 states after four hours in six and in eight positions.",
             expectation: numbers(
@@ -74,7 +74,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: posterior,
         },
-        Case {
+        SelftestCase {
             id: "consistent-filter",
             about: "A filter that is right has a mean normalized innovation squared of 3 on three axes.",
             expectation: numbers(
@@ -84,7 +84,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: consistent,
         },
-        Case {
+        SelftestCase {
             id: "spike-believed",
             about: "A spike of 500 arcsec that the core believes moves a parameter by 122 σ.",
             expectation: numbers(
@@ -93,7 +93,7 @@ pub(super) fn cases() -> Vec<Case> {
             ),
             run: believed,
         },
-        Case {
+        SelftestCase {
             id: "stream-hash",
             about: "Every sample, every aiding message and every output of ten minutes has the bits \
                     that it had where this version was made.",
@@ -104,7 +104,7 @@ pub(super) fn cases() -> Vec<Case> {
             },
             run: stream_hash,
         },
-        Case {
+        SelftestCase {
             id: "fifty-nine",
             about: "Zero failures in 59 runs show 95 % with a confidence of 95 %: after one, 58 are \
                     needed.",
@@ -136,8 +136,8 @@ fn growth() -> Vec<Known> {
     HOURS.into_iter().filter_map(at).flatten().collect()
 }
 
-fn free_inertial(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
-    let mut outcome = Outcome::default();
+fn free_inertial(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
+    let mut outcome = CaseOutcome::default();
     let ran = bench.run(FREE_INERTIAL, &[])?;
     let summary = ran.summary()?;
     let navigation = summary.navigation.as_ref().ok_or("find the navigation of the run")?;
@@ -157,10 +157,10 @@ fn free_inertial(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
             outcome.numbers.insert(format!("{name} at {hours} h"), value);
         }
     }
-    Ok(Outcome { numbers: outcome.numbers, ..ran.into() })
+    Ok(CaseOutcome { numbers: outcome.numbers, ..ran.into() })
 }
 
-fn drift(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn drift(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let ran = bench.run(SHORT, &["--no-twin"])?;
     let reference = ran.summary()?.reference.clone().ok_or("find the references of the run")?;
     let numbers = [
@@ -169,21 +169,21 @@ fn drift(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
         ("latitude_bound_arcmin", reference.table_g_zz.latitude_bound_arcmin),
     ];
     let numbers = numbers.map(|(name, value)| (name.to_owned(), value)).into();
-    Ok(Outcome { numbers, ..ran.into() })
+    Ok(CaseOutcome { numbers, ..ran.into() })
 }
 
 /// Runs `octant observe` for both methods.
-fn observed(bench: &Bench<'_>) -> Result<(Value, Outcome), CaseError> {
+fn observed(bench: &CaseBench<'_>) -> Result<(Value, CaseOutcome), CaseSetupError> {
     bench.write("scenario.toml", OBSERVE)?;
     let said = bench.octant(&["observe", "scenario.toml", "--json"])?;
     let value = serde_json::from_str(&said.out)
         .map_err(|error| format!("read what octant observe said: {error}: {}", said.err))?;
-    Ok((value, Outcome { said: String::new(), ..said.into() }))
+    Ok((value, CaseOutcome { said: String::new(), ..said.into() }))
 }
 
 const METHODS: [&str; 2] = ["eight", "six"];
 
-fn ranks(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn ranks(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let (value, mut outcome) = observed(bench)?;
     for (index, name) in METHODS.into_iter().enumerate() {
         let method = &value[index];
@@ -213,7 +213,7 @@ fn sigmas() -> Vec<Known> {
     .collect()
 }
 
-fn posterior(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn posterior(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let (value, mut outcome) = observed(bench)?;
     for (index, positions) in METHODS.into_iter().enumerate() {
         for state in value[index]["states"].as_array().into_iter().flatten() {
@@ -235,35 +235,35 @@ fn posterior(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
     Ok(outcome)
 }
 
-fn consistent(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn consistent(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let ran = bench.run(OBSERVE, &[])?;
     let nis = ran.summary()?.calibration.as_ref().and_then(|calibration| calibration.nis_mean);
     let numbers = nis.map(|nis| ("nis_mean".to_owned(), nis)).into_iter().collect();
-    Ok(Outcome { numbers, ..ran.into() })
+    Ok(CaseOutcome { numbers, ..ran.into() })
 }
 
-fn believed(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn believed(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let ran = bench.run(SPIKE, &BELIEVING)?;
     let counterfactual = ran.summary()?.counterfactual.as_ref();
     let shift = counterfactual.and_then(|c| c.worst_shift_sigma);
     let numbers = shift.map(|shift| ("worst_shift_sigma".to_owned(), shift)).into_iter().collect();
-    Ok(Outcome { numbers, ..ran.into() })
+    Ok(CaseOutcome { numbers, ..ran.into() })
 }
 
-fn stream_hash(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn stream_hash(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let ran = bench.run(LOCKSTEP, &[])?;
     let text = ran.summary()?.stream_hash.clone();
-    Ok(Outcome { text, ..ran.into() })
+    Ok(CaseOutcome { text, ..ran.into() })
 }
 
-fn fifty_nine(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn fifty_nine(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     campaign(bench, 1, MOSTLY, "")?;
     let status = bench.octant(&["campaign", "status", "campaign", "--json"])?;
     let value: Value = serde_json::from_str(&status.out)
         .map_err(|error| format!("read the status of a campaign: {error}: {}", status.err))?;
     let needed = value["requirements"]["MOSTLY"]["needed"]["runs"].as_f64();
     let numbers = needed.map(|needed| ("needed".to_owned(), needed)).into_iter().collect();
-    Ok(Outcome { numbers, ..status.into() })
+    Ok(CaseOutcome { numbers, ..status.into() })
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ pub enum Expectation {
 
 /// Result of a case.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// Exit status of the program; `None` if there is none, because it crashed or was ended.
     pub status: Option<i32>,
     /// Verdict that it wrote; `None` if it wrote none.
@@ -70,7 +70,7 @@ pub struct Outcome {
 /// Verdict on a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Judged {
+pub enum CaseVerdict {
     /// The outcome was as expected.
     Pass,
     /// The outcome was different.
@@ -81,7 +81,7 @@ pub enum Judged {
     Alarm,
 }
 
-impl Judged {
+impl CaseVerdict {
     /// Returns the name.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -142,7 +142,7 @@ impl Known {
 
 /// Judges an outcome, and describes the result.
 #[must_use]
-pub fn judge(expectation: &Expectation, outcome: &Outcome) -> (Judged, String) {
+pub fn judge(expectation: &Expectation, outcome: &CaseOutcome) -> (CaseVerdict, String) {
     let ended = match outcome.status {
         Some(status) => format!("exit status {status}"),
         None => "no exit status: it crashed or took too long".to_owned(),
@@ -154,38 +154,38 @@ pub fn judge(expectation: &Expectation, outcome: &Outcome) -> (Judged, String) {
             // A user would take either of them for a pass.
             if outcome.status == Some(0) || outcome.verdict == Some(Verdict::Pass) {
                 let words = format!("it PASSED and must not ({ended})");
-                return (Judged::Alarm, words);
+                return (CaseVerdict::Alarm, words);
             }
             let right = outcome.status == Some(*status) && outcome.said.contains(because);
             let line = outcome.said.lines().find(|line| line.contains(because));
             match line {
-                Some(line) if right => (Judged::Pass, format!("{ended}: {}", line.trim())),
-                _ => (Judged::Fail, said),
+                Some(line) if right => (CaseVerdict::Pass, format!("{ended}: {}", line.trim())),
+                _ => (CaseVerdict::Fail, said),
             }
         }
         Expectation::Pass => {
             let kept = outcome.status == Some(0)
                 && outcome.verdict.is_none_or(|verdict| verdict == Verdict::Pass);
-            (if kept { Judged::Pass } else { Judged::Fail }, said)
+            (if kept { CaseVerdict::Pass } else { CaseVerdict::Fail }, said)
         }
         Expectation::Numbers { known, .. } => numbers(known, outcome, &said),
         Expectation::Text { known, .. } => {
             if outcome.text.is_empty() {
-                return (Judged::Fail, said);
+                return (CaseVerdict::Fail, said);
             }
             let same = outcome.text == *known;
-            (if same { Judged::Pass } else { Judged::Fail }, outcome.text.clone())
+            (if same { CaseVerdict::Pass } else { CaseVerdict::Fail }, outcome.text.clone())
         }
         Expectation::Same => same(outcome, &said),
     }
 }
 
-fn numbers(known: &[Known], outcome: &Outcome, said: &str) -> (Judged, String) {
+fn numbers(known: &[Known], outcome: &CaseOutcome, said: &str) -> (CaseVerdict, String) {
     let mut worst: Option<(f64, String)> = None;
     let mut words = Vec::new();
     for number in known {
         let Some(found) = outcome.numbers.get(&number.name) else {
-            return (Judged::Fail, format!("{} wasn't found; {said}", number.name));
+            return (CaseVerdict::Fail, format!("{} wasn't found; {said}", number.name));
         };
         let part = (found - number.value).abs() / number.tolerance;
         let told = format!("{} {}", number.name, significant(*found, 6));
@@ -198,34 +198,34 @@ fn numbers(known: &[Known], outcome: &Outcome, said: &str) -> (Judged, String) {
         words.push(told);
     }
     let Some((part, farthest)) = worst else {
-        return (Judged::Fail, "no number is known, so that nothing is shown".to_owned());
+        return (CaseVerdict::Fail, "no number is known, so that nothing is shown".to_owned());
     };
     let mut text = if words.len() > 6 { String::new() } else { words.join(", ") };
     if part > 1.0 {
-        return (Judged::Fail, farthest);
+        return (CaseVerdict::Fail, farthest);
     }
     if text.is_empty() {
         _ = write!(text, "at most {} % of a tolerance: {farthest}", significant(100.0 * part, 2));
     }
-    (Judged::Pass, text)
+    (CaseVerdict::Pass, text)
 }
 
-fn same(outcome: &Outcome, said: &str) -> (Judged, String) {
+fn same(outcome: &CaseOutcome, said: &str) -> (CaseVerdict, String) {
     let [first, others @ ..] = outcome.made.as_slice() else {
-        return (Judged::Fail, format!("nothing was made; {said}"));
+        return (CaseVerdict::Fail, format!("nothing was made; {said}"));
     };
     if others.is_empty() || first.1.is_empty() {
-        return (Judged::Fail, format!("there is nothing to compare; {said}"));
+        return (CaseVerdict::Fail, format!("there is nothing to compare; {said}"));
     }
     let hash = |bytes: &[u8]| blake3::hash(bytes).to_hex()[..16].to_owned();
     match others.iter().find(|(_, bytes)| *bytes != first.1) {
         Some((how, bytes)) => {
             let words = format!("{}: BLAKE3 {}…, {how}: {}…", first.0, hash(&first.1), hash(bytes));
-            (Judged::Fail, words)
+            (CaseVerdict::Fail, words)
         }
         None => {
             let ways: Vec<&str> = outcome.made.iter().map(|(how, _)| how.as_str()).collect();
-            (Judged::Pass, format!("BLAKE3 {}… {}", hash(&first.1), ways.join(", ")))
+            (CaseVerdict::Pass, format!("BLAKE3 {}… {}", hash(&first.1), ways.join(", ")))
         }
     }
 }
@@ -234,8 +234,8 @@ fn same(outcome: &Outcome, said: &str) -> (Judged, String) {
 mod tests {
     use super::*;
 
-    fn passing() -> Outcome {
-        Outcome { status: Some(0), verdict: Some(Verdict::Pass), ..Outcome::default() }
+    fn passing() -> CaseOutcome {
+        CaseOutcome { status: Some(0), verdict: Some(Verdict::Pass), ..CaseOutcome::default() }
     }
 
     #[test]
@@ -246,19 +246,19 @@ mod tests {
             match case.expectation {
                 Expectation::NotPass { .. } => {
                     count += 1;
-                    assert_eq!(judged, Judged::Alarm, "{}", case.id);
+                    assert_eq!(judged, CaseVerdict::Alarm, "{}", case.id);
                     assert!(words.contains("PASSED"), "{words}");
                     // Only one of the two indicates a failure.
                     for outcome in [
-                        Outcome { verdict: Some(Verdict::Fail), ..passing() },
-                        Outcome { status: Some(1), ..passing() },
+                        CaseOutcome { verdict: Some(Verdict::Fail), ..passing() },
+                        CaseOutcome { status: Some(1), ..passing() },
                     ] {
-                        assert_eq!(judge(&case.expectation, &outcome).0, Judged::Alarm);
+                        assert_eq!(judge(&case.expectation, &outcome).0, CaseVerdict::Alarm);
                     }
                 }
-                Expectation::Pass => assert_eq!(judged, Judged::Pass, "{}", case.id),
+                Expectation::Pass => assert_eq!(judged, CaseVerdict::Pass, "{}", case.id),
                 // A program that reports success without a number shows nothing.
-                _ => assert_eq!(judged, Judged::Fail, "{}", case.id),
+                _ => assert_eq!(judged, CaseVerdict::Fail, "{}", case.id),
             }
         }
         assert!(count >= 15, "{count}");
@@ -267,33 +267,33 @@ mod tests {
     #[test]
     fn every_case_fails_when_something_else_comes() {
         for case in crate::cases() {
-            let crashed = Outcome::default();
-            assert_eq!(judge(&case.expectation, &crashed).0, Judged::Fail, "{}", case.id);
-            let otherwise = Outcome {
+            let crashed = CaseOutcome::default();
+            assert_eq!(judge(&case.expectation, &crashed).0, CaseVerdict::Fail, "{}", case.id);
+            let otherwise = CaseOutcome {
                 status: Some(1),
                 said: "another reason".to_owned(),
                 verdict: Some(Verdict::Fail),
                 text: "another text".to_owned(),
                 made: vec![("once".into(), vec![1]), ("again".into(), vec![2])],
-                ..Outcome::default()
+                ..CaseOutcome::default()
             };
-            assert_eq!(judge(&case.expectation, &otherwise).0, Judged::Fail, "{}", case.id);
+            assert_eq!(judge(&case.expectation, &otherwise).0, CaseVerdict::Fail, "{}", case.id);
             if let Expectation::Numbers { known, .. } = &case.expectation {
-                let with = |shift: f64| Outcome {
+                let with = |shift: f64| CaseOutcome {
                     numbers: known
                         .iter()
                         .map(|k| (k.name.clone(), k.value + shift * k.tolerance))
                         .collect(),
-                    ..Outcome::default()
+                    ..CaseOutcome::default()
                 };
-                assert_eq!(judge(&case.expectation, &with(0.9)).0, Judged::Pass, "{}", case.id);
-                assert_eq!(judge(&case.expectation, &with(1.1)).0, Judged::Fail, "{}", case.id);
-                assert_eq!(judge(&case.expectation, &with(f64::NAN)).0, Judged::Fail);
+                assert_eq!(judge(&case.expectation, &with(0.9)).0, CaseVerdict::Pass, "{}", case.id);
+                assert_eq!(judge(&case.expectation, &with(1.1)).0, CaseVerdict::Fail, "{}", case.id);
+                assert_eq!(judge(&case.expectation, &with(f64::NAN)).0, CaseVerdict::Fail);
                 // Each number is required.
                 for missing in known {
                     let mut outcome = with(0.0);
                     outcome.numbers.remove(&missing.name);
-                    assert_eq!(judge(&case.expectation, &outcome).0, Judged::Fail);
+                    assert_eq!(judge(&case.expectation, &outcome).0, CaseVerdict::Fail);
                 }
             }
         }
@@ -301,20 +301,20 @@ mod tests {
 
     #[test]
     fn nothing_to_compare_is_not_the_same() {
-        let made = |made: &[&[u8]]| Outcome {
+        let made = |made: &[&[u8]]| CaseOutcome {
             made: made.iter().map(|bytes| ("so".to_owned(), bytes.to_vec())).collect(),
             ..passing()
         };
         for (outcome, judged) in [
-            (made(&[]), Judged::Fail),
-            (made(&[b"a"]), Judged::Fail),
-            (made(&[b"", b""]), Judged::Fail),
-            (made(&[b"a", b"a", b"b"]), Judged::Fail),
-            (made(&[b"a", b"a", b"a"]), Judged::Pass),
+            (made(&[]), CaseVerdict::Fail),
+            (made(&[b"a"]), CaseVerdict::Fail),
+            (made(&[b"", b""]), CaseVerdict::Fail),
+            (made(&[b"a", b"a", b"b"]), CaseVerdict::Fail),
+            (made(&[b"a", b"a", b"a"]), CaseVerdict::Pass),
         ] {
             assert_eq!(judge(&Expectation::Same, &outcome).0, judged, "{outcome:?}");
         }
         let none = Expectation::Numbers { known: Vec::new(), source: "" };
-        assert_eq!(judge(&none, &passing()).0, Judged::Fail);
+        assert_eq!(judge(&none, &passing()).0, CaseVerdict::Fail);
     }
 }

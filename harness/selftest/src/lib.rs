@@ -18,10 +18,10 @@ pub mod same;
 mod scenarios;
 pub mod verdicts;
 
-pub use case::Case;
+pub use case::SelftestCase;
 
-use bench::Bench;
-use error::{CaseError, FolderError};
+use bench::CaseBench;
+use error::{CaseSetupError, CaseFolderError};
 use octant_base::pool::in_order;
 use record::CaseRecord;
 use std::path::Path;
@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lists all cases, in the order of the report.
 #[must_use]
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<SelftestCase> {
     let mut all = golden::cases();
     all.extend(answers::cases());
     all.extend(verdicts::must_pass());
@@ -45,21 +45,21 @@ pub fn cases() -> Vec<Case> {
 /// If the folders of the cases can't be made.
 pub fn run(
     program: &Path,
-    cases: &[Case],
+    cases: &[SelftestCase],
     jobs: usize,
     cancel: &AtomicBool,
     tell: &(dyn Fn(&CaseRecord) + Sync),
-) -> Result<Vec<CaseRecord>, FolderError> {
+) -> Result<Vec<CaseRecord>, CaseFolderError> {
     let folder = tempfile::tempdir()?;
     let is_cancelled = || cancel.load(Ordering::Relaxed);
     let work = |index: usize| {
         let case = &cases[index];
-        let outcome = Bench::new(program, &folder.path().join(case.id), cancel)
-            .map_err(CaseError::from)
+        let outcome = CaseBench::new(program, &folder.path().join(case.id), cancel)
+            .map_err(CaseSetupError::from)
             .and_then(|bench| (case.run)(&bench));
         // The outcome of a case that was interrupted by us has no meaning.
         if is_cancelled() {
-            return Ok::<_, FolderError>(None);
+            return Ok::<_, CaseFolderError>(None);
         }
         let record = CaseRecord::of(case, &outcome);
         tell(&record);

@@ -1,11 +1,11 @@
 //! `selftest.json`: result of a self-test, with program, machine and time.
 
-use super::case::Case;
-use super::error::{CaseError, FileError};
-use super::judge::{Judged, Outcome, judge};
+use super::case::SelftestCase;
+use super::error::{CaseSetupError, FileError};
+use super::judge::{CaseVerdict, CaseOutcome, judge};
 use octant_base::hash::sha256;
 use octant_evidence::RunFacts;
-use octant_evidence::manifest::{Git, Host, Manifest};
+use octant_evidence::manifest::{Git, Machine, Manifest};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -35,12 +35,12 @@ pub struct CaseRecord {
     /// Outcome.
     pub found: String,
     /// Overall verdict.
-    pub verdict: Judged,
+    pub verdict: CaseVerdict,
 }
 
 /// Record of a self-test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Record {
+pub struct SelftestRecord {
     /// Version of this form: [`SCHEMA`].
     pub schema: u32,
     /// Worst verdict of all cases: `pass`, `fail`, `error`, `alarm`; `inconclusive` if it was
@@ -63,7 +63,7 @@ pub struct Record {
     /// SHA-256 of the program file, hexadecimal.
     pub program_sha256: String,
     /// The machine.
-    pub host: Host,
+    pub host: Machine,
     /// Operator.
     pub operator: Option<String>,
     /// Number of planned cases.
@@ -77,10 +77,10 @@ pub struct Record {
 impl CaseRecord {
     /// Creates the record of a case with its outcome.
     #[must_use]
-    pub fn of(case: &Case, outcome: &Result<Outcome, CaseError>) -> Self {
+    pub fn of(case: &SelftestCase, outcome: &Result<CaseOutcome, CaseSetupError>) -> Self {
         let (verdict, found) = match outcome {
             Ok(outcome) => judge(&case.expectation, outcome),
-            Err(reason) => (Judged::Error, format!("failed to {reason}")),
+            Err(reason) => (CaseVerdict::Error, format!("failed to {reason}")),
         };
         Self {
             id: case.id,
@@ -94,7 +94,7 @@ impl CaseRecord {
     }
 }
 
-impl Record {
+impl SelftestRecord {
     /// Creates the record of the cases that were run, out of `planned` cases.
     ///
     /// # Errors
@@ -161,9 +161,9 @@ impl Record {
                 kind = case.kind;
                 _ = writeln!(text, "{kind}");
             }
-            let sign = if case.verdict == Judged::Alarm { "ALARM" } else { case.verdict.name() };
+            let sign = if case.verdict == CaseVerdict::Alarm { "ALARM" } else { case.verdict.name() };
             _ = writeln!(text, "  {sign:5}  {:width$}  {}", case.id, clipped(&case.found));
-            if case.verdict != Judged::Pass {
+            if case.verdict != CaseVerdict::Pass {
                 _ = writeln!(text, "         {:width$}  expected: {}", "", case.expected);
                 _ = writeln!(text, "         {:width$}  {}", "", case.about);
             }
@@ -186,7 +186,7 @@ impl Record {
 fn verdict(planned: usize, cases: &[CaseRecord]) -> &'static str {
     let worst = cases.iter().map(|case| case.verdict).max();
     match worst {
-        Some(worst) if worst > Judged::Pass => worst.name(),
+        Some(worst) if worst > CaseVerdict::Pass => worst.name(),
         Some(_) if cases.len() == planned => "pass",
         _ => "inconclusive",
     }
@@ -222,7 +222,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), FileError> {
 mod tests {
     use super::*;
 
-    fn case(verdict: Judged) -> CaseRecord {
+    fn case(verdict: CaseVerdict) -> CaseRecord {
         CaseRecord {
             id: "one",
             kind: "must not pass",
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn an_alarm_is_the_worst_and_nothing_tried_is_no_pass() {
-        use Judged::{Alarm, Error, Fail, Pass};
+        use CaseVerdict::{Alarm, Error, Fail, Pass};
         for (planned, cases, expected) in [
             (0, &[][..], "inconclusive"),
             (1, &[], "inconclusive"),
@@ -251,9 +251,9 @@ mod tests {
         }
         let program = std::env::current_exe().unwrap();
         let now = SystemTime::now();
-        let record = Record::new(&program, now, 1, vec![case(Alarm)]).unwrap();
+        let record = SelftestRecord::new(&program, now, 1, vec![case(Alarm)]).unwrap();
         assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
         assert!(record.text().contains("ALARM: what must not pass has passed"));
-        assert_eq!(Record::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
+        assert_eq!(SelftestRecord::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
     }
 }

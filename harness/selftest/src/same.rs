@@ -1,14 +1,14 @@
 //! Cases that must give the same bytes when run twice, on one processor and on several, whole and
 //! in parts.
 
-use super::bench::Bench;
-use super::case::Case;
-use super::error::CaseError;
-use super::judge::{Expectation, Outcome};
+use super::bench::CaseBench;
+use super::case::SelftestCase;
+use super::error::CaseSetupError;
+use super::judge::{Expectation, CaseOutcome};
 use super::scenarios::{ALWAYS, SHORT, campaign};
 
-pub(super) fn cases() -> Vec<Case> {
-    let case = |id, about, run| Case { id, about, expectation: Expectation::Same, run };
+pub(super) fn cases() -> Vec<SelftestCase> {
+    let case = |id, about, run| SelftestCase { id, about, expectation: Expectation::Same, run };
     vec![
         case("run-twice", "A run with a fault and its twin, made twice.", run_twice),
         case("sweep-jobs", "A sweep of a fault, a cell at a time and four at a time.", sweep),
@@ -16,9 +16,9 @@ pub(super) fn cases() -> Vec<Case> {
     ]
 }
 
-fn run_twice(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn run_twice(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     bench.write("scenario.toml", SHORT)?;
-    let mut outcome = Outcome::default();
+    let mut outcome = CaseOutcome::default();
     for name in ["once", "again"] {
         let said = bench.octant(&["run", "scenario.toml", "--out", name])?;
         let mut bytes = Vec::new();
@@ -26,15 +26,15 @@ fn run_twice(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
             bytes.extend(bench.read(&format!("{name}/{file}"))?);
         }
         let made = std::mem::take(&mut outcome.made);
-        outcome = Outcome { made, ..said.into() };
+        outcome = CaseOutcome { made, ..said.into() };
         outcome.made.push((name.to_owned(), bytes));
     }
     Ok(outcome)
 }
 
-fn sweep(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn sweep(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     bench.write("scenario.toml", SHORT)?;
-    let mut outcome = Outcome::default();
+    let mut outcome = CaseOutcome::default();
     for jobs in ["1", "4"] {
         let said = bench.octant(&[
             "faults",
@@ -48,14 +48,14 @@ fn sweep(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
         ])?;
         let bytes = said.out.clone().into_bytes();
         let made = std::mem::take(&mut outcome.made);
-        outcome = Outcome { made, ..said.into() };
+        outcome = CaseOutcome { made, ..said.into() };
         outcome.made.push((format!("--jobs {jobs}"), bytes));
     }
     Ok(outcome)
 }
 
-fn shards(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
-    let mut outcome = Outcome::default();
+fn shards(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
+    let mut outcome = CaseOutcome::default();
     campaign(bench, 4, ALWAYS, "")?;
     tables(bench, "one processor", &mut outcome)?;
     let (several, parts): (&[&str], &[&str]) = (&["1/1"], &["2/3", "1/3", "3/3"]);
@@ -74,7 +74,7 @@ fn shards(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
 }
 
 /// Merges a campaign, and keeps the bytes of its tables.
-fn tables(bench: &Bench<'_>, how: &str, outcome: &mut Outcome) -> Result<(), CaseError> {
+fn tables(bench: &CaseBench<'_>, how: &str, outcome: &mut CaseOutcome) -> Result<(), CaseSetupError> {
     let said = bench.octant(&["campaign", "merge", "campaign"])?;
     let mut bytes = Vec::new();
     for table in ["cases", "checks", "drift"] {
@@ -82,6 +82,6 @@ fn tables(bench: &Bench<'_>, how: &str, outcome: &mut Outcome) -> Result<(), Cas
     }
     let mut made = std::mem::take(&mut outcome.made);
     made.push((how.to_owned(), bytes));
-    *outcome = Outcome { made, ..said.into() };
+    *outcome = CaseOutcome { made, ..said.into() };
     Ok(())
 }

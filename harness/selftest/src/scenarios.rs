@@ -1,7 +1,7 @@
 //! Scenarios and campaigns from which several cases start.
 
-use super::bench::{Bench, Said};
-use super::error::CaseError;
+use super::bench::{CaseBench, ProcessOutput};
+use super::error::CaseSetupError;
 
 pub(super) const SHORT: &str = include_str!("../../../fixtures/selftest/short.toml");
 pub(super) const SPIKE: &str = include_str!("../../../fixtures/selftest/spike.toml");
@@ -29,11 +29,11 @@ pub(super) const MOSTLY: &str = "schema = 1\ntitle = \"known\"\n[[requirements]]
 
 /// Plans a campaign of a number of instruments.
 pub(super) fn planned(
-    bench: &Bench<'_>,
+    bench: &CaseBench<'_>,
     cases: u32,
     requirements: &str,
     more: &str,
-) -> Result<(), CaseError> {
+) -> Result<(), CaseSetupError> {
     let faults = "\n[[factors]]\nname = \"fault\"\nfaults = [[]]\n";
     let (of_scenario, of_campaign) = if more.starts_with('[') { ("", more) } else { (more, "") };
     bench.write("short.toml", SHORT)?;
@@ -51,11 +51,11 @@ pub(super) fn planned(
 
 /// Runs a campaign.
 pub(super) fn campaign(
-    bench: &Bench<'_>,
+    bench: &CaseBench<'_>,
     cases: u32,
     requirements: &str,
     more: &str,
-) -> Result<(), CaseError> {
+) -> Result<(), CaseSetupError> {
     planned(bench, cases, requirements, more)?;
     let said = bench.octant(&["campaign", "run", "campaign", "--jobs", "1"])?;
     match said.status {
@@ -65,7 +65,7 @@ pub(super) fn campaign(
 }
 
 /// Checks the exit status of a preparing step.
-pub(super) fn needs(said: &Said, status: i32) -> Result<(), CaseError> {
+pub(super) fn needs(said: &ProcessOutput, status: i32) -> Result<(), CaseSetupError> {
     if said.status == Some(status) {
         return Ok(());
     }

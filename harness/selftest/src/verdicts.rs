@@ -1,10 +1,10 @@
 //! Cases that must pass, and cases that must not: known faults in the unit, in requirements, in
 //! recordings, in evidence and in campaigns.
 
-use super::bench::Bench;
-use super::case::Case;
-use super::error::CaseError;
-use super::judge::{Expectation, Outcome};
+use super::bench::CaseBench;
+use super::case::SelftestCase;
+use super::error::CaseSetupError;
+use super::judge::{Expectation, CaseOutcome};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
 use minisign::KeyPair;
 use octant_requirements::Verdict;
@@ -12,10 +12,10 @@ use octant_requirements::Verdict;
 const BIAS_STEP: &str = include_str!("../../../fixtures/selftest/bias-step.toml");
 const DROPPED: &str = include_str!("../../../fixtures/selftest/dropped.toml");
 
-type Work = fn(&Bench<'_>) -> Result<Outcome, CaseError>;
+type Work = fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>;
 
-fn passes(id: &'static str, about: &'static str, run: Work) -> Case {
-    Case { id, about, expectation: Expectation::Pass, run }
+fn passes(id: &'static str, about: &'static str, run: Work) -> SelftestCase {
+    SelftestCase { id, about, expectation: Expectation::Pass, run }
 }
 
 fn fails(
@@ -23,11 +23,11 @@ fn fails(
     about: &'static str,
     (status, because): (i32, &'static str),
     run: Work,
-) -> Case {
-    Case { id, about, expectation: Expectation::NotPass { status, because }, run }
+) -> SelftestCase {
+    SelftestCase { id, about, expectation: Expectation::NotPass { status, because }, run }
 }
 
-pub(super) fn must_pass() -> Vec<Case> {
+pub(super) fn must_pass() -> Vec<SelftestCase> {
     vec![
         passes("kept", "A requirement that is kept, without a fault.", |bench| {
             Ok(bench.run(&clean(SHORT)?, &[])?.into())
@@ -50,7 +50,7 @@ pub(super) fn must_pass() -> Vec<Case> {
     ]
 }
 
-pub(super) fn must_fail() -> Vec<Case> {
+pub(super) fn must_fail() -> Vec<SelftestCase> {
     let mut all = runs();
     all.extend(files());
     all.extend(campaigns());
@@ -58,7 +58,7 @@ pub(super) fn must_fail() -> Vec<Case> {
 }
 
 /// Lists the cases about verdicts of runs.
-fn runs() -> Vec<Case> {
+fn runs() -> Vec<SelftestCase> {
     vec![
         fails("broken", "A limit that no run can keep.", (1, "NEAR"), |bench| {
             let text = edited(&clean(SHORT)?, "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"")?;
@@ -124,7 +124,7 @@ fn runs() -> Vec<Case> {
 }
 
 /// Lists the cases about altered recordings and evidence.
-fn files() -> Vec<Case> {
+fn files() -> Vec<SelftestCase> {
     vec![
         fails(
             "recording-cut",
@@ -193,7 +193,7 @@ fn files() -> Vec<Case> {
 }
 
 /// Lists the cases about verdicts of campaigns.
-fn campaigns() -> Vec<Case> {
+fn campaigns() -> Vec<SelftestCase> {
     vec![
         fails(
             "campaign-too-few",
@@ -309,7 +309,7 @@ fn flip(bytes: &mut [u8]) -> Result<(), String> {
 }
 
 /// Makes a run with every sample in its recording.
-fn recorded(bench: &Bench<'_>) -> Result<(), CaseError> {
+fn recorded(bench: &CaseBench<'_>) -> Result<(), CaseSetupError> {
     let short = edited(&clean(SHORT)?, "duration = \"24 min\"", "duration = \"8 min\"")?;
     let short = edited(&short, "duration = \"10 min\"", "duration = \"1 min\"")?;
     bench.run(&short, &["--set", "record.samples=full"])?.summary()?;
@@ -317,7 +317,7 @@ fn recorded(bench: &Bench<'_>) -> Result<(), CaseError> {
 }
 
 /// Makes a run that is signed by a new key; returns the public key.
-fn evidence(bench: &Bench<'_>, name: &str) -> Result<String, CaseError> {
+fn evidence(bench: &CaseBench<'_>, name: &str) -> Result<String, CaseSetupError> {
     let public = key_pair(bench, name)?;
     bench.write("scenario.toml", &clean(SHORT)?)?;
     let said = bench.octant_with(
@@ -327,7 +327,7 @@ fn evidence(bench: &Bench<'_>, name: &str) -> Result<String, CaseError> {
     needs(&said, 0).map(|()| public)
 }
 
-fn key_pair(bench: &Bench<'_>, name: &str) -> Result<String, CaseError> {
+fn key_pair(bench: &CaseBench<'_>, name: &str) -> Result<String, CaseSetupError> {
     let failed = |error| format!("make a key: {error}");
     let pair = KeyPair::generate_unencrypted_keypair().map_err(failed)?;
     let secret = pair.sk.to_box(None).map_err(failed)?.to_string();
@@ -337,17 +337,17 @@ fn key_pair(bench: &Bench<'_>, name: &str) -> Result<String, CaseError> {
     Ok(pair.pk.to_base64())
 }
 
-fn only_case(bench: &Bench<'_>) -> Result<(String, String), CaseError> {
+fn only_case(bench: &CaseBench<'_>) -> Result<(String, String), CaseSetupError> {
     let plan = octant_campaign::plan::Plan::read(&bench.at("campaign/plan.json"))
         .map_err(|error| error.to_string())?;
     let case = plan.cases.first().ok_or("find a case in the plan")?;
     Ok((format!("campaign/cases/{}", &case.id[..2]), case.id.clone()))
 }
 
-fn status(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+fn status(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let said = bench.octant(&["campaign", "status", "campaign"])?;
     // "TITLE: VERDICT" is the first line.
     let verdict = said.out.lines().next().and_then(|line| line.rsplit(": ").next());
     let verdict = Verdict::ALL.into_iter().find(|known| Some(known.name()) == verdict);
-    Ok(Outcome { verdict, ..said.into() })
+    Ok(CaseOutcome { verdict, ..said.into() })
 }

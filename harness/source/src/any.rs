@@ -4,7 +4,7 @@ use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::{Epoch, LiveSource, PlantSource, Replay, Source, SourceError, TextSource};
 use octant_plant::Truth;
-use octant_recorder::event::Bench;
+use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 
@@ -75,7 +75,7 @@ impl Source for AnySource {
         each!(&self.0, source => source.is_live())
     }
 
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<Bench>>, Option<SourceError>) {
+    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         each!(&mut self.0, source => source.conclude(broken))
     }
 

@@ -4,15 +4,15 @@ use super::SourceError;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_plant::{Plant, config as plant};
-use octant_scenario::resolve::{Draws, Seeded};
-use octant_scenario::{Method, Scenario, Source as SourceKind};
+use octant_scenario::resolve::{DrawnValues, Seeded};
+use octant_scenario::{Method, Scenario, SourceSpec as SourceKind};
 
 /// Why a method of a scenario has no configuration.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigurationError {
     /// The plant's configuration contradicts itself.
     #[error("set up the plant: {0}")]
-    Plant(#[from] octant_plant::ConfigError),
+    Plant(#[from] octant_plant::PlantConfigError),
     /// A source that knows the truth at the start could not be asked for it.
     #[error(transparent)]
     Source(#[from] SourceError),
@@ -29,8 +29,8 @@ pub fn configurations(
     scenario: &Scenario,
     method: Method,
     seed: u64,
-) -> Result<(plant::Config, core::Config, Draws), ConfigurationError> {
-    let draws = Draws::of(scenario, &Seeded(seed));
+) -> Result<(plant::PlantConfig, core::CoreConfig, DrawnValues), ConfigurationError> {
+    let draws = DrawnValues::of(scenario, &Seeded(seed));
     let plant = scenario.plant(seed, &draws);
     // On a ship the attitude at the start depends on the phases that were drawn, or on the ship.
     let truth = match &scenario.source {

@@ -2,7 +2,7 @@
 
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
-use octant_scenario::recorded::{Quantity, SPLIT_MAX};
+use octant_scenario::recorded::{RecordedQuantity, SPLIT_MAX};
 
 /// One row of a file in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ impl Triads {
 /// A row may be split into equal parts of its interval, so that counts can hold faster rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counting {
-    quantity: Quantity,
+    quantity: RecordedQuantity,
     /// Interval assumed for the first row, ns.
     nominal_ns: u64,
     /// Number of samples per row.
@@ -97,7 +97,7 @@ struct Pending {
 impl Counting {
     /// Creates the counting. `nominal_ns` is the interval of a row, `split` the number of samples
     /// made from it.
-    pub(super) fn new(quantity: Quantity, nominal_ns: u64, split: u32) -> Result<Self, String> {
+    pub(super) fn new(quantity: RecordedQuantity, nominal_ns: u64, split: u32) -> Result<Self, String> {
         if !(1..=SPLIT_MAX).contains(&split) {
             return Err(format!("split is {split}, expected 1 to {SPLIT_MAX}"));
         }
@@ -163,8 +163,8 @@ impl Counting {
         let part_ns = until_end(left) - until_end(left - 1);
         self.sequence += 1;
         let factor = match self.quantity {
-            Quantity::Rates => part_ns as f64 * 1e-9,
-            Quantity::Increments => part_ns as f64 / interval_ns as f64,
+            RecordedQuantity::Rates => part_ns as f64 * 1e-9,
+            RecordedQuantity::Increments => part_ns as f64 / interval_ns as f64,
         };
         let mut sample = Sample {
             sequence: self.sequence,
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn parts_have_even_stamps_and_the_sum_of_the_row() {
-        for quantity in [Quantity::Rates, Quantity::Increments] {
+        for quantity in [RecordedQuantity::Rates, RecordedQuantity::Increments] {
             let run = |split: u32| {
                 let mut counting = Counting::new(quantity, 10_000_000, split).unwrap();
                 let (mut stamps, mut sum, mut last) = (Vec::new(), 0i64, 0);
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn a_part_holds_a_faster_rate() {
         let flagged = |split: u32| {
-            let mut counting = Counting::new(Quantity::Rates, 10_000_000, split).unwrap();
+            let mut counting = Counting::new(RecordedQuantity::Rates, 10_000_000, split).unwrap();
             // 390 °/s: 2³¹ counts in 10 ms are 179 °/s.
             counting.begin(row(10_000_000, 6.8)).unwrap();
             while counting.next().is_some() {}
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_first_row_near_time_zero_has_no_stamp_before_it() {
-        let mut counting = Counting::new(Quantity::Rates, 10, 5).unwrap();
+        let mut counting = Counting::new(RecordedQuantity::Rates, 10, 5).unwrap();
         counting.begin(row(5, 0.0)).unwrap();
         let stamps: Vec<u64> =
             std::iter::from_fn(|| counting.next()).map(|sample| sample.device_time.ns).collect();
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_split_has_bounds() {
         for split in [0, SPLIT_MAX + 1] {
-            assert!(Counting::new(Quantity::Rates, 10, split).is_err());
+            assert!(Counting::new(RecordedQuantity::Rates, 10, split).is_err());
         }
     }
 }

@@ -4,7 +4,7 @@ use super::counting::{Counting, Measured};
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
 use super::{Epoch, SourceError};
 use mcap::records::{Record, op};
-use octant_recorder::records::{End, Records};
+use octant_recorder::records::{FileEnd, Records};
 use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, TimeUnit};
 use std::collections::{BTreeSet, HashMap};
 use std::io::Read;
@@ -80,7 +80,7 @@ impl<R: Read> Foreign<R> {
     }
 
     pub(super) fn truncated(&self) -> bool {
-        self.records.end() == Some(End::Truncated)
+        self.records.end() == Some(FileEnd::Truncated)
     }
 
     pub(super) fn saturated(&self) -> u64 {

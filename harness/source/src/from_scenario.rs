@@ -1,7 +1,7 @@
 //! Opens the source of a scenario.
 
 use super::{AnySource, LiveSource, Replay, SourceError, TextSource};
-use octant_plant::config::Config;
+use octant_plant::config::PlantConfig;
 use octant_scenario::recorded::{TextFiles, TextMapping};
 use octant_scenario::{self as scenario, FileName, Scenario};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 ///
 /// # Errors
 /// As [`open`].
-pub fn check(scenario: &Scenario, plant: &Config) -> Result<(), SourceError> {
+pub fn check(scenario: &Scenario, plant: &PlantConfig) -> Result<(), SourceError> {
     match scenario.source.instrument() {
         Some(instrument) => LiveSource::check(scenario, instrument),
         None => open(scenario, plant).map(drop),
@@ -24,14 +24,14 @@ pub fn check(scenario: &Scenario, plant: &Config) -> Result<(), SourceError> {
 ///
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
-pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<AnySource>, SourceError> {
+pub fn open(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
     let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
     match &scenario.source {
-        scenario::Source::Plant => Ok(None),
-        scenario::Source::Replay { file, mapping } => {
+        scenario::SourceSpec::Plant => Ok(None),
+        scenario::SourceSpec::Replay { file, mapping } => {
             Ok(Some(Replay::open(&path(file)?, mapping.as_ref())?.into()))
         }
-        scenario::Source::Text(mapping) => {
+        scenario::SourceSpec::Text(mapping) => {
             let path = |written: &PathBuf| path(&FileName(written.display().to_string()));
             let files = match &mapping.files {
                 TextFiles::One(file) => TextFiles::One(path(file)?),
@@ -42,9 +42,9 @@ pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<AnySource>, So
             let mapping = TextMapping { files, ..mapping.clone() };
             Ok(Some(TextSource::open(&mapping)?.into()))
         }
-        scenario::Source::Live(instrument) => {
+        scenario::SourceSpec::Live(instrument) => {
             Ok(Some(LiveSource::of(scenario, instrument)?.into()))
         }
-        scenario::Source::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
+        scenario::SourceSpec::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
     }
 }

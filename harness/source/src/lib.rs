@@ -22,7 +22,7 @@ pub use replay::Replay;
 pub use text::TextSource;
 
 use octant_plant::Truth;
-use octant_recorder::event::Bench;
+use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
@@ -74,7 +74,7 @@ pub trait Source {
     /// Ends the run; `broken` is the reason where the run was aborted. Stops everything that moves.
     /// Returns figures for the report, if there are any, and an error if the equipment was stopped
     /// by another cause or doesn't stop as it should: by then every stop command was sent.
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<Bench>>, Option<SourceError>) {
+    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let _ = broken;
         (None, None)
     }

@@ -1,8 +1,8 @@
 //! The plant as a source.
 
 use super::{Epoch, Source, SourceError};
-use octant_plant::config::Config;
-use octant_plant::{ConfigError, Plant, Truth};
+use octant_plant::config::PlantConfig;
+use octant_plant::{PlantConfigError, Plant, Truth};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 
@@ -19,7 +19,7 @@ impl PlantSource {
     ///
     /// # Errors
     /// If a field of the configuration is out of its range.
-    pub fn new(config: &Config, samples: u64) -> Result<Self, ConfigError> {
+    pub fn new(config: &PlantConfig, samples: u64) -> Result<Self, PlantConfigError> {
         Ok(Self { plant: Plant::new(config)?, total: samples, left: samples })
     }
 
@@ -63,13 +63,13 @@ impl Source for PlantSource {
 mod tests {
     use super::*;
     use octant_scenario::Scenario;
-    use octant_scenario::resolve::{Draws, Seeded};
+    use octant_scenario::resolve::{DrawnValues, Seeded};
 
     #[test]
     fn it_is_the_plant_and_it_ends() {
         let text = "schema = 1\n[procedure.calibration]\n";
         let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
-        let config = scenario.plant(3, &Draws::of(&scenario, &Seeded(3)));
+        let config = scenario.plant(3, &DrawnValues::of(&scenario, &Seeded(3)));
         let mut source = PlantSource::new(&config, 450).unwrap();
         let mut plant = Plant::new(&config).unwrap();
         assert_eq!(source.samples_total(), Some(450));

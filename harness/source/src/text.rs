@@ -6,7 +6,7 @@ use super::{Epoch, Source, SourceError, nominal_period_ns};
 use octant_base::number::counted;
 use octant_plant::Truth;
 use octant_sample::GimbalCommand;
-use octant_scenario::recorded::{Axis, Column, TextFiles, TextMapping, TimeUnit};
+use octant_scenario::recorded::{AxisColumn, RecordedColumn, TextFiles, TextMapping, TimeUnit};
 use std::path::Path;
 
 /// Streams delimited text.
@@ -157,17 +157,17 @@ impl File {
             .chain(gimbal)
             .map(|axis| &axis.column)
             .chain(time)
-            .any(|column| matches!(column, Column::Name(_)));
+            .any(|column| matches!(column, RecordedColumn::Name(_)));
         let rows =
             Rows::open(path, mapping.delimiter, &mapping.comment, mapping.skip_lines, named)?;
-        let axis = |axis: &Axis| -> Result<Resolved, SourceError> {
+        let axis = |axis: &AxisColumn| -> Result<Resolved, SourceError> {
             Ok(Resolved {
                 index: rows.column(&axis.column)?,
                 offset: axis.offset,
                 scale: axis.scale,
             })
         };
-        let three = |axes: &[Axis; 3]| -> Result<[Resolved; 3], SourceError> {
+        let three = |axes: &[AxisColumn; 3]| -> Result<[Resolved; 3], SourceError> {
             Ok([axis(&axes[0])?, axis(&axes[1])?, axis(&axes[2])?])
         };
         let time = match &mapping.time {

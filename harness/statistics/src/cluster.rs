@@ -48,7 +48,7 @@ pub fn draws<S: Hash + Eq, H: Hash + Eq>(
 
 /// Numbers of draws by result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Draws {
+pub struct DrawCounts {
     /// Draws whose rows all passed.
     pub passed: u64,
     /// Draws with a row that didn't pass: it failed or was inconclusive.
@@ -59,7 +59,7 @@ pub struct Draws {
     pub rows: u64,
 }
 
-impl Draws {
+impl DrawCounts {
     /// Counts draws. Each row has its draw, and whether it passed; `None`: no result yet.
     #[must_use]
     pub fn of(rows: impl IntoIterator<Item = (usize, Option<bool>)>) -> Self {
@@ -98,14 +98,14 @@ impl Draws {
 }
 
 /// Draws that are added one by one, each with all of its rows. It gives the counts of [`draws`] and
-/// [`Draws::of`] for all draws so far, without processing them again.
+/// [`DrawCounts::of`] for all draws so far, without processing them again.
 #[derive(Clone, Debug, Default)]
 pub struct Growing<H> {
     by_stream: HashMap<H, usize>,
     /// Index of the entry that each was joined with; its own index if it stands for a draw.
     joined: Vec<usize>,
     passed: Vec<bool>,
-    counts: Draws,
+    counts: DrawCounts,
 }
 
 impl<H: Hash + Eq> Growing<H> {
@@ -134,7 +134,7 @@ impl<H: Hash + Eq> Growing<H> {
 
     /// Counts so far.
     #[must_use]
-    pub const fn counts(&self) -> Draws {
+    pub const fn counts(&self) -> DrawCounts {
         self.counts
     }
 

@@ -1,15 +1,15 @@
 //! Uncertainty of a sample's standard deviation.
 
-use crate::sample::{Interval, deviation};
+use crate::sample::{ConfidenceInterval, deviation};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Standard deviation about the mean with its two-sided interval, for normal values: s √((n − 1) / χ²).
 /// `None` for fewer than two values, or for an invalid confidence.
 #[must_use]
-pub fn interval(values: &[f64], confidence: f64) -> Option<Interval> {
+pub fn interval(values: &[f64], confidence: f64) -> Option<ConfidenceInterval> {
     let value = deviation(values)?;
     let (low, high) = factors(values.len() as u64 - 1, confidence)?;
-    Some(Interval { value, low: value * low, high: value * high })
+    Some(ConfidenceInterval { value, low: value * low, high: value * high })
 }
 
 /// Factors from the standard deviation of a sample to the ends of its interval.

@@ -15,7 +15,7 @@ pub struct Outlier {
 /// Scale on which values are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Scale {
+pub enum OutlierScale {
     /// Linear, for errors of either sign.
     Linear,
     /// Logarithmic, for magnitudes, which are skewed. A value of zero or less has an infinite score.
@@ -32,13 +32,13 @@ const MAD_OF_SIGMA: f64 = 0.674_489_750_196_081_7;
 /// first (Iglewicz and Hoaglin, How to Detect and Handle Outliers, ASQC 1993). A value that isn't
 /// finite is always an outlier, and isn't used for the median.
 #[must_use]
-pub fn outliers(values: &[f64], scale: Scale, limit: f64) -> Vec<Outlier> {
+pub fn outliers(values: &[f64], scale: OutlierScale, limit: f64) -> Vec<Outlier> {
     let scaled: Vec<f64> = values
         .iter()
         .map(|v| match scale {
-            Scale::Linear => *v,
-            Scale::Logarithm if *v > 0.0 => libm::log(*v),
-            Scale::Logarithm => f64::NEG_INFINITY,
+            OutlierScale::Linear => *v,
+            OutlierScale::Logarithm if *v > 0.0 => libm::log(*v),
+            OutlierScale::Logarithm => f64::NEG_INFINITY,
         })
         .collect();
     let finite: Vec<f64> = scaled.iter().copied().filter(|v| v.is_finite()).collect();

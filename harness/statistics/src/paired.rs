@@ -1,7 +1,7 @@
 //! Paired comparison of two sets of runs, seed by seed: the instrument and its noise are common to each
 //! pair.
 
-use crate::sample::{Interval, deviation, mean, ranks, rms};
+use crate::sample::{ConfidenceInterval, deviation, mean, ranks, rms};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ContinuousCDF};
 
@@ -24,10 +24,10 @@ pub fn sign_test(first: u64, second: u64) -> f64 {
 
 /// Statistics of the differences of pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Difference {
+pub struct PairedDifference {
     /// Mean of second − first with its interval by Student's distribution, over the pairs with two
     /// finite values; `None` for fewer than two such pairs.
-    pub mean: Option<Interval>,
+    pub mean: Option<ConfidenceInterval>,
     /// Standard deviation of the same differences.
     pub deviation: Option<f64>,
     /// Number of pairs with two finite values.
@@ -48,7 +48,7 @@ pub struct Difference {
 ///
 /// Returns `None` if the lengths differ, there are fewer than two pairs, or a value is NaN.
 #[must_use]
-pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Difference> {
+pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<PairedDifference> {
     if first.len() != second.len() || first.len() < 2 {
         return None;
     }
@@ -65,12 +65,12 @@ pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Diff
     let interval = || {
         let (value, n) = (mean(&finite)?, finite.len());
         let half = student(n.checked_sub(1)?, confidence)? * spread? / libm::sqrt(n as f64);
-        Some(Interval { value, low: value - half, high: value + half })
+        Some(ConfidenceInterval { value, low: value - half, high: value + half })
     };
     let count =
         |sign: &dyn Fn(f64) -> bool| differences.iter().filter(|d| sign(**d)).count() as u64;
     let (less, more) = (count(&|d| d < 0.0), count(&|d| d > 0.0));
-    Some(Difference {
+    Some(PairedDifference {
         mean: interval(),
         deviation: spread,
         finite: finite.len() as u64,

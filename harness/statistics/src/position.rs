@@ -1,7 +1,7 @@
 //! Position errors of many runs at one time: CEP50, R95, drms.
 
 use crate::quantile;
-use crate::sample::{Interval, percentile, rms};
+use crate::sample::{ConfidenceInterval, percentile, rms};
 use serde::{Deserialize, Serialize};
 
 /// Circular error probable of a Gaussian error, 0.5887 (σ_lat + σ_lon): accurate within 3 % if one σ is
@@ -47,9 +47,9 @@ pub fn position_statistics(north_east: &[[f64; 2]]) -> Option<PositionStatistics
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionBounds {
     /// Median of the radial errors.
-    pub cep50: Interval,
+    pub cep50: ConfidenceInterval,
     /// 95th percentile of the radial errors.
-    pub r95: Interval,
+    pub r95: ConfidenceInterval,
 }
 
 /// Bounds of CEP50 and R95 with this confidence; `None` without errors.

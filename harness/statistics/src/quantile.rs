@@ -4,7 +4,7 @@
 //! statistics bound the quantile (David and Nagaraja, Order Statistics, 3rd edition, section 7.1;
 //! Wilks, 1942, for the number of values that a bound needs).
 
-use crate::sample::{Interval, percentile};
+use crate::sample::{ConfidenceInterval, percentile};
 use statrs::distribution::{Beta, ContinuousCDF};
 
 /// P(at most `k` of `n` are below the `p`-quantile), for a continuous distribution.
@@ -79,9 +79,9 @@ pub fn values_needed(p: f64, confidence: f64) -> Option<u64> {
 /// The `p`-quantile with its two-sided interval: each end has half of the remaining probability. An end
 /// for which there are too few values is infinite.
 #[must_use]
-pub fn interval(values: &[f64], p: f64, confidence: f64) -> Option<Interval> {
+pub fn interval(values: &[f64], p: f64, confidence: f64) -> Option<ConfidenceInterval> {
     let each = 0.5 * (1.0 + confidence);
-    Some(Interval {
+    Some(ConfidenceInterval {
         value: percentile(values, p)?,
         low: lower_bound(values, p, each).unwrap_or(f64::NEG_INFINITY),
         high: upper_bound(values, p, each).unwrap_or(f64::INFINITY),

@@ -6,7 +6,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 
 /// A rank correlation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Correlation {
+pub struct RankCorrelation {
     /// Spearman's ρ.
     pub rho: f64,
     /// Two-sided probability of a magnitude at least as large without any relation.
@@ -20,7 +20,7 @@ pub struct Correlation {
 /// Returns `None` if the lengths differ, there are fewer than three pairs, a value is NaN, or one side
 /// is constant.
 #[must_use]
-pub fn spearman(x: &[f64], y: &[f64]) -> Option<Correlation> {
+pub fn spearman(x: &[f64], y: &[f64]) -> Option<RankCorrelation> {
     let n = x.len();
     if y.len() != n || n < 3 || x.iter().chain(y).any(|v| v.is_nan()) {
         return None;
@@ -41,10 +41,10 @@ pub fn spearman(x: &[f64], y: &[f64]) -> Option<Correlation> {
         rest if rest > 0.0 => Beta::new(0.5 * degrees, 0.5).ok()?.cdf(rest),
         _ => 0.0,
     };
-    Some(Correlation { rho, p })
+    Some(RankCorrelation { rho, p })
 }
 
-impl Correlation {
+impl RankCorrelation {
     /// True if the correlation is significant at this level as one of `looked_at` tests, each of which
     /// has its part of the level (Bonferroni).
     #[must_use]
@@ -59,7 +59,7 @@ pub struct Sensitivity {
     /// Name of the factor.
     pub factor: String,
     /// Rank correlation; `None` if the factor is the same in all runs, or a value is NaN.
-    pub correlation: Option<Correlation>,
+    pub correlation: Option<RankCorrelation>,
 }
 
 /// Rank correlations of an output with every factor, the strongest first.

@@ -1,7 +1,7 @@
 //! Radial error rate and time-RMS of one run, and their percentiles over runs.
 
 use crate::quantile;
-use crate::sample::{Interval, percentile};
+use crate::sample::{ConfidenceInterval, percentile};
 use serde::{Deserialize, Serialize};
 
 /// Radial error at one time.
@@ -55,9 +55,9 @@ pub fn radial_rates(rates_nmi_per_h: &[f64]) -> Option<[f64; 2]> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RateBounds {
     /// Median.
-    pub rate50: Interval,
+    pub rate50: ConfidenceInterval,
     /// 95th percentile.
-    pub rate95: Interval,
+    pub rate95: ConfidenceInterval,
 }
 
 /// 50th and 95th percentile of rates with their intervals; `None` without rates.

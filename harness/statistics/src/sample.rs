@@ -55,7 +55,7 @@ pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
 
 /// An estimate with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     /// Estimate.
     pub value: f64,
     /// Lower end; minus infinity if the sample gives none.

@@ -1,7 +1,7 @@
 //! Comparison with closed forms.
 
 use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
-use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
 use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
 use octant_statistics::{
@@ -108,7 +108,7 @@ fn a_series_on_a_grid_is_straight_between_its_points() {
 
 #[test]
 fn what_is_more_than_chance_is_less_the_more_is_looked_at() {
-    let found = rank::Correlation { rho: 0.5, p: 0.02 };
+    let found = rank::RankCorrelation { rho: 0.5, p: 0.02 };
     assert!(found.stands_out(0.05, 1) && found.stands_out(0.05, 2));
     assert!(!found.stands_out(0.05, 3));
 }
@@ -119,17 +119,17 @@ fn what_stands_out_is_found_and_nothing_else() {
     values[17] = 40.0;
     values[200] = -25.0;
     values[5] = f64::NAN;
-    let found: Vec<usize> = outliers(&values, Scale::Linear, 5.0).iter().map(|o| o.index).collect();
+    let found: Vec<usize> = outliers(&values, OutlierScale::Linear, 5.0).iter().map(|o| o.index).collect();
     assert_eq!(found, [5, 17, 200]);
     // Skewed magnitudes have outliers by themselves, their logarithms don't.
     let skewed: Vec<f64> = normals(3, "skewed", 300).into_iter().map(|v| (1.5 * v).exp()).collect();
-    assert!(outliers(&skewed, Scale::Linear, 5.0).len() > 10);
-    assert_eq!(outliers(&skewed, Scale::Logarithm, 5.0), []);
+    assert!(outliers(&skewed, OutlierScale::Linear, 5.0).len() > 10);
+    assert_eq!(outliers(&skewed, OutlierScale::Logarithm, 5.0), []);
     // If most values are equal, every other value is an outlier with an infinite score.
-    let found = outliers(&[1.0, 1.0, 1.0, 1.0, 1.1], Scale::Linear, LIMIT);
+    let found = outliers(&[1.0, 1.0, 1.0, 1.0, 1.1], OutlierScale::Linear, LIMIT);
     assert_eq!((found.len(), found[0].index, found[0].score), (1, 4, f64::INFINITY));
-    assert_eq!(outliers(&[1.0, 1.0, 1.0], Scale::Linear, LIMIT), []);
-    assert_eq!(outliers(&[1.0, 2.0, 0.0], Scale::Logarithm, LIMIT)[0].index, 2);
+    assert_eq!(outliers(&[1.0, 1.0, 1.0], OutlierScale::Linear, LIMIT), []);
+    assert_eq!(outliers(&[1.0, 2.0, 0.0], OutlierScale::Logarithm, LIMIT)[0].index, 2);
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! The unit of inference: independent draws, not rows.
 
-use octant_statistics::cluster::{Draws, Growing, draws};
+use octant_statistics::cluster::{DrawCounts, Growing, draws};
 use octant_statistics::proportion::Demand;
 use proptest::prelude::*;
 
 const ASKED: Demand = Demand { pass: 0.95, confidence: 0.95 };
 
 /// Counts the draws of a design whose rows all passed, and tests whether they show the demand.
-fn shown(rows: impl IntoIterator<Item = (u64, Option<String>)>) -> (Draws, bool) {
+fn shown(rows: impl IntoIterator<Item = (u64, Option<String>)>) -> (DrawCounts, bool) {
     let of = draws(rows);
-    let counts = Draws::of(of.into_iter().map(|draw| (draw, Some(true))));
+    let counts = DrawCounts::of(of.into_iter().map(|draw| (draw, Some(true))));
     (counts, ASKED.is_shown(counts.not_passed, counts.known()))
 }
 
@@ -69,8 +69,8 @@ fn a_draw_passes_if_all_of_its_rows_do() {
         (3, None),
         (3, Some(false)),
     ];
-    let counts = Draws::of(rows);
-    assert_eq!(counts, Draws { passed: 1, not_passed: 2, open: 1, rows: 8 });
+    let counts = DrawCounts::of(rows);
+    assert_eq!(counts, DrawCounts { passed: 1, not_passed: 2, open: 1, rows: 8 });
     assert_eq!((counts.known(), counts.all()), (3, 4));
 }
 
@@ -87,7 +87,7 @@ proptest! {
                 .flat_map(|(seed, rows)| rows.iter().map(move |(passed, stream)| (seed, *passed, *stream)))
                 .collect();
             let of = draws(rows.iter().map(|(seed, _, stream)| (*seed, *stream)));
-            let all = Draws::of(of.into_iter().zip(&rows).map(|(draw, row)| (draw, Some(row.1))));
+            let all = DrawCounts::of(of.into_iter().zip(&rows).map(|(draw, row)| (draw, Some(row.1))));
             prop_assert_eq!(growing.counts(), all);
         }
     }

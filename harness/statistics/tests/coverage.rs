@@ -11,11 +11,11 @@
 use octant_random::normal::Ziggurat;
 use octant_random::philox::block;
 use octant_random::stream::{Phase, key};
-use octant_statistics::cluster::{Draws, draws};
+use octant_statistics::cluster::{DrawCounts, draws};
 use octant_statistics::convergence::{mean, pass};
 use octant_statistics::power::{mean_shift, sigma_ratios, signed_rank_shift, turning};
 use octant_statistics::proportion::{Demand, success_lower_bound, success_upper_bound};
-use octant_statistics::sample::Interval;
+use octant_statistics::sample::ConfidenceInterval;
 use octant_statistics::{deviation, normal, paired, quantile};
 
 const LEVELS: [f64; 3] = [0.5, 0.9, 0.95];
@@ -108,7 +108,7 @@ impl Study {
     }
 }
 
-fn holds(interval: Interval, truth: f64) -> bool {
+fn holds(interval: ConfidenceInterval, truth: f64) -> bool {
     interval.low <= truth && truth <= interval.high
 }
 
@@ -133,9 +133,9 @@ fn design(
     rows
 }
 
-fn counted(rows: &[(u64, bool)]) -> Draws {
+fn counted(rows: &[(u64, bool)]) -> DrawCounts {
     let of = draws(rows.iter().map(|(seed, _)| (*seed, None::<u64>)));
-    Draws::of(of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw, Some(*passed))))
+    DrawCounts::of(of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw, Some(*passed))))
 }
 
 /// Probability that all rows of an instrument pass, by quadrature over their shared part.

@@ -1,7 +1,7 @@
 //! Draws of factors: their dependencies and distributions.
 
 use octant_statistics::draw::{
-    Correlation, Correlations, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,
+    FactorCorrelation, Correlations, Distribution, DrawError, Factor, DrawnFactor, latin_hypercube, monte_carlo,
 };
 use octant_statistics::{normal, rank, sample};
 
@@ -15,15 +15,15 @@ fn factors() -> Vec<Factor> {
     ]
 }
 
-fn pair(first: &str, second: &str, value: f64) -> Correlation {
-    Correlation { first: first.to_owned(), second: second.to_owned(), value }
+fn pair(first: &str, second: &str, value: f64) -> FactorCorrelation {
+    FactorCorrelation { first: first.to_owned(), second: second.to_owned(), value }
 }
 
-fn column(draws: &[Vec<Value>], at: usize) -> Vec<f64> {
+fn column(draws: &[Vec<DrawnFactor>], at: usize) -> Vec<f64> {
     draws.iter().map(|row| row[at].number()).collect()
 }
 
-fn draws(factors: &[Factor], correlations: &[Correlation], n: u64) -> Vec<Vec<Value>> {
+fn draws(factors: &[Factor], correlations: &[FactorCorrelation], n: u64) -> Vec<Vec<DrawnFactor>> {
     (0..n).map(|i| monte_carlo(factors, correlations, 11, i).unwrap()).collect()
 }
 
@@ -53,7 +53,7 @@ fn a_draw_depends_on_seed_name_and_number_alone() {
         assert_ne!(row[2], plain[2]);
     }
     // Frozen: these bits determine the ids of cases.
-    let Value::Number(first) = whole[0][0] else { panic!() };
+    let DrawnFactor::Number(first) = whole[0][0] else { panic!() };
     assert_eq!(first.to_bits(), FIRST_BIAS_BITS, "{:#x} {first}", first.to_bits());
 }
 
@@ -133,7 +133,7 @@ fn a_choice_without_weight_is_never_drawn() {
             weights.push(0.0);
             let factor = Factor::new("choice", Distribution::Choice { weights });
             for u in [f64::MIN_POSITIVE, 0.5, 1.0 - f64::EPSILON / 2.0] {
-                let Value::Choice(drawn) = factor.at(u).unwrap() else { panic!("no choice") };
+                let DrawnFactor::Choice(drawn) = factor.at(u).unwrap() else { panic!("no choice") };
                 assert!(drawn < count, "{count} of {weight}");
             }
         }
@@ -170,7 +170,7 @@ fn scores(x: &[f64], y: &[f64]) -> f64 {
 #[test]
 fn what_can_not_be_drawn_is_told() {
     let all = factors();
-    let message = |factors: &[Factor], correlations: &[Correlation]| {
+    let message = |factors: &[Factor], correlations: &[FactorCorrelation]| {
         monte_carlo(factors, correlations, 1, 0).unwrap_err().to_string()
     };
     let normal = |sigma| Factor::new("x", Distribution::Normal { mean: 0.0, sigma });

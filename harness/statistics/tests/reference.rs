@@ -1,8 +1,8 @@
 //! Comparison with numbers of scipy and numpy: `fixtures/golden/statistics.json`, with the way they
 //! were made beside it.
 
-use octant_statistics::draw::{Distribution, Factor, Value};
-use octant_statistics::outlier::{Scale, outliers};
+use octant_statistics::draw::{Distribution, Factor, DrawnFactor};
+use octant_statistics::outlier::{OutlierScale, outliers};
 use octant_statistics::proportion::{
     Demand, Needed, further_at_rate, further_if_all_pass, success_lower_bound, success_upper_bound,
 };
@@ -190,7 +190,7 @@ fn truncated_distributions_by_their_inverse() {
         (factor.low, factor.high) = (row["low"].as_f64(), row["high"].as_f64());
         for pair in row["rows"].as_array().unwrap() {
             let pair = numbers(pair);
-            let Value::Number(found) = factor.at(pair[0]).unwrap() else { panic!("{row}") };
+            let DrawnFactor::Number(found) = factor.at(pair[0]).unwrap() else { panic!("{row}") };
             assert!(
                 (found - pair[1]).abs() < 1e-9 * pair[1].abs().max(1.0),
                 "{row} {pair:?} {found}"
@@ -203,7 +203,7 @@ fn truncated_distributions_by_their_inverse() {
 fn modified_scores_by_the_median() {
     let golden = golden();
     let (values, scores) = (numbers(&golden["mad"]["values"]), numbers(&golden["mad"]["scores"]));
-    let found = outliers(&values, Scale::Linear, 0.0);
+    let found = outliers(&values, OutlierScale::Linear, 0.0);
     // All values except the median itself, whose score is 0.
     assert_eq!(found.len(), values.len() - 1);
     for outlier in &found {

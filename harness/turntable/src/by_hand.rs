@@ -2,7 +2,7 @@
 
 use crate::following::rest;
 use crate::{
-    Axis, Button, Driver, Error, Plan, Settings, Status, Supervisor, Turntable, on_panic,
+    TableAxis, Button, Driver, Error, TablePlan, DriverSettings, TableStatus, Supervisor, Turntable, on_panic,
     on_signals, open,
 };
 
@@ -10,17 +10,17 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Move {
     /// Homing of an axis.
-    Home(Axis),
+    Home(TableAxis),
     /// Turn of an axis to an angle, rad, with at most a rate, rad/s.
-    Goto(Axis, f64, Option<f64>),
+    Goto(TableAxis, f64, Option<f64>),
 }
 
 /// Asks a table for its status. Nothing is switched on, moved or stopped.
 ///
 /// # Errors
 /// If the table doesn't answer.
-pub fn look(plan: &Plan) -> Result<Status, Error> {
-    let settings = Settings { watchdog: None, ..plan.settings };
+pub fn look(plan: &TablePlan) -> Result<TableStatus, Error> {
+    let settings = DriverSettings { watchdog: None, ..plan.settings };
     let port = open(&plan.port)?;
     Driver::on(port, &plan.port, plan.dialect.clone(), settings)?.status()
 }
@@ -32,10 +32,10 @@ pub fn look(plan: &Plan) -> Result<Status, Error> {
 /// If the table can't be taken over, a move is beyond the limits, or the table doesn't do it. By then
 /// every stop command was sent.
 pub fn move_by_hand(
-    plan: &Plan,
+    plan: &TablePlan,
     moves: &[Move],
     guard: &mut std::process::Command,
-) -> Result<Status, Error> {
+) -> Result<TableStatus, Error> {
     // Moves beyond the limits are refused before the table is switched on.
     for one in moves {
         if let Move::Goto(axis, angle_rad, rate_radps) = *one {

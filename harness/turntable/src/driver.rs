@@ -2,7 +2,7 @@
 
 use crate::dialect::{Command, Fields, Pattern, Values};
 use crate::{
-    Axis, AxisStatus, Dialect, EmergencyStop, Error, Guard, Limits, Port, Status, Turntable,
+    TableAxis, AxisStatus, Dialect, EmergencyStop, Error, Guard, TableLimits, TablePort, TableStatus, Turntable,
 };
 use std::io;
 use std::time::{Duration, Instant};
@@ -16,9 +16,9 @@ const ASKED: u32 = 3;
 
 /// Settings of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct DriverSettings {
     /// Limits of angle and rate.
-    pub limits: Limits,
+    pub limits: TableLimits,
     /// Longest wait for a reply.
     pub reply_within: Duration,
     /// Silence after which the controller's watchdog stops the table; `None`: the watchdog isn't used.
@@ -26,11 +26,11 @@ pub struct Settings {
 }
 
 /// Drives a table. On drop the table is stopped.
-pub struct Driver<P: Port> {
+pub struct Driver<P: TablePort> {
     port: P,
     name: String,
     dialect: Dialect,
-    settings: Settings,
+    settings: DriverSettings,
     stop: EmergencyStop,
     guard: Option<Guard>,
     /// Bytes of an incomplete reply.
@@ -41,14 +41,14 @@ pub struct Driver<P: Port> {
     drives: bool,
 }
 
-impl<P: Port> Driver<P> {
+impl<P: TablePort> Driver<P> {
     /// Takes a table over: enables its drives, starts its watchdog, and asks for its status. `name` is
     /// the port's name in messages.
     ///
     /// # Errors
     /// If the limits are invalid, the language has no watchdog but one is requested, or the table
     /// doesn't answer.
-    pub fn new(port: P, name: &str, dialect: Dialect, settings: Settings) -> Result<Self, Error> {
+    pub fn new(port: P, name: &str, dialect: Dialect, settings: DriverSettings) -> Result<Self, Error> {
         settings.limits.check()?;
         let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
         if lacking {
@@ -57,7 +57,7 @@ impl<P: Port> Driver<P> {
         let mut driver = Self::on(port, name, dialect, settings)?;
         driver.drives = true;
         driver.command(Command::Begin, &Values::default())?;
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
         }
         driver.feed()?;
@@ -71,7 +71,7 @@ impl<P: Port> Driver<P> {
         mut port: P,
         name: &str,
         dialect: Dialect,
-        settings: Settings,
+        settings: DriverSettings,
     ) -> Result<Self, Error> {
         let gone = |reason| Error::Gone { port: name.to_owned(), reason };
         port.set_wait(WAIT).map_err(gone)?;
@@ -302,8 +302,8 @@ impl<P: Port> Driver<P> {
     }
 }
 
-impl<P: Port> Turntable for Driver<P> {
-    fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+impl<P: TablePort> Turntable for Driver<P> {
+    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
         self.stop.check()?;
         let limits = *self.settings.limits.of(axis);
         let rate = rate_radps.unwrap_or(limits.rate_radps);
@@ -323,7 +323,7 @@ impl<P: Port> Turntable for Driver<P> {
         self.command(Command::Goto, &values)
     }
 
-    fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+    fn rate(&mut self, axis: TableAxis, rate_radps: f64) -> Result<(), Error> {
         self.stop.check()?;
         self.settings.limits.rate(axis, rate_radps)?;
         if self.dialect.lines(Command::Rate).is_empty() {
@@ -341,7 +341,7 @@ impl<P: Port> Turntable for Driver<P> {
 
     fn stop(&mut self) -> Result<(), Error> {
         let mut result = Ok(());
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             let values = Values { axis: Some(axis), ..Values::default() };
             // The second axis is stopped whatever the result for the first one.
             result = result.and(self.command(Command::Stop, &values));
@@ -352,7 +352,7 @@ impl<P: Port> Turntable for Driver<P> {
         result
     }
 
-    fn home(&mut self, axis: Axis) -> Result<(), Error> {
+    fn home(&mut self, axis: TableAxis) -> Result<(), Error> {
         self.stop.check()?;
         if self.dialect.lines(Command::Home).is_empty() {
             let dialect = self.dialect.name.clone();
@@ -361,9 +361,9 @@ impl<P: Port> Turntable for Driver<P> {
         self.command(Command::Home, &Values { axis: Some(axis), ..Values::default() })
     }
 
-    fn status(&mut self) -> Result<Status, Error> {
-        let mut status = Status::default();
-        for axis in Axis::ALL {
+    fn status(&mut self) -> Result<TableStatus, Error> {
+        let mut status = TableStatus::default();
+        for axis in TableAxis::ALL {
             let fields = self.dialect.write(&Values { axis: Some(axis), ..Values::default() });
             let mut found = AxisStatus::default();
             for question in self.dialect.status.clone() {
@@ -386,7 +386,7 @@ impl<P: Port> Turntable for Driver<P> {
         Ok(status)
     }
 
-    fn limits(&self) -> &Limits {
+    fn limits(&self) -> &TableLimits {
         &self.settings.limits
     }
 
@@ -395,7 +395,7 @@ impl<P: Port> Turntable for Driver<P> {
     }
 }
 
-impl<P: Port> Drop for Driver<P> {
+impl<P: TablePort> Drop for Driver<P> {
     fn drop(&mut self) {
         // After `finish` the table rests, and stopping it again does no harm.
         if self.drives {

@@ -1,6 +1,6 @@
 //! Errors of a table.
 
-use crate::Axis;
+use crate::TableAxis;
 use std::time::Duration;
 
 /// Error of a table.
@@ -52,7 +52,7 @@ pub enum Error {
     #[error("{axis} is at rest at {found:.4}°, expected {expected:.4}° within {tolerance:.4}°")]
     Elsewhere {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
         /// Angle found, degrees.
         found: f64,
         /// Target, degrees.
@@ -64,7 +64,7 @@ pub enum Error {
     #[error("{axis} is at rest after homing without a reference")]
     NotHomed {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
     },
     /// A reply doesn't match its command.
     #[error("{port}: found the reply `{reply}` to `{sent}`, expected `{expected}`")]
@@ -95,13 +95,13 @@ pub enum Error {
     )]
     Limits {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
     },
     /// An angle is beyond the soft limits.
     #[error("{axis} {degrees:.4}° is beyond its limits, {least}° to {most}°")]
     Angle {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
         /// Angle, degrees.
         degrees: f64,
         /// Least angle, degrees.
@@ -113,7 +113,7 @@ pub enum Error {
     #[error("{axis} at {found:.4} °/s is faster than its limit, {most} °/s")]
     Rate {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
         /// Rate, °/s.
         found: f64,
         /// Largest rate, °/s.
@@ -123,7 +123,7 @@ pub enum Error {
     #[error("the controller reports fault {fault:#x} of {axis}")]
     Fault {
         /// The axis.
-        axis: Axis,
+        axis: TableAxis,
         /// The fault word.
         fault: u32,
     },

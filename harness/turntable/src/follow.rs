@@ -1,6 +1,6 @@
 //! Transfer of the core's gimbal commands to a table.
 
-use crate::{Axis, Error, Status, Turntable};
+use crate::{TableAxis, Error, TableStatus, Turntable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 
 /// Moves a table to the core's set points.
@@ -31,8 +31,8 @@ impl Follower {
         let target = command.target;
         let mut any = false;
         for (axis, count, angle_rad) in [
-            (Axis::Azimuth, target.azimuth, target.azimuth_rad()),
-            (Axis::Roll, target.roll, target.roll_rad()),
+            (TableAxis::Azimuth, target.azimuth, target.azimuth_rad()),
+            (TableAxis::Roll, target.roll, target.roll_rad()),
         ] {
             if self.told[axis.index()] != Some(count) {
                 table.goto(axis, angle_rad, None)?;
@@ -44,7 +44,7 @@ impl Follower {
     }
 }
 
-impl Status {
+impl TableStatus {
     /// Angles in the form of a sample.
     #[must_use]
     pub fn gimbal(&self) -> GimbalAngles {

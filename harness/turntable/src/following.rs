@@ -1,7 +1,7 @@
 //! A table that follows a run.
 
 use crate::{
-    Axis, Button, Dialect, Driver, EmergencyStop, Error, Follower, Place, Port, Settings, Status,
+    TableAxis, Button, Dialect, Driver, EmergencyStop, Error, Follower, TrackPoint, TablePort, DriverSettings, TableStatus,
     Supervisor, Track, Turntable, on_panic, open,
 };
 use octant_sample::{GimbalAngles, GimbalCommand};
@@ -22,13 +22,13 @@ const STILL_RAD: f64 = 1e-6;
 
 /// Requirements of a run on its table.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct TablePlan {
     /// Port, as for [`open`].
     pub port: String,
     /// Command language.
     pub dialect: Dialect,
     /// Limits, timeout and watchdog.
-    pub settings: Settings,
+    pub settings: DriverSettings,
     /// Interval between two looks.
     pub period: Duration,
     /// Silence of this program after which a guard stops the table; `None`: no guard.
@@ -66,10 +66,10 @@ struct Shared {
 /// The thread of the samples neither waits nor takes a lock: it stores a set point, and takes the
 /// queued looks.
 pub struct Following {
-    supervisor: Supervisor<Box<dyn Port>>,
+    supervisor: Supervisor<Box<dyn TablePort>>,
     stop: EmergencyStop,
     shared: Arc<Shared>,
-    looks: rtrb::Consumer<Status>,
+    looks: rtrb::Consumer<TableStatus>,
     track: Track,
     /// Removed after the table is stopped.
     _button: Button,
@@ -98,9 +98,9 @@ impl Following {
     /// # Errors
     /// If the table can't be taken over, doesn't execute a command or doesn't arrive. By then every
     /// stop command was sent.
-    pub fn start(plan: &Plan, guard: &mut std::process::Command) -> Result<Self, Error> {
+    pub fn start(plan: &TablePlan, guard: &mut std::process::Command) -> Result<Self, Error> {
         plan.settings.limits.check()?;
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             plan.settings.limits.angle(axis, 0.0)?;
         }
         let port = open(&plan.port)?;
@@ -114,7 +114,7 @@ impl Following {
         }
         if plan.home {
             // Homing comes before supervision: without a reference the angles are meaningless.
-            for axis in Axis::ALL {
+            for axis in TableAxis::ALL {
                 driver.home(axis)?;
                 let status = rest(&mut driver, &plan.port, plan.start, Driver::feed)?;
                 if status.of(axis).homed == Some(false) {
@@ -125,7 +125,7 @@ impl Following {
         let shared = Arc::new(Shared::default());
         let (mut producer, mut looks) = rtrb::RingBuffer::new(LOOKS);
         let (of_table, mut follower) = (Arc::clone(&shared), Follower::new());
-        let duty = move |status: &Status, driver: &mut Driver<Box<dyn Port>>| {
+        let duty = move |status: &TableStatus, driver: &mut Driver<Box<dyn TablePort>>| {
             of_table.looks.fetch_add(1, Ordering::Relaxed);
             // A full queue means that the run doesn't take them: the angles of its samples then become
             // too old, which is noticed.
@@ -139,13 +139,13 @@ impl Following {
             Ok(())
         };
         let mut supervisor = Supervisor::with_duty(driver, plan.period, duty)?;
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             supervisor.goto(axis, 0.0, None)?;
         }
         let status = rest(&mut supervisor, &plan.port, plan.start, |supervisor| {
             supervisor.emergency().check()
         })?;
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             let found_rad = status.of(axis).angle_rad;
             if !(found_rad.abs() <= plan.tolerance_rad) {
                 return Err(Error::Elsewhere {
@@ -176,7 +176,7 @@ impl Following {
 
     /// Angle of an axis at a time, as far as the looks were taken.
     #[must_use]
-    pub fn at(&self, axis: Axis, when: Instant) -> Option<Place> {
+    pub fn at(&self, axis: TableAxis, when: Instant) -> Option<TrackPoint> {
         self.track.at(axis, when)
     }
 
@@ -224,20 +224,20 @@ pub(crate) fn rest<T: Turntable>(
     port: &str,
     within: Duration,
     mut meanwhile: impl FnMut(&mut T) -> Result<(), Error>,
-) -> Result<Status, Error> {
+) -> Result<TableStatus, Error> {
     let until = Instant::now() + within;
-    let mut before: Option<Status> = None;
+    let mut before: Option<TableStatus> = None;
     let mut since = Instant::now();
     loop {
         meanwhile(table)?;
         let status = table.status()?;
-        let rests = |axis: Axis| match status.of(axis).moving {
+        let rests = |axis: TableAxis| match status.of(axis).moving {
             Some(moving) => !moving,
             None => before.is_some_and(|before| {
                 (status.of(axis).angle_rad - before.of(axis).angle_rad).abs() < STILL_RAD
             }),
         };
-        if !Axis::ALL.into_iter().all(rests) {
+        if !TableAxis::ALL.into_iter().all(rests) {
             since = Instant::now();
         } else if since.elapsed() >= RESTED {
             return Ok(status);

@@ -1,6 +1,6 @@
 //! Limits of a table's angles and rates.
 
-use crate::{Axis, Error};
+use crate::{TableAxis, Error};
 
 /// Limits of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,15 +17,15 @@ pub struct AxisLimits {
 
 /// Limits of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct TableLimits {
     /// Limits of azimuth and roll.
     pub axes: [AxisLimits; 2],
 }
 
-impl Limits {
+impl TableLimits {
     /// Limits of one axis.
     #[must_use]
-    pub fn of(&self, axis: Axis) -> &AxisLimits {
+    pub fn of(&self, axis: TableAxis) -> &AxisLimits {
         &self.axes[axis.index()]
     }
 
@@ -34,7 +34,7 @@ impl Limits {
     /// # Errors
     /// If they aren't.
     pub fn check(&self) -> Result<(), Error> {
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             let AxisLimits { least_rad, most_rad, rate_radps, acceleration_radps2 } =
                 *self.of(axis);
             let positive = |number: f64| number.is_finite() && number > 0.0;
@@ -49,7 +49,7 @@ impl Limits {
     ///
     /// # Errors
     /// If the angle is beyond the limits.
-    pub fn angle(&self, axis: Axis, angle_rad: f64) -> Result<(), Error> {
+    pub fn angle(&self, axis: TableAxis, angle_rad: f64) -> Result<(), Error> {
         let limits = self.of(axis);
         // A NaN is outside of every range.
         if (limits.least_rad..=limits.most_rad).contains(&angle_rad) && angle_rad.is_finite() {
@@ -64,7 +64,7 @@ impl Limits {
     }
 
     /// Checks that the axis may turn with a rate.
-    pub(crate) fn rate(&self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+    pub(crate) fn rate(&self, axis: TableAxis, rate_radps: f64) -> Result<(), Error> {
         let most = self.of(axis).rate_radps;
         if rate_radps.abs() <= most {
             return Ok(());
@@ -75,7 +75,7 @@ impl Limits {
     /// Checks that the axis comes to rest within its limits if it is braked after a time.
     pub(crate) fn can_stop(
         &self,
-        axis: Axis,
+        axis: TableAxis,
         angle_rad: f64,
         rate_radps: f64,
         within_s: f64,

@@ -6,7 +6,7 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 /// A line to a controller.
-pub trait Port: Read + Write + Send {
+pub trait TablePort: Read + Write + Send {
     /// Makes another handle for writing, which works while this one is in use.
     ///
     /// # Errors
@@ -28,7 +28,7 @@ pub trait Port: Read + Write + Send {
     fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd>;
 }
 
-impl Port for TcpStream {
+impl TablePort for TcpStream {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
         Ok(Box::new(self.try_clone()?))
     }
@@ -45,7 +45,7 @@ impl Port for TcpStream {
 }
 
 #[cfg(unix)]
-impl Port for serialport::TTYPort {
+impl TablePort for serialport::TTYPort {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
         Ok(Box::new(self.try_clone_native()?))
     }
@@ -64,7 +64,7 @@ impl Port for serialport::TTYPort {
 }
 
 #[cfg(windows)]
-impl Port for serialport::COMPort {
+impl TablePort for serialport::COMPort {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
         Ok(Box::new(serialport::SerialPort::try_clone(self)?))
     }
@@ -74,7 +74,7 @@ impl Port for serialport::COMPort {
     }
 }
 
-impl Port for Box<dyn Port> {
+impl TablePort for Box<dyn TablePort> {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
         (**self).writer()
     }
@@ -134,7 +134,7 @@ pub fn check_port(uri: &str) -> Result<(), Error> {
 ///
 /// # Errors
 /// If the text is no such address, or the port can't be opened.
-pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
+pub fn open(uri: &str) -> Result<Box<dyn TablePort>, Error> {
     let failed = |reason: String| Error::Open { port: uri.into(), reason };
     let (device, baud) = match address(uri)? {
         Address::Tcp(address) => {

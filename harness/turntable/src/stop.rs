@@ -4,7 +4,7 @@
 //! the driver holds. All stops of the program are in a register, so that a panic in any thread and a
 //! signal trip them.
 
-use crate::{Dialect, Error, Port};
+use crate::{Dialect, Error, TablePort};
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError, TryLockError, Weak};
@@ -191,7 +191,7 @@ pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error>
 ///
 /// # Errors
 /// If the port doesn't accept the bytes.
-pub fn stop_line(mut port: impl Port, name: &str, dialect: &Dialect) -> Result<(), Error> {
+pub fn stop_line(mut port: impl TablePort, name: &str, dialect: &Dialect) -> Result<(), Error> {
     let gone = |reason| Error::Gone { port: name.to_owned(), reason };
     for time in 0..TIMES {
         if time > 0 {

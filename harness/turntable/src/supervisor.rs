@@ -1,6 +1,6 @@
 //! Continuous supervision of a table.
 
-use crate::{Axis, Driver, EmergencyStop, Error, Limits, Port, Status, Turntable};
+use crate::{TableAxis, Driver, EmergencyStop, Error, TableLimits, TablePort, TableStatus, Turntable};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 /// Factor by which a measured rate may exceed its limit: rates are noisy.
 const RATE_SLACK: f64 = 1.1;
 
-struct Shared<P: Port> {
+struct Shared<P: TablePort> {
     driver: Mutex<Driver<P>>,
-    last: Mutex<Option<Status>>,
+    last: Mutex<Option<TableStatus>>,
     /// Reason for which it stopped the table.
     fault: Mutex<Option<String>>,
     ends: AtomicBool,
@@ -22,10 +22,10 @@ struct Shared<P: Port> {
 /// A thread asks for the status many times a second, feeds watchdog and guard, and stops the table if
 /// an axis could no longer come to rest within its limits, is too fast or reports a fault, or if the
 /// table's answers are invalid or missing. Then nothing moves any more: see [`EmergencyStop`].
-pub struct Supervisor<P: Port + 'static> {
+pub struct Supervisor<P: TablePort + 'static> {
     shared: Arc<Shared<P>>,
     thread: Option<JoinHandle<()>>,
-    limits: Limits,
+    limits: TableLimits,
     stop: EmergencyStop,
 }
 
@@ -33,7 +33,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl<P: Port + 'static> Supervisor<P> {
+impl<P: TablePort + 'static> Supervisor<P> {
     /// Starts the supervision of a table, with a look each `period`.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl<P: Port + 'static> Supervisor<P> {
     pub fn with_duty(
         driver: Driver<P>,
         period: Duration,
-        duty: impl FnMut(&Status, &mut Driver<P>) -> Result<(), Error> + Send + 'static,
+        duty: impl FnMut(&TableStatus, &mut Driver<P>) -> Result<(), Error> + Send + 'static,
     ) -> Result<Self, Error> {
         let (limits, stop) = (*driver.limits(), driver.emergency());
         let shared = Arc::new(Shared {
@@ -70,7 +70,7 @@ impl<P: Port + 'static> Supervisor<P> {
 
     /// Last status of the table.
     #[must_use]
-    pub fn last(&self) -> Option<Status> {
+    pub fn last(&self) -> Option<TableStatus> {
         *locked(&self.shared.last)
     }
 
@@ -105,18 +105,18 @@ impl<P: Port + 'static> Supervisor<P> {
     }
 }
 
-impl<P: Port + 'static> Drop for Supervisor<P> {
+impl<P: TablePort + 'static> Drop for Supervisor<P> {
     fn drop(&mut self) {
         // The driver is dropped after the end of the thread, and stops the table.
         self.end();
     }
 }
 
-fn watch<P: Port>(
+fn watch<P: TablePort>(
     shared: &Shared<P>,
     stop: &EmergencyStop,
     period: Duration,
-    mut duty: impl FnMut(&Status, &mut Driver<P>) -> Result<(), Error>,
+    mut duty: impl FnMut(&TableStatus, &mut Driver<P>) -> Result<(), Error>,
 ) {
     let mut before = None;
     while !shared.ends.load(Ordering::SeqCst) {
@@ -150,12 +150,12 @@ fn watch<P: Port>(
 /// Asks a table for its status, and checks it.
 fn look(
     table: &mut impl Turntable,
-    before: Option<(Instant, Instant, Status)>,
+    before: Option<(Instant, Instant, TableStatus)>,
     period: Duration,
-) -> Result<Status, Error> {
+) -> Result<TableStatus, Error> {
     let status = table.status()?;
     let limits = *table.limits();
-    for axis in Axis::ALL {
+    for axis in TableAxis::ALL {
         let found = status.of(axis);
         if let Some(fault) = found.fault.filter(|fault| *fault != 0) {
             return Err(Error::Fault { axis, fault });
@@ -180,12 +180,12 @@ fn look(
     Ok(status)
 }
 
-impl<P: Port + 'static> Turntable for Supervisor<P> {
-    fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+impl<P: TablePort + 'static> Turntable for Supervisor<P> {
+    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
         locked(&self.shared.driver).goto(axis, angle_rad, rate_radps)
     }
 
-    fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+    fn rate(&mut self, axis: TableAxis, rate_radps: f64) -> Result<(), Error> {
         locked(&self.shared.driver).rate(axis, rate_radps)
     }
 
@@ -193,15 +193,15 @@ impl<P: Port + 'static> Turntable for Supervisor<P> {
         locked(&self.shared.driver).stop()
     }
 
-    fn home(&mut self, axis: Axis) -> Result<(), Error> {
+    fn home(&mut self, axis: TableAxis) -> Result<(), Error> {
         locked(&self.shared.driver).home(axis)
     }
 
-    fn status(&mut self) -> Result<Status, Error> {
+    fn status(&mut self) -> Result<TableStatus, Error> {
         locked(&self.shared.driver).status()
     }
 
-    fn limits(&self) -> &Limits {
+    fn limits(&self) -> &TableLimits {
         &self.limits
     }
 

@@ -1,18 +1,18 @@
 //! Interface of a table.
 
-use crate::{EmergencyStop, Error, Limits};
+use crate::{EmergencyStop, Error, TableLimits};
 use std::time::{Duration, Instant};
 
 /// One of the two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Axis {
+pub enum TableAxis {
     /// Inner gimbal, about body z.
     Azimuth,
     /// Outer gimbal, about case x.
     Roll,
 }
 
-impl Axis {
+impl TableAxis {
     /// Both axes.
     pub const ALL: [Self; 2] = [Self::Azimuth, Self::Roll];
 
@@ -30,7 +30,7 @@ impl Axis {
     }
 }
 
-impl std::fmt::Display for Axis {
+impl std::fmt::Display for TableAxis {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
     }
@@ -59,15 +59,15 @@ pub struct AxisStatus {
 
 /// Status of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Status {
+pub struct TableStatus {
     /// Status of azimuth and roll.
     pub axes: [AxisStatus; 2],
 }
 
-impl Status {
+impl TableStatus {
     /// Status of one axis.
     #[must_use]
-    pub fn of(&self, axis: Axis) -> &AxisStatus {
+    pub fn of(&self, axis: TableAxis) -> &AxisStatus {
         &self.axes[axis.index()]
     }
 }
@@ -81,13 +81,13 @@ pub trait Turntable: Send {
     ///
     /// # Errors
     /// If it is beyond the limits, the emergency stop was tripped, or the table refuses it.
-    fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error>;
+    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error>;
 
     /// Turns an axis continuously with a rate; 0 brakes it.
     ///
     /// # Errors
     /// As [`Turntable::goto`].
-    fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error>;
+    fn rate(&mut self, axis: TableAxis, rate_radps: f64) -> Result<(), Error>;
 
     /// Brakes both axes, also after the emergency stop was tripped.
     ///
@@ -99,16 +99,16 @@ pub trait Turntable: Send {
     ///
     /// # Errors
     /// As [`Turntable::goto`].
-    fn home(&mut self, axis: Axis) -> Result<(), Error>;
+    fn home(&mut self, axis: TableAxis) -> Result<(), Error>;
 
     /// Asks for the status.
     ///
     /// # Errors
     /// If the table doesn't answer.
-    fn status(&mut self) -> Result<Status, Error>;
+    fn status(&mut self) -> Result<TableStatus, Error>;
 
     /// Soft limits.
-    fn limits(&self) -> &Limits;
+    fn limits(&self) -> &TableLimits;
 
     /// Emergency stop, which works in any state of the table; to be given to every part that may need
     /// it.

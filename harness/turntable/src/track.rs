@@ -1,6 +1,6 @@
 //! Angles of a table between its looks.
 
-use crate::{Axis, Status};
+use crate::{TableAxis, TableStatus};
 use std::time::{Duration, Instant};
 
 /// Number of points kept for an axis: more than a second at fifty looks a second.
@@ -17,7 +17,7 @@ struct Point {
 
 /// Angle of an axis at a requested time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct TrackPoint {
     /// Angle, rad.
     pub angle_rad: f64,
     /// Time from the requested time to the nearest look.
@@ -48,8 +48,8 @@ impl Track {
     }
 
     /// Adds a status. An angle without a time, or not after the last one, is ignored.
-    pub fn add(&mut self, status: &Status) {
-        for axis in Axis::ALL {
+    pub fn add(&mut self, status: &TableStatus) {
+        for axis in TableAxis::ALL {
             let found = status.of(axis);
             if let Some(at) = found.at {
                 let point = Point {
@@ -66,7 +66,7 @@ impl Track {
     /// Angle of an axis at a time: by linear interpolation between the points before and after it;
     /// after the last one, by extrapolation with its rate. `None` before the first.
     #[must_use]
-    pub fn at(&self, axis: Axis, when: Instant) -> Option<Place> {
+    pub fn at(&self, axis: TableAxis, when: Instant) -> Option<TrackPoint> {
         self.axes[axis.index()].at(when)
     }
 }
@@ -95,13 +95,13 @@ impl AxisTrack {
         self.back(0)
     }
 
-    fn at(&self, when: Instant) -> Option<Place> {
+    fn at(&self, when: Instant) -> Option<TrackPoint> {
         let newest = self.newest()?;
         if when >= newest.at {
             let age = when - newest.at;
             let rate = newest.rate_radps.or_else(|| Some(slope(self.back(1)?, newest)));
             let angle_rad = newest.angle_rad + rate.unwrap_or(0.0) * age.as_secs_f64();
-            return Some(Place { angle_rad, age, within: newest.within });
+            return Some(TrackPoint { angle_rad, age, within: newest.within });
         }
         let mut after = newest;
         for steps in 1.. {
@@ -110,7 +110,7 @@ impl AxisTrack {
                 let (since, until) = (when - before.at, after.at - when);
                 let angle_rad = before.angle_rad + slope(before, after) * since.as_secs_f64();
                 let within = before.within.max(after.within);
-                return Some(Place { angle_rad, age: since.min(until), within });
+                return Some(TrackPoint { angle_rad, age: since.min(until), within });
             }
             after = before;
         }
@@ -127,15 +127,15 @@ fn slope(from: Point, to: Point) -> f64 {
 mod tests {
     use super::*;
     use crate::AxisStatus;
-    use octant_plant::config::Turntable;
-    use octant_plant::table::{self, Table};
+    use octant_plant::config::TurntableConfig;
+    use octant_plant::table::{self, GimbalTable};
     use proptest::prelude::*;
 
     fn ms(ms: u64) -> Duration {
         Duration::from_millis(ms)
     }
 
-    fn status(at: Instant, angles: [f64; 2], rates: [Option<f64>; 2]) -> Status {
+    fn status(at: Instant, angles: [f64; 2], rates: [Option<f64>; 2]) -> TableStatus {
         let axis = |index: usize| AxisStatus {
             angle_rad: angles[index],
             rate_radps: rates[index],
@@ -143,7 +143,7 @@ mod tests {
             at_within: ms(3),
             ..AxisStatus::default()
         };
-        Status { axes: [axis(0), axis(1)] }
+        TableStatus { axes: [axis(0), axis(1)] }
     }
 
     proptest! {
@@ -168,7 +168,7 @@ mod tests {
             }
             let kept = &times[times.len().saturating_sub(POINTS)..];
             let when = time.mul_f64(when);
-            match track.at(Axis::Roll, start + when) {
+            match track.at(TableAxis::Roll, start + when) {
                 None => prop_assert!(when < kept[0]),
                 Some(place) => {
                     prop_assert!(when >= kept[0]);
@@ -186,16 +186,16 @@ mod tests {
     fn a_move_is_missed_by_what_its_acceleration_does_alone() {
         let degrees = f64::to_radians;
         let (rate, acceleration) = (degrees(10.0), degrees(10.0));
-        let config = Turntable {
+        let config = TurntableConfig {
             rate_radps: rate,
             acceleration_radps2: acceleration,
             encoder_sigma_rad: 0.0,
             non_orthogonality_rad: 0.0,
             backlash_rad: 0.0,
         };
-        let mut plant = Table::new(&config);
-        plant.go_to(table::Axis::Azimuth, degrees(30.0), rate, 0);
-        let true_at = |ms: u64| plant.motion(table::Axis::Azimuth, ms * 1_000_000);
+        let mut plant = GimbalTable::new(&config);
+        plant.go_to(table::GimbalAxis::Azimuth, degrees(30.0), rate, 0);
+        let true_at = |ms: u64| plant.motion(table::GimbalAxis::Azimuth, ms * 1_000_000);
         let (start, mut track) = (Instant::now(), Track::new());
         let (mut between, mut beyond) = (0.0f64, 0.0f64);
         for look in 0..250u64 {
@@ -207,7 +207,7 @@ mod tests {
                 [Some(motion.rate_radps); 2],
             ));
             let missed = |when: u64| {
-                let place = track.at(Axis::Azimuth, start + ms(when)).unwrap();
+                let place = track.at(TableAxis::Azimuth, start + ms(when)).unwrap();
                 (place.angle_rad - true_at(when).angle_rad).abs()
             };
             beyond = beyond.max(missed(now + 20));
@@ -223,14 +223,14 @@ mod tests {
     #[test]
     fn nothing_is_known_before_the_table_said_something() {
         let (start, mut track) = (Instant::now() + ms(1000), Track::new());
-        assert_eq!(track.at(Axis::Roll, start), None);
+        assert_eq!(track.at(TableAxis::Roll, start), None);
         track.add(&status(start, [0.5, 0.7], [None; 2]));
-        assert_eq!(track.at(Axis::Roll, start - ms(1)), None);
-        let place = track.at(Axis::Roll, start + ms(5)).unwrap();
-        assert_eq!(place, Place { angle_rad: 0.7, age: ms(5), within: ms(3) });
+        assert_eq!(track.at(TableAxis::Roll, start - ms(1)), None);
+        let place = track.at(TableAxis::Roll, start + ms(5)).unwrap();
+        assert_eq!(place, TrackPoint { angle_rad: 0.7, age: ms(5), within: ms(3) });
         // A late look, or one without a time, changes nothing.
         track.add(&status(start - ms(10), [9.0, 9.0], [None; 2]));
-        track.add(&Status::default());
-        assert_eq!(track.at(Axis::Roll, start + ms(5)), Some(place));
+        track.add(&TableStatus::default());
+        assert_eq!(track.at(TableAxis::Roll, start + ms(5)), Some(place));
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
-use octant_turntable::simulate::{Behaviour, Server};
+use octant_turntable::simulate::{ControllerBehaviour, SimulatedServer};
 use octant_turntable::{
-    Axis, Dialect, Driver, Error, Follower, Port, Settings, Supervisor, Turntable,
+    TableAxis, Dialect, Driver, Error, Follower, TablePort, DriverSettings, Supervisor, Turntable,
 };
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -12,43 +12,43 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// Tests all functions of a table, in one language.
-fn all_it_does(server: &Server, mut table: impl Turntable) {
-    for axis in Axis::ALL {
+fn all_it_does(server: &SimulatedServer, mut table: impl Turntable) {
+    for axis in TableAxis::ALL {
         let status = *table.status().unwrap().of(axis);
         assert_eq!(
             (status.enabled, status.moving, status.fault),
             (Some(true), Some(false), Some(0))
         );
     }
-    table.goto(Axis::Roll, degrees(30.0), None).unwrap();
+    table.goto(TableAxis::Roll, degrees(30.0), None).unwrap();
     wait_for("the end of the move", || {
-        table.status().unwrap().of(Axis::Roll).moving == Some(false)
+        table.status().unwrap().of(TableAxis::Roll).moving == Some(false)
     });
-    assert!((angle(server, Axis::Roll) - 30.0).abs() < 1e-5);
+    assert!((angle(server, TableAxis::Roll) - 30.0).abs() < 1e-5);
     let status = table.status().unwrap();
-    assert!((status.of(Axis::Roll).angle_rad - degrees(30.0)).abs() < 1e-6);
-    assert_eq!(status.of(Axis::Azimuth).angle_rad, 0.0);
+    assert!((status.of(TableAxis::Roll).angle_rad - degrees(30.0)).abs() < 1e-6);
+    assert_eq!(status.of(TableAxis::Azimuth).angle_rad, 0.0);
 
     // Slow, within the limits: a busy host may take long until it sends the stop.
-    table.rate(Axis::Azimuth, degrees(-2.0)).unwrap();
+    table.rate(TableAxis::Azimuth, degrees(-2.0)).unwrap();
     wait_for("the rate", || {
-        let really = server.with(|c, now_ns| c.motion(Axis::Azimuth, now_ns).rate_radps);
+        let really = server.with(|c, now_ns| c.motion(TableAxis::Azimuth, now_ns).rate_radps);
         (really - degrees(-2.0)).abs() < 1e-9
     });
-    if let Some(rate) = table.status().unwrap().of(Axis::Azimuth).rate_radps {
+    if let Some(rate) = table.status().unwrap().of(TableAxis::Azimuth).rate_radps {
         assert!((rate - degrees(-2.0)).abs() < 1e-6);
     }
     table.stop().unwrap();
     wait_for("rest", || rests(server));
     // Moves back, and homes.
-    table.goto(Axis::Roll, degrees(30.0), Some(degrees(1.0))).unwrap();
-    assert_eq!(table.status().unwrap().of(Axis::Roll).homed, Some(false));
-    table.home(Axis::Roll).unwrap();
+    table.goto(TableAxis::Roll, degrees(30.0), Some(degrees(1.0))).unwrap();
+    assert_eq!(table.status().unwrap().of(TableAxis::Roll).homed, Some(false));
+    table.home(TableAxis::Roll).unwrap();
     wait_for("home", || {
-        let status = *table.status().unwrap().of(Axis::Roll);
+        let status = *table.status().unwrap().of(TableAxis::Roll);
         status.homed == Some(true) && status.moving == Some(false)
     });
-    assert!(angle(server, Axis::Roll).abs() < 1e-5);
+    assert!(angle(server, TableAxis::Roll).abs() < 1e-5);
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn supervised() {
     for dialect in [ensemble(), invented()] {
         // In real time: one of the languages has no rate, which then follows from the angles.
         let (server, name) = tcp_at(dialect.clone(), 1.0);
-        let watched = Settings { watchdog: Some(Duration::from_secs(600)), ..settings() };
+        let watched = DriverSettings { watchdog: Some(Duration::from_secs(600)), ..settings() };
         let driver = drive(&name, dialect, watched);
         let table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
         all_it_does(&server, table);
@@ -78,7 +78,7 @@ fn supervised() {
 fn two_languages_over_a_pseudo_terminal() {
     for dialect in [ensemble(), invented()] {
         let (master, slave) = serialport::TTYPort::pair().unwrap();
-        let server = Server::line(controller(dialect.clone()), master, 10.0).unwrap();
+        let server = SimulatedServer::line(controller(dialect.clone()), master, 10.0).unwrap();
         let driver = Driver::new(slave, "pty", dialect, settings()).unwrap();
         all_it_does(&server, driver);
     }
@@ -126,7 +126,7 @@ impl Write for Script {
     }
 }
 
-impl Port for Script {
+impl TablePort for Script {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
         Ok(Box::new(self.clone()))
     }
@@ -147,7 +147,7 @@ fn ensemble_to_the_letter() {
     let script = Script::default();
     let sent = Arc::clone(&script.sent);
     let said = move || String::from_utf8(std::mem::take(&mut *sent.lock().unwrap())).unwrap();
-    let watched = Settings { watchdog: Some(Duration::from_millis(500)), ..settings() };
+    let watched = DriverSettings { watchdog: Some(Duration::from_millis(500)), ..settings() };
     let mut driver = Driver::new(script, "script", ensemble(), watched).unwrap();
     let questions = "AXISSTATUS(@0)\nPFBKPROG(@0)\nVFBK(@0)\nAXISFAULT(@0)\n\
                      AXISSTATUS(@1)\nPFBKPROG(@1)\nVFBK(@1)\nAXISFAULT(@1)\n";
@@ -164,13 +164,13 @@ fn ensemble_to_the_letter() {
     );
     assert_eq!((roll.enabled, roll.homed, roll.moving), (Some(true), Some(true), Some(true)));
     assert_eq!((azimuth.angle_rad, roll.rate_radps), (degrees(-0.25), Some(-3.0 * degrees(1.0))));
-    driver.goto(Axis::Roll, degrees(180.5), Some(degrees(10.0))).unwrap();
+    driver.goto(TableAxis::Roll, degrees(180.5), Some(degrees(10.0))).unwrap();
     assert_eq!(said(), "ABS\nRAMP RATE 30.000000\nLINEAR @1 180.500000 F10.000000\n");
-    driver.rate(Axis::Azimuth, degrees(-7.5)).unwrap();
+    driver.rate(TableAxis::Azimuth, degrees(-7.5)).unwrap();
     assert_eq!(said(), "RAMP RATE @0 30.000000\nFREERUN @0 -7.500000\n");
-    driver.rate(Axis::Azimuth, -0.0).unwrap();
+    driver.rate(TableAxis::Azimuth, -0.0).unwrap();
     assert_eq!(said(), "RAMP RATE @0 30.000000\nFREERUN @0 0.000000\n");
-    driver.home(Axis::Azimuth).unwrap();
+    driver.home(TableAxis::Azimuth).unwrap();
     assert_eq!(said(), "IGLOBAL(32) = 1\nIGLOBAL(33) = 0\nPROGRAM RUN 5, \"HomeAsync.bcx\"\n");
     driver.stop().unwrap();
     assert_eq!(said(), "ABORT @0\nABORT @1\n");
@@ -186,21 +186,21 @@ fn beyond_the_limits_nothing_is_sent() {
     let before = heard();
     let say = |result: Result<(), Error>| result.unwrap_err().to_string();
     assert_eq!(
-        say(driver.goto(Axis::Roll, degrees(365.1), None)),
+        say(driver.goto(TableAxis::Roll, degrees(365.1), None)),
         "roll 365.1000° is beyond its limits, -185° to 365°"
     );
     assert_eq!(
-        say(driver.goto(Axis::Azimuth, degrees(10.0), Some(degrees(21.0)))),
+        say(driver.goto(TableAxis::Azimuth, degrees(10.0), Some(degrees(21.0)))),
         "azimuth at 21.0000 °/s is faster than its limit, 20° to 20°"
             .replace("20° to 20°", "20 °/s")
     );
-    assert!(matches!(driver.rate(Axis::Roll, degrees(-20.1)), Err(Error::Rate { .. })));
+    assert!(matches!(driver.rate(TableAxis::Roll, degrees(-20.1)), Err(Error::Rate { .. })));
     for nonsense in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(matches!(driver.goto(Axis::Roll, nonsense, None), Err(Error::Angle { .. })));
-        assert!(matches!(driver.goto(Axis::Roll, 0.0, Some(nonsense)), Err(Error::Rate { .. })));
-        assert!(matches!(driver.rate(Axis::Roll, nonsense), Err(Error::Rate { .. })));
+        assert!(matches!(driver.goto(TableAxis::Roll, nonsense, None), Err(Error::Angle { .. })));
+        assert!(matches!(driver.goto(TableAxis::Roll, 0.0, Some(nonsense)), Err(Error::Rate { .. })));
+        assert!(matches!(driver.rate(TableAxis::Roll, nonsense), Err(Error::Rate { .. })));
     }
-    assert!(matches!(driver.goto(Axis::Roll, 0.0, Some(0.0)), Err(Error::Rate { .. })));
+    assert!(matches!(driver.goto(TableAxis::Roll, 0.0, Some(0.0)), Err(Error::Rate { .. })));
     assert_eq!(heard(), before);
     let mut unkept = settings();
     unkept.limits.axes[1].rate_radps = f64::NAN;
@@ -220,20 +220,20 @@ fn ends_at_the_soft_limit(dialect: Dialect) {
     // beyond the limit: at 23.3°, or a period later, at 43.3°. A busy host then still has the second
     // period to look.
     let mut table = Supervisor::new(driver, Duration::from_secs(2)).unwrap();
-    table.rate(Axis::Azimuth, degrees(10.0)).unwrap();
+    table.rate(TableAxis::Azimuth, degrees(10.0)).unwrap();
     wait_for("the stop", || table.emergency().is_tripped());
     wait_for("rest", || rests(&server));
-    let at = angle(&server, Axis::Azimuth);
+    let at = angle(&server, TableAxis::Azimuth);
     assert!((23.0..65.0).contains(&at), "{at}");
     wait_for("the fault", || table.fault().is_some());
     let fault = table.fault().unwrap();
     assert!(fault.starts_with("azimuth ") && fault.contains("beyond its limits"), "{fault}");
     // The stop lasts until somebody resets it.
-    let error = table.goto(Axis::Azimuth, 0.0, None).unwrap_err().to_string();
+    let error = table.goto(TableAxis::Azimuth, 0.0, None).unwrap_err().to_string();
     assert!(error.starts_with("the table was stopped: azimuth"), "{error}");
     table.emergency().reset();
-    table.goto(Axis::Azimuth, 0.0, None).unwrap();
-    wait_for("the way back", || angle(&server, Axis::Azimuth).abs() < 1e-5);
+    table.goto(TableAxis::Azimuth, 0.0, None).unwrap();
+    wait_for("the way back", || angle(&server, TableAxis::Azimuth).abs() < 1e-5);
 }
 
 #[test]
@@ -253,19 +253,19 @@ fn nonsense_is_not_believed() {
     quick.reply_within = Duration::from_secs(2);
     let mut driver = drive(&name, ensemble(), quick);
     let behave = |behaviour| server.with(|controller, _| controller.behave(behaviour));
-    behave(Behaviour::Nonsense("%twelve".into()));
+    behave(ControllerBehaviour::Nonsense("%twelve".into()));
     let error = driver.status().unwrap_err().to_string();
     assert_eq!(
         error,
         format!("{name}: found the reply `%twelve` to `AXISSTATUS(@0)`, expected `%{{bits}}`")
     );
-    behave(Behaviour::Nonsense("!".into()));
-    let error = driver.goto(Axis::Roll, 0.5, None).unwrap_err().to_string();
+    behave(ControllerBehaviour::Nonsense("!".into()));
+    let error = driver.goto(TableAxis::Roll, 0.5, None).unwrap_err().to_string();
     assert_eq!(error, format!("{name}: the controller refused `ABS` with `!`"));
-    behave(Behaviour::Nonsense("x".repeat(9000)));
-    let error = driver.home(Axis::Roll).unwrap_err();
+    behave(ControllerBehaviour::Nonsense("x".repeat(9000)));
+    let error = driver.home(TableAxis::Roll).unwrap_err();
     assert!(matches!(error, Error::Nonsense { .. }), "{error}");
-    behave(Behaviour::Silent);
+    behave(ControllerBehaviour::Silent);
     let error = driver.status().unwrap_err().to_string();
     assert_eq!(error, format!("{name}: no reply to `AXISSTATUS(@0)` within 2s"));
     assert!(!driver.emergency().is_tripped());
@@ -273,17 +273,17 @@ fn nonsense_is_not_believed() {
     assert!(driver.stop().is_err());
     assert!(driver.emergency().is_tripped());
     // After its return, bytes that it sent meanwhile aren't taken for replies.
-    behave(Behaviour::Well);
+    behave(ControllerBehaviour::Well);
     driver.emergency().reset();
     let status = driver.status().unwrap();
-    assert_eq!(status.of(Axis::Azimuth).fault, Some(0));
+    assert_eq!(status.of(TableAxis::Azimuth).fault, Some(0));
 }
 
 #[test]
 fn a_lost_port_is_said() {
     let (server, name) = tcp(ensemble());
     let mut driver = drive(&name, ensemble(), settings());
-    server.with(|controller, _| controller.behave(Behaviour::HangUp));
+    server.with(|controller, _| controller.behave(ControllerBehaviour::HangUp));
     let error = driver.status().unwrap_err();
     assert!(matches!(error, Error::Gone { .. }), "{error}");
     assert!(error.to_string().starts_with(&format!("{name} went away: ")), "{error}");
@@ -333,7 +333,7 @@ fn a_table_of_patterns_that_is_none() {
     let without = INVENTED.replace("[watchdog]\nfeed = [\"WD {ms}\"]", "");
     let dialect = Dialect::parse("invented.toml", &without).unwrap();
     let (_server, name) = tcp(dialect.clone());
-    let watched = Settings { watchdog: Some(Duration::from_secs(1)), ..settings() };
+    let watched = DriverSettings { watchdog: Some(Duration::from_secs(1)), ..settings() };
     let error = Driver::new(octant_turntable::open(&name).unwrap(), &name, dialect, watched).err();
     assert_eq!(error.unwrap().to_string(), "the command language `invented` has no watchdog");
 }

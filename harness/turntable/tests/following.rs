@@ -2,13 +2,13 @@
 
 use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
-use octant_turntable::simulate::Behaviour;
-use octant_turntable::{Axis, Following, Plan, press, stop_by_hand};
+use octant_turntable::simulate::ControllerBehaviour;
+use octant_turntable::{TableAxis, Following, TablePlan, press, stop_by_hand};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-fn plan(port: &str) -> Plan {
-    Plan {
+fn plan(port: &str) -> TablePlan {
+    TablePlan {
         port: port.to_owned(),
         dialect: ensemble(),
         settings: settings(),
@@ -20,7 +20,7 @@ fn plan(port: &str) -> Plan {
     }
 }
 
-fn start(plan: &Plan) -> Following {
+fn start(plan: &TablePlan) -> Following {
     Following::start(plan, &mut Command::new("none")).unwrap()
 }
 
@@ -50,10 +50,10 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
             table.take_looks();
             // True angles before and after a moment: the turn between them is a tolerance of the
             // comparison.
-            let before = angle(&server, Axis::Roll);
+            let before = angle(&server, TableAxis::Roll);
             let when = Instant::now();
-            let after = angle(&server, Axis::Roll);
-            if let Some(place) = table.at(Axis::Roll, when)
+            let after = angle(&server, TableAxis::Roll);
+            if let Some(place) = table.at(TableAxis::Roll, when)
                 && place.age < Duration::from_millis(50)
             {
                 // Tolerance beyond the last look: a·t²/2 with 30 °/s². The time of a look is the middle
@@ -72,7 +72,7 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
                 compared += 1;
             }
             let there = |axis, expected: f64| (angle(&server, axis) - expected).abs() < 1e-5;
-            there(Axis::Azimuth, azimuth) && there(Axis::Roll, roll)
+            there(TableAxis::Azimuth, azimuth) && there(TableAxis::Roll, roll)
         });
     }
     assert!(compared > 10, "{compared}");
@@ -87,7 +87,7 @@ fn what_is_beyond_its_limits_stops_it() {
     let (server, name) = tcp_at(ensemble(), 1.0);
     let table = start(&plan(&name));
     table.command(&set_point(0.0, 300.0));
-    wait_for("the turn", || turns(&server, Axis::Roll));
+    wait_for("the turn", || turns(&server, TableAxis::Roll));
     table.command(&set_point(0.0, 500.0));
     wait_for("the stop", || table.is_stopped());
     assert_eq!(table.stopped().unwrap(), "roll 500.0000° is beyond its limits, -185° to 365°");
@@ -104,14 +104,14 @@ fn who_drops_it_stops_it_and_so_does_a_silent_controller() {
     let (server, name) = tcp_at(ensemble(), 1.0);
     let table = start(&plan(&name));
     table.command(&set_point(0.0, 300.0));
-    wait_for("the turn", || turns(&server, Axis::Roll));
+    wait_for("the turn", || turns(&server, TableAxis::Roll));
     drop(table);
     wait_for("rest", || rests(&server));
 
     let table = start(&plan(&name));
     table.command(&set_point(0.0, 300.0));
-    wait_for("the turn", || turns(&server, Axis::Roll));
-    server.with(|controller, _| controller.behave(Behaviour::Silent));
+    wait_for("the turn", || turns(&server, TableAxis::Roll));
+    server.with(|controller, _| controller.behave(ControllerBehaviour::Silent));
     wait_for("the stop", || table.is_stopped());
     assert!(table.stopped().unwrap().contains("no reply to"), "{:?}", table.stopped());
     wait_for("rest", || rests(&server));
@@ -123,7 +123,7 @@ fn a_table_that_does_not_arrive_does_not_start() {
     let mut hasty = plan(&name);
     let table = start(&hasty);
     table.command(&set_point(0.0, 20.0));
-    wait_for("the way", || angle(&server, Axis::Roll) > 15.0);
+    wait_for("the way", || angle(&server, TableAxis::Roll) > 15.0);
     drop(table);
     wait_for("rest", || rests(&server));
     // The table was stopped at some angle: the way to zero takes longer than permitted, on any host.
@@ -149,7 +149,7 @@ fn another_program_can_press_the_stop() {
     assert!(error.is_err());
     assert!(!table.is_stopped());
     table.command(&set_point(0.0, 300.0));
-    wait_for("the turn", || turns(&server, Axis::Roll));
+    wait_for("the turn", || turns(&server, TableAxis::Roll));
     let told = stop_by_hand(&name, &ensemble()).unwrap();
     assert_eq!(told[0], format!("the program that drives {name}"));
     wait_for("rest", || rests(&server));

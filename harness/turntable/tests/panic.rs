@@ -2,7 +2,7 @@
 //! every table of a process, including those of the other tests.
 
 use crate::common::*;
-use octant_turntable::{Axis, Turntable, on_panic};
+use octant_turntable::{TableAxis, Turntable, on_panic};
 use std::process::Command;
 
 /// Environment variable that marks the separate process.
@@ -29,11 +29,11 @@ fn a_panic_in_any_thread_stops_it() {
     on_panic();
     let (server, name) = tcp(invented());
     let mut driver = drive(&name, invented(), settings());
-    driver.rate(Axis::Roll, degrees(1.0)).unwrap();
-    wait_for("the rate", || turns(&server, Axis::Roll));
+    driver.rate(TableAxis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, TableAxis::Roll));
     let panicked = std::thread::spawn(|| panic!("somewhere else")).join();
     assert!(panicked.is_err());
     wait_for("rest", || rests(&server));
-    let error = driver.rate(Axis::Roll, 0.1).unwrap_err().to_string();
+    let error = driver.rate(TableAxis::Roll, 0.1).unwrap_err().to_string();
     assert_eq!(error, "the table was stopped: the harness panicked");
 }

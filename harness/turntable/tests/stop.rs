@@ -1,16 +1,16 @@
 //! The table stops when the harness ends, is killed or hangs, and when the line is cut.
 
 use crate::common::*;
-use octant_turntable::simulate::Behaviour;
-use octant_turntable::{Axis, Settings, Supervisor, Turntable};
+use octant_turntable::simulate::ControllerBehaviour;
+use octant_turntable::{TableAxis, DriverSettings, Supervisor, Turntable};
 use std::time::Duration;
 
 #[test]
 fn a_dropped_driver_stops_it() {
     let (server, name) = tcp(ensemble());
     let mut driver = drive(&name, ensemble(), settings());
-    driver.rate(Axis::Roll, degrees(1.0)).unwrap();
-    wait_for("the rate", || turns(&server, Axis::Roll));
+    driver.rate(TableAxis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, TableAxis::Roll));
     drop(driver);
     wait_for("rest", || rests(&server));
 }
@@ -20,10 +20,10 @@ fn whoever_has_the_stop_can_trip_it() {
     let (server, name) = tcp(ensemble());
     let mut driver = drive(&name, ensemble(), settings());
     let stop = driver.emergency();
-    driver.rate(Axis::Azimuth, degrees(1.0)).unwrap();
+    driver.rate(TableAxis::Azimuth, degrees(1.0)).unwrap();
     // Slow, so that the move is still in progress at any look.
-    driver.goto(Axis::Roll, degrees(300.0), Some(degrees(1.0))).unwrap();
-    wait_for("both", || Axis::ALL.iter().all(|axis| turns(&server, *axis)));
+    driver.goto(TableAxis::Roll, degrees(300.0), Some(degrees(1.0))).unwrap();
+    wait_for("both", || TableAxis::ALL.iter().all(|axis| turns(&server, *axis)));
     // Tripped from another thread, while the driver is busy with queries.
     let tripping = std::thread::spawn(move || stop.trip("the button"));
     for _ in 0..20 {
@@ -31,31 +31,31 @@ fn whoever_has_the_stop_can_trip_it() {
     }
     assert!(tripping.join().unwrap());
     wait_for("rest", || rests(&server));
-    assert!(driver.goto(Axis::Roll, 0.0, None).is_err());
+    assert!(driver.goto(TableAxis::Roll, 0.0, None).is_err());
     // A stop is always permitted.
     driver.stop().unwrap();
 }
 
 /// The line is dead in both directions: only the controller can stop the table.
-fn watched(behaviour: Behaviour) {
+fn watched(behaviour: ControllerBehaviour) {
     // In real time: a host that is busy for seconds would feed the watchdog too late.
     let (server, name) = tcp_at(ensemble(), 1.0);
-    let watched = Settings { watchdog: Some(Duration::from_secs(5)), ..settings() };
+    let watched = DriverSettings { watchdog: Some(Duration::from_secs(5)), ..settings() };
     let driver = drive(&name, ensemble(), watched);
     let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
-    table.rate(Axis::Azimuth, degrees(2.0)).unwrap();
-    wait_for("the rate", || turns(&server, Axis::Azimuth));
+    table.rate(TableAxis::Azimuth, degrees(2.0)).unwrap();
+    wait_for("the rate", || turns(&server, TableAxis::Azimuth));
     server.with(|controller, _| controller.behave(behaviour));
     wait_for("rest", || rests(&server));
     wait_for("the fault", || table.fault().is_some());
     // The error was noticed: nothing is moved any more.
-    assert!(table.goto(Axis::Azimuth, 0.0, None).is_err());
+    assert!(table.goto(TableAxis::Azimuth, 0.0, None).is_err());
 }
 
 #[test]
 fn the_watchdog_stops_it_when_nothing_is_heard() {
     std::thread::scope(|scope| {
-        for behaviour in [Behaviour::Deaf, Behaviour::HangUp] {
+        for behaviour in [ControllerBehaviour::Deaf, ControllerBehaviour::HangUp] {
             scope.spawn(|| watched(behaviour));
         }
     });
@@ -66,9 +66,9 @@ fn a_silent_controller_is_told_to_stop() {
     let (server, name) = tcp(ensemble());
     let driver = drive(&name, ensemble(), settings());
     let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
-    table.rate(Axis::Roll, degrees(1.0)).unwrap();
-    wait_for("the rate", || turns(&server, Axis::Roll));
-    server.with(|controller, _| controller.behave(Behaviour::Silent));
+    table.rate(TableAxis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, TableAxis::Roll));
+    server.with(|controller, _| controller.behave(ControllerBehaviour::Silent));
     // The table stops without an answer from it, and without a watchdog.
     wait_for("rest", || rests(&server));
     wait_for("the fault", || table.fault().is_some());
@@ -78,11 +78,11 @@ fn a_silent_controller_is_told_to_stop() {
 #[test]
 fn the_end_leaves_it_at_rest() {
     let (server, name) = tcp(ensemble());
-    let watched = Settings { watchdog: Some(Duration::from_secs(600)), ..settings() };
+    let watched = DriverSettings { watchdog: Some(Duration::from_secs(600)), ..settings() };
     let driver = drive(&name, ensemble(), watched);
     let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
-    table.rate(Axis::Roll, degrees(1.0)).unwrap();
-    wait_for("the rate", || turns(&server, Axis::Roll));
+    table.rate(TableAxis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, TableAxis::Roll));
     table.finish().unwrap();
     assert!(rests(&server));
     // The watchdog was switched off, so that it causes no fault later.
@@ -110,7 +110,7 @@ mod processes {
             let mut program = Command::new(env!("CARGO_BIN_EXE_octant-turntable"));
             driver.guard(program.arg("guard"), Duration::from_secs(5)).unwrap();
         }
-        driver.rate(Axis::Roll, degrees(0.5)).unwrap();
+        driver.rate(TableAxis::Roll, degrees(0.5)).unwrap();
         loop {
             driver.feed().unwrap();
             std::thread::sleep(Duration::from_millis(50));
@@ -135,7 +135,7 @@ mod processes {
     fn ended_by(signal_name: &str, guarded: bool) {
         let (server, name) = tcp(ensemble());
         let mut child = start(&name, guarded);
-        wait_for("the rate", || turns(&server, Axis::Roll));
+        wait_for("the rate", || turns(&server, TableAxis::Roll));
         // The guard is already running: it is started before the table turns.
         signal(&child, signal_name);
         wait_for("rest", || rests(&server));
@@ -167,11 +167,11 @@ mod processes {
     fn by_hand() {
         let (server, name) = tcp(ensemble());
         let mut child = start(&name, false);
-        wait_for("the rate", || turns(&server, Axis::Roll));
+        wait_for("the rate", || turns(&server, TableAxis::Roll));
         signal(&child, "-KILL");
         child.wait().unwrap();
         // Without guard and watchdog the table continues to turn.
-        assert!(turns(&server, Axis::Roll));
+        assert!(turns(&server, TableAxis::Roll));
         let program = env!("CARGO_BIN_EXE_octant-turntable");
         let status = Command::new(program).args(["stop", &name]).status().unwrap();
         assert!(status.success());

@@ -4,7 +4,7 @@ use octant_base::number::plain;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_recorder::reader::Info;
 use octant_sample::Parameters;
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
@@ -79,7 +79,7 @@ impl About {
                     when: when(&fault.spec.schedule, &fault.fires, scenario.sample_period_ns),
                 })
                 .collect(),
-            truth: has_truth.then(|| Draws::of(&scenario, &Seeded(seed)).parameters),
+            truth: has_truth.then(|| DrawnValues::of(&scenario, &Seeded(seed)).parameters),
             unread: None,
         }
     }

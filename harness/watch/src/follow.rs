@@ -1,9 +1,9 @@
 //! Follows a run to its end: its recording, then its verdict.
 
 use super::about::About;
-use super::place::Place;
-use super::state::State;
-use super::tail::{Reached, Tail, TailError};
+use super::place::RunPlace;
+use super::state::RunState;
+use super::tail::{PollEnd, Tail, TailError};
 use octant_recorder::reader::Item;
 use octant_requirements::Verdict;
 use octant_score::judge::derive;
@@ -45,9 +45,9 @@ impl Stage {
 /// Follows a run.
 pub struct Follow {
     /// Place of the run.
-    pub place: Place,
+    pub place: RunPlace,
     /// State of the run.
-    pub state: State,
+    pub state: RunState,
     /// Stage of the run.
     pub stage: Stage,
     tail: Tail,
@@ -61,11 +61,11 @@ pub struct Follow {
 impl Follow {
     /// Creates a follower of the run at this place.
     #[must_use]
-    pub fn new(place: Place) -> Self {
+    pub fn new(place: RunPlace) -> Self {
         Self {
             tail: Tail::new(place.clone()),
             place,
-            state: State::default(),
+            state: RunState::default(),
             stage: Stage::Starting,
             has_head: false,
             is_left: false,
@@ -78,7 +78,7 @@ impl Follow {
     ///
     /// # Errors
     /// If the recording can't be read, is damaged, or was replaced by another one.
-    pub fn look(&mut self, mut each: impl FnMut(&State, u64, &Item)) -> Result<bool, TailError> {
+    pub fn look(&mut self, mut each: impl FnMut(&RunState, u64, &Item)) -> Result<bool, TailError> {
         if self.stage.is_over() {
             return Ok(false);
         }
@@ -89,20 +89,20 @@ impl Follow {
         let reached = self.tail.look(MESSAGES, |info, time_ns, item| {
             if !*has_head {
                 *has_head = true;
-                *state = State::new(About::of(info, place.folder()));
+                *state = RunState::new(About::of(info, place.folder()));
             }
             state.take(time_ns, &item);
             each(state, time_ns, &item);
         })?;
         self.head();
-        if reached != Reached::More {
+        if reached != PollEnd::More {
             self.mark();
         }
         let was_left = std::mem::take(&mut self.is_left);
         self.stage = match reached {
-            Reached::More => Stage::Running,
-            Reached::Present if is_written && self.has_head => Stage::Running,
-            Reached::Present if is_written => Stage::Starting,
+            PollEnd::More => Stage::Running,
+            PollEnd::Present if is_written && self.has_head => Stage::Running,
+            PollEnd::Present if is_written => Stage::Starting,
             // An interrupted run has a verdict too.
             _ => match self.summary() {
                 Some(summary) => Stage::Ended(Box::new(summary)),
@@ -112,11 +112,11 @@ impl Follow {
                     self.is_left = true;
                     if self.has_head { Stage::Running } else { Stage::Starting }
                 }
-                None if reached == Reached::End => Stage::Unjudged,
+                None if reached == PollEnd::End => Stage::Unjudged,
                 None => Stage::BrokenOff,
             },
         };
-        Ok(reached == Reached::More)
+        Ok(reached == PollEnd::More)
     }
 
     /// Reads the head of a run without messages.
@@ -125,7 +125,7 @@ impl Follow {
             return;
         }
         if let Some(info) = self.tail.info().filter(|info| !info.scenario.is_empty()) {
-            self.state = State::new(About::of(info, self.place.folder()));
+            self.state = RunState::new(About::of(info, self.place.folder()));
             self.has_head = true;
         }
     }

@@ -4,7 +4,7 @@
 //! a plot begins at the start of the run. A slow client loses messages, and never delays anything.
 
 use super::follow::Follow;
-use super::published::{Channel, faults, messages};
+use super::published::{PublishedChannel, faults, messages};
 use super::tail::TailError;
 use foxglove::websocket::{Capability, ChannelView, Client, ServerListener};
 use foxglove::{
@@ -20,14 +20,14 @@ use std::time::Duration;
 /// Number of messages per channel that are kept for late subscribers.
 const HISTORY: usize = 1000;
 /// Number of messages queued for a client: room for the history of all channels.
-const BACKLOG: usize = 2 * HISTORY * Channel::ALL.len();
+const BACKLOG: usize = 2 * HISTORY * PublishedChannel::ALL.len();
 
 /// Time for the last messages to be sent before the connections end.
 const SETTLE: Duration = Duration::from_millis(300);
 
 /// Reasons why nothing is served.
 #[derive(Debug, thiserror::Error)]
-pub enum ServeError {
+pub enum FoxgloveServeError {
     /// The address isn't valid.
     #[error("serve at {address:?}: expected HOST:PORT, such as 127.0.0.1:8765")]
     Address {
@@ -44,7 +44,7 @@ pub enum ServeError {
     },
 }
 
-impl ServeError {
+impl FoxgloveServeError {
     /// Returns whether the port is taken or not allowed, which isn't an error in the address.
     #[must_use]
     pub const fn is_bench(&self) -> bool {
@@ -83,7 +83,7 @@ impl History {
 }
 
 /// Server with the channels of a run.
-pub struct Server {
+pub struct FoxgloveServer {
     handle: WebSocketServerHandle,
     channels: Vec<Arc<RawChannel>>,
     history: Vec<History>,
@@ -106,22 +106,22 @@ impl ServerListener for Listener {
     }
 }
 
-impl Server {
+impl FoxgloveServer {
     /// Starts serving. Port 0 selects any free port.
     ///
     /// # Errors
     /// If the address isn't valid, or the operating system refuses it.
-    pub fn start(address: &str) -> Result<Self, ServeError> {
+    pub fn start(address: &str) -> Result<Self, FoxgloveServeError> {
         let socket: SocketAddr = (address.to_socket_addrs().ok())
             .and_then(|mut addresses| addresses.next())
-            .ok_or_else(|| ServeError::Address { address: address.to_owned() })?;
-        let failed = |error: FoxgloveError| ServeError::Start {
+            .ok_or_else(|| FoxgloveServeError::Address { address: address.to_owned() })?;
+        let failed = |error: FoxgloveError| FoxgloveServeError::Start {
             address: address.to_owned(),
             reason: error.to_string(),
         };
         let context = Context::new();
         let (sender, subscribed) = channel();
-        let channels = (Channel::ALL.iter())
+        let channels = (PublishedChannel::ALL.iter())
             .map(|channel| {
                 let schema = channel.schema().to_string().into_bytes();
                 ChannelBuilder::new(channel.topic())
@@ -141,7 +141,7 @@ impl Server {
             .listener(Arc::new(Listener(Mutex::new(sender))))
             .start_blocking()
             .map_err(failed)?;
-        let history = Channel::ALL.iter().map(|_| History::default()).collect();
+        let history = PublishedChannel::ALL.iter().map(|_| History::default()).collect();
         Ok(Self { handle, channels, history, subscribed, told: false, _context: context })
     }
 
@@ -162,7 +162,7 @@ impl Server {
         let more = follow.look(|state, time_ns, item| {
             if !self.told {
                 self.told = true;
-                self.publish(Channel::Faults, time_ns, &faults(state));
+                self.publish(PublishedChannel::Faults, time_ns, &faults(state));
             }
             messages(state, item, |channel, message| self.publish(channel, time_ns, &message));
         })?;
@@ -172,7 +172,7 @@ impl Server {
         Ok(more)
     }
 
-    fn publish(&mut self, channel: Channel, time_ns: u64, message: &Value) {
+    fn publish(&mut self, channel: PublishedChannel, time_ns: u64, message: &Value) {
         let bytes = message.to_string().into_bytes();
         let metadata = PartialMetadata { log_time: Some(time_ns) };
         self.channels[channel as usize].log_with_meta(&bytes, metadata);
@@ -182,7 +182,7 @@ impl Server {
     /// Sends the earlier messages to new subscribers.
     fn answer(&mut self) {
         while let Ok((sink, topic)) = self.subscribed.try_recv() {
-            let Some(channel) = Channel::ALL.iter().find(|c| c.topic() == topic) else { continue };
+            let Some(channel) = PublishedChannel::ALL.iter().find(|c| c.topic() == topic) else { continue };
             let (raw, history) =
                 (&self.channels[*channel as usize], &self.history[*channel as usize]);
             for (time_ns, message) in history.messages.iter().chain(&history.last) {

@@ -43,13 +43,13 @@ pub enum PlaceError {
 
 /// Place of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct RunPlace {
     partial: PathBuf,
     finished: PathBuf,
     recording: String,
 }
 
-impl Place {
+impl RunPlace {
     /// Finds the run of this name: its folder, with or without `.partial`, or its recording.
     ///
     /// # Errors
@@ -166,15 +166,15 @@ mod tests {
         let path = here.path().join("one");
         let folder = RunFolder::create(&path, Existing::Refuse).unwrap();
         // The run is starting: there is no recording yet.
-        let place = Place::of(&path).unwrap();
+        let place = RunPlace::of(&path).unwrap();
         assert_eq!((place.recording(), place.is_written()), (None, true));
         let partial = folder.path().to_owned();
         fs::write(partial.join(RECORDING), "x").unwrap();
         for name in [path.clone(), partial.clone(), partial.join(RECORDING), path.join(RECORDING)] {
-            assert_eq!(Place::of(&name).unwrap(), place, "{}", name.display());
+            assert_eq!(RunPlace::of(&name).unwrap(), place, "{}", name.display());
         }
         assert_eq!(place.recording().unwrap(), partial.join(RECORDING));
-        assert_eq!(Place::newest(here.path()).unwrap(), place);
+        assert_eq!(RunPlace::newest(here.path()).unwrap(), place);
         fs::write(partial.join("manifest.json"), "{}").unwrap();
         folder.finish().unwrap();
         assert_eq!(place.recording().unwrap(), path.join(RECORDING));
@@ -190,19 +190,19 @@ mod tests {
         // Begun later, but its lock isn't held.
         drop(RunFolder::create(&here.path().join("b"), Existing::Refuse).unwrap());
         fs::write(here.path().join("b.partial").join(RECORDING), "x").unwrap();
-        assert_eq!(Place::newest(here.path()).unwrap().folder(), going.path());
+        assert_eq!(RunPlace::newest(here.path()).unwrap().folder(), going.path());
         drop(going);
-        assert!(!Place::of(&here.path().join("a")).unwrap().is_written());
+        assert!(!RunPlace::of(&here.path().join("a")).unwrap().is_written());
     }
 
     #[test]
     fn what_is_no_run_is_told() {
         let here = tempfile::tempdir().unwrap();
-        let error = |path: PathBuf| Place::of(&path).unwrap_err().to_string();
+        let error = |path: PathBuf| RunPlace::of(&path).unwrap_err().to_string();
         assert!(error(here.path().join("no")).contains("neither"));
         assert!(error(here.path().to_owned()).contains("recording.mcap is missing"));
         assert!(error(here.path().join("no.mcap")).contains("no.mcap is missing"));
-        let none = Place::newest(&here.path().join("runs")).unwrap_err().to_string();
+        let none = RunPlace::newest(&here.path().join("runs")).unwrap_err().to_string();
         assert!(none.contains("no folder *.partial"), "{none}");
     }
 }

@@ -1,11 +1,11 @@
 //! Renders the state of a run as text: one line, or a page.
 
 use super::follow::{Follow, Stage};
-use super::state::{FaultState, State};
+use super::state::{FaultState, RunState};
 use octant_base::number::{counted, fixed, significant};
 use octant_requirements::Verdict;
 use octant_sample::Mode;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use std::fmt::Write as _;
 
 /// Renders a time of a run: `9 h 34 min`, `12.5 s`.
@@ -44,7 +44,7 @@ pub fn stage(follow: &Follow) -> String {
 
 /// Describes the core's place in its procedure.
 #[must_use]
-pub fn mode(state: &State) -> String {
+pub fn mode(state: &RunState) -> String {
     let Some(output) = &state.output else { return "no output yet".to_owned() };
     let mut text = output.mode.name().to_owned();
     if matches!(output.mode, Mode::Calibrating | Mode::Navigating) {
@@ -61,7 +61,7 @@ pub fn mode(state: &State) -> String {
 
 /// Names the core's present health reports.
 #[must_use]
-pub fn health(state: &State) -> String {
+pub fn health(state: &RunState) -> String {
     let Some(output) = &state.output else { return "–".to_owned() };
     let names: Vec<&str> = output.health.iter().map(octant_score::health::name).collect();
     if names.is_empty() { "good".to_owned() } else { names.join(", ") }
@@ -242,11 +242,11 @@ pub fn page(follow: &Follow) -> String {
     out + &end(follow)
 }
 
-fn parameters(state: &State) -> String {
+fn parameters(state: &RunState) -> String {
     let mut out = String::new();
     let Some((_, estimate)) = &state.parameters else { return out };
     let values = estimate.parameters.to_array();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let unit = group.si_per_unit();
         for i in group.range().filter(|i| estimate.sigma[*i] > 0.0) {
             let (value, sigma) = (values[i] / unit, estimate.sigma[i] / unit);

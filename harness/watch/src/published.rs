@@ -1,14 +1,14 @@
 //! Messages published during a run: JSON with schemas, in display units, by topic.
 
-use super::state::State;
+use super::state::RunState;
 use octant_recorder::Event;
 use octant_recorder::reader::Item;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use serde_json::{Map, Value, json};
 
 /// Channel of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Channel {
+pub enum PublishedChannel {
     /// Progress of the run: mode, stop, health.
     State,
     /// Navigation minus truth.
@@ -25,7 +25,7 @@ pub enum Channel {
     Faults,
 }
 
-impl Channel {
+impl PublishedChannel {
     /// All channels.
     pub const ALL: [Self; 7] = [
         Self::State,
@@ -89,7 +89,7 @@ impl Channel {
             ]),
             Self::Parameters => {
                 let one = |i: usize| {
-                    let unit = Group::of(i).unit();
+                    let unit = ParameterGroup::of(i).unit();
                     let parts = [("value", number(unit, "")), ("sigma", number(unit, "1 sigma"))];
                     (NAMES[i], object(&parts))
                 };
@@ -147,11 +147,11 @@ fn object(properties: &[(&str, Value)]) -> Value {
 }
 
 /// Publishes the messages that follow from an item of the recording, with the state after it.
-pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Value)) {
+pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(PublishedChannel, Value)) {
     match item {
         Item::Output(output) => {
             publish(
-                Channel::State,
+                PublishedChannel::State,
                 json!({
                     "time_s": state.time_ns as f64 * 1e-9,
                     "done_percent": state.done().map(|done| done * 100.0),
@@ -172,16 +172,16 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
                 gimbals["azimuth_deg"] = sensed.azimuth_rad().to_degrees().into();
                 gimbals["roll_deg"] = sensed.roll_rad().to_degrees().into();
             }
-            publish(Channel::Gimbals, gimbals);
+            publish(PublishedChannel::Gimbals, gimbals);
             if let Some(nis) = state.nis.filter(|_| output.nis.is_finite()) {
-                publish(Channel::Nis, json!({ "nis": nis.last, "mean": finite(nis.mean()) }));
+                publish(PublishedChannel::Nis, json!({ "nis": nis.last, "mean": finite(nis.mean()) }));
             }
         }
         Item::Truth(truth) => {
             let same = state.output.is_some_and(|output| output.device_time.ns == truth.time.ns);
             if let Some(drift) = state.drift.filter(|_| same) {
                 publish(
-                    Channel::Error,
+                    PublishedChannel::Error,
                     json!({
                         "latitude_arcmin": finite(drift.latitude_arcmin),
                         "longitude_arcmin": finite(drift.longitude_arcmin),
@@ -194,20 +194,20 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
             let values = estimate.parameters.to_array();
             let mut message = Map::new();
             for (i, name) in NAMES.iter().enumerate() {
-                let unit = Group::of(i).si_per_unit();
+                let unit = ParameterGroup::of(i).si_per_unit();
                 // A parameter that isn't estimated has a value and no σ.
                 let sigma = Some(estimate.sigma[i] / unit).filter(|sigma| *sigma > 0.0);
                 let sigma = sigma.and_then(finite);
                 let value = json!({ "value": finite(values[i] / unit), "sigma": sigma });
                 message.insert((*name).to_owned(), value);
             }
-            publish(Channel::Parameters, message.into());
+            publish(PublishedChannel::Parameters, message.into());
         }
         Item::Event(event) => match event {
             Event::Pace(_) => {
                 if let Some(pace) = state.pace {
                     publish(
-                        Channel::Pacing,
+                        PublishedChannel::Pacing,
                         json!({
                             "samples": pace.frames,
                             "latest_us": pace.latest_us,
@@ -217,7 +217,7 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
                     );
                 }
             }
-            Event::Fault { .. } | Event::Receipts(_) => publish(Channel::Faults, faults(state)),
+            Event::Fault { .. } | Event::Receipts(_) => publish(PublishedChannel::Faults, faults(state)),
             _ => {}
         },
         Item::Sample(_) | Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}
@@ -226,7 +226,7 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
 
 /// Builds the message of all faults.
 #[must_use]
-pub fn faults(state: &State) -> Value {
+pub fn faults(state: &RunState) -> Value {
     let count = |is: fn(&super::state::FaultState) -> bool| {
         state.faults.iter().filter(|fault| is(fault)).count()
     };
@@ -278,11 +278,11 @@ mod tests {
         for id in placed.iter().filter(|text| text.contains('!')) {
             assert!(panels.contains_key(*id), "there is no panel {id}");
         }
-        let mut shown: Vec<Channel> = Vec::new();
+        let mut shown: Vec<PublishedChannel> = Vec::new();
         let paths: Vec<&str> = texts.into_iter().filter(|text| text.starts_with('/')).collect();
         for path in &paths {
             let (topic, fields) = path.split_once('.').unwrap_or((path, ""));
-            let channel = Channel::ALL.into_iter().find(|channel| channel.topic() == topic);
+            let channel = PublishedChannel::ALL.into_iter().find(|channel| channel.topic() == topic);
             let channel = channel.unwrap_or_else(|| panic!("nobody publishes {topic}"));
             let mut schema = channel.schema();
             for field in fields.split('.').filter(|field| !field.is_empty()) {
@@ -291,7 +291,7 @@ mod tests {
             }
             shown.push(channel);
         }
-        for channel in Channel::ALL {
+        for channel in PublishedChannel::ALL {
             assert!(shown.contains(&channel), "{} is not shown", channel.topic());
         }
         for name in NAMES {

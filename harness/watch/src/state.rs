@@ -11,7 +11,7 @@ use octant_run::concluded;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalAngles, Health, Mode, Output, Truth};
 use octant_score::health;
-use octant_score::summary::{FaultResult, Pacing};
+use octant_score::summary::{FaultResult, PacingRecord};
 use std::collections::VecDeque;
 
 /// Maximum number of lines of the log.
@@ -19,7 +19,7 @@ const LOG_LINES: usize = 200;
 
 /// Error of the navigation solution, navigation minus truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drift {
+pub struct SolutionError {
     /// Latitude error, arcmin.
     pub latitude_arcmin: f64,
     /// Longitude error, arcmin.
@@ -28,7 +28,7 @@ pub struct Drift {
     pub radial_nmi: f64,
 }
 
-impl Drift {
+impl SolutionError {
     /// Computes the error of an output against the truth of its epoch.
     #[must_use]
     pub fn of(output: &Output, truth: &Truth) -> Self {
@@ -77,7 +77,7 @@ pub struct FaultState {
 
 /// Cause that the core has reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cause {
+pub struct ReportedCause {
     /// One flag.
     pub flag: Health,
     /// Number of recorded outputs that carried it.
@@ -86,7 +86,7 @@ pub struct Cause {
     pub last_ns: u64,
 }
 
-impl Cause {
+impl ReportedCause {
     /// Returns the name of the flag.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -114,7 +114,7 @@ impl Nis {
 
 /// State of a run.
 #[derive(Clone, Debug, Default)]
-pub struct State {
+pub struct RunState {
     /// Description from its recording.
     pub about: About,
     /// Run time, ns.
@@ -128,15 +128,15 @@ pub struct State {
     /// Last parameters with their run time, ns.
     pub parameters: Option<(u64, Box<ParameterEstimate>)>,
     /// Error of the last output, if truth is recorded.
-    pub drift: Option<Drift>,
+    pub drift: Option<SolutionError>,
     /// Largest errors since the last calibration or navigation began.
-    pub largest: Drift,
+    pub largest: SolutionError,
     /// Mode in which these largest errors occurred.
     pub largest_while: Option<Mode>,
     /// NIS, once there were measurements.
     pub nis: Option<Nis>,
     /// Causes that the core has reported, in the order of the flags.
-    pub causes: Vec<Cause>,
+    pub causes: Vec<ReportedCause>,
     /// The faults of the scenario.
     pub faults: Vec<FaultState>,
     /// Last report of the time keeping.
@@ -144,7 +144,7 @@ pub struct State {
     /// Largest lateness so far, µs.
     pub latest_us: f64,
     /// Time keeping, at the end.
-    pub pacing: Option<Box<Pacing>>,
+    pub pacing: Option<Box<PacingRecord>>,
     /// Reason why the calibration was refused.
     pub refused: Option<String>,
     /// Reason why the run was aborted.
@@ -161,7 +161,7 @@ pub struct State {
     pub lateness: Series,
 }
 
-impl State {
+impl RunState {
     /// Creates the state of a run of which only the description is known.
     #[must_use]
     pub fn new(about: About) -> Self {
@@ -211,7 +211,7 @@ impl State {
             self.mode_since_ns = time_ns;
             // The end of a navigation belongs to it.
             if output.mode != Mode::Done {
-                self.largest = Drift::default();
+                self.largest = SolutionError::default();
                 self.largest_while = Some(output.mode);
             }
         }
@@ -235,7 +235,7 @@ impl State {
                     self.causes[at].outputs += 1;
                     self.causes[at].last_ns = time_ns;
                 }
-                Err(at) => self.causes.insert(at, Cause { flag, outputs: 1, last_ns: time_ns }),
+                Err(at) => self.causes.insert(at, ReportedCause { flag, outputs: 1, last_ns: time_ns }),
             }
         }
     }
@@ -247,7 +247,7 @@ impl State {
         if output.device_time.ns != truth.time.ns {
             return;
         }
-        let drift = Drift::of(output, truth);
+        let drift = SolutionError::of(output, truth);
         self.drift = Some(drift);
         self.largest = self.largest.largest(drift);
         let hours = self.hours();

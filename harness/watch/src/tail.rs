@@ -4,7 +4,7 @@
 //! other writers only after a file is opened again; and Windows doesn't rename a folder while a
 //! file in it is open, which is how a run ends.
 
-use super::place::Place;
+use super::place::RunPlace;
 use octant_recorder::reader::{Info, Item, ReadError, Recording};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -46,7 +46,7 @@ pub enum TailError {
 
 /// End of a poll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reached {
+pub enum PollEnd {
     /// The requested number of messages was read, and more may be there.
     More,
     /// All present data was read.
@@ -57,7 +57,7 @@ pub enum Reached {
 
 /// Reads the present part of a recording, and continues from there the next time.
 pub struct Tail {
-    place: Place,
+    place: RunPlace,
     recording: Recording<Growing>,
 }
 
@@ -81,7 +81,7 @@ impl Read for Growing {
 impl Tail {
     /// Creates a reader of a run's recording, which may not be there yet.
     #[must_use]
-    pub fn new(place: Place) -> Self {
+    pub fn new(place: RunPlace) -> Self {
         Self { place, recording: Recording::growing(Growing::default()) }
     }
 
@@ -105,28 +105,28 @@ impl Tail {
         &mut self,
         most: usize,
         mut take: impl FnMut(&Info, u64, Item),
-    ) -> Result<Reached, TailError> {
+    ) -> Result<PollEnd, TailError> {
         if self.recording.ended() {
-            return Ok(Reached::End);
+            return Ok(PollEnd::End);
         }
-        let Some(path) = self.place.recording() else { return Ok(Reached::Present) };
+        let Some(path) = self.place.recording() else { return Ok(PollEnd::Present) };
         if !self.open(&path)? {
-            return Ok(Reached::Present);
+            return Ok(PollEnd::Present);
         }
-        let mut reached = Reached::More;
+        let mut reached = PollEnd::More;
         for _ in 0..most {
             match self.recording.next_item() {
                 Ok(Some((time_ns, item))) => take(self.recording.info(), time_ns, item),
                 Ok(None) => {
                     let ended = self.recording.ended();
-                    reached = if ended { Reached::End } else { Reached::Present };
+                    reached = if ended { PollEnd::End } else { PollEnd::Present };
                     break;
                 }
                 Err(source) => return Err(TailError::Read { path, source }),
             }
         }
         self.recording.source().file = None;
-        if reached == Reached::End && self.recording.info().version == 0 {
+        if reached == PollEnd::End && self.recording.info().version == 0 {
             return Err(TailError::Read { path, source: ReadError::Foreign });
         }
         Ok(reached)

@@ -4,9 +4,9 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_sample::{DeviceTime, GimbalAngles, GimbalCommand, Navigation, Output, Sample};
 use octant_wire::Message;
-use octant_wire::can::{self, Format, Frame, Reassembler};
-use octant_wire::message::{ClockTime, OutputMessage, Role, SampleMessage, Step};
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
+use octant_wire::message::{ClockTime, OutputMessage, EndRole, SampleMessage, StepNumber};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
 use std::hint::black_box;
 
 /// Number of steps in the stream, at 200 Hz.
@@ -23,7 +23,7 @@ fn sample(step: u16) -> Message {
         gimbal: GimbalAngles { azimuth: 210_828_714, roll: k % 300 },
         ..Sample::default()
     };
-    Message::Sample(SampleMessage { step: Step::new(step), aided: false, sample })
+    Message::Sample(SampleMessage { step: StepNumber::new(step), aided: false, sample })
 }
 
 fn output(step: u16) -> Message {
@@ -42,14 +42,14 @@ fn output(step: u16) -> Message {
         nis: f64::NAN,
         ..Output::default()
     };
-    let step = Step::new(step);
+    let step = StepNumber::new(step);
     Message::Output(OutputMessage { step, parameters_follow: false, output, computing_ns: 900 })
 }
 
 fn serial(c: &mut Criterion) {
     let mut group = c.benchmark_group("serial");
     for (name, message) in [("samples", sample as fn(u16) -> Message), ("outputs", output)] {
-        let mut encoder = Encoder::new();
+        let mut encoder = SerialEncoder::new();
         let mut bytes = Vec::new();
         for step in 0..STEPS {
             bytes.extend(encoder.encode(&message(step), ClockTime::from_ns(u64::from(step) << 22)));
@@ -59,10 +59,10 @@ fn serial(c: &mut Criterion) {
         for piece in [64, 4096] {
             group.bench_function(format!("decode {name}, {piece} bytes at a time"), |b| {
                 b.iter(|| {
-                    let mut decoder = Decoder::new();
+                    let mut decoder = SerialDecoder::new();
                     for mut piece in bytes.chunks(piece) {
                         while let Some(event) = decoder.next(&mut piece) {
-                            assert!(matches!(event, Event::Received(_)));
+                            assert!(matches!(event, DecodeEvent::Received(_)));
                             black_box(&event);
                         }
                     }
@@ -73,7 +73,7 @@ fn serial(c: &mut Criterion) {
         let messages: Vec<_> = (0..STEPS).map(message).collect();
         group.bench_function(format!("encode {name}"), |b| {
             b.iter(|| {
-                let mut encoder = Encoder::new();
+                let mut encoder = SerialEncoder::new();
                 for message in &messages {
                     black_box(encoder.encode(message, ClockTime::from_ns(1)));
                 }
@@ -86,7 +86,7 @@ fn serial(c: &mut Criterion) {
         group.throughput(Throughput::Bytes(bytes.len() as u64));
         group.bench_function(format!("decode {name}"), |b| {
             b.iter(|| {
-                let mut decoder = Decoder::new();
+                let mut decoder = SerialDecoder::new();
                 let mut rest = &bytes[..];
                 while let Some(event) = decoder.next(&mut rest) {
                     black_box(&event);
@@ -101,11 +101,11 @@ fn serial(c: &mut Criterion) {
 fn can_bus(c: &mut Criterion) {
     let mut group = c.benchmark_group("can");
     for (name, message, sender) in [
-        ("samples", sample as fn(u16) -> Message, Role::Harness),
-        ("outputs", output, Role::Device),
+        ("samples", sample as fn(u16) -> Message, EndRole::Harness),
+        ("outputs", output, EndRole::Device),
     ] {
-        for format in [Format::Classic, Format::Fd] {
-            let frames: Vec<Frame> = (0..STEPS)
+        for format in [CanVersion::Classic, CanVersion::Fd] {
+            let frames: Vec<BusFrame> = (0..STEPS)
                 .flat_map(|step| {
                     can::segments(&message(step), sender, format).into_iter().flatten()
                 })

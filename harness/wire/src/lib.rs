@@ -23,7 +23,7 @@ mod checksum;
 mod text;
 mod unreadable;
 
-pub use message::{Kind, Message, Role, Step};
+pub use message::{MessageKind, Message, EndRole, StepNumber};
 pub use text::{Text, TextError};
 pub use unreadable::Unreadable;
 

@@ -1,12 +1,12 @@
 //! Order of requests: those that a device does, answers again or ignores, by the tables of "What is
 //! said when" in `README.md`.
 
-use crate::message::{AidingMessage, Pacing, SampleMessage, Status, Step};
+use crate::message::{AidingMessage, StepPacing, SampleMessage, DeviceStatus, StepNumber};
 use octant_sample::Aiding;
 
 /// Decision of a device about a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
+pub enum RequestDecision {
     /// Do it and answer; a sample with this aiding.
     Do(Option<Aiding>),
     /// Send the last answer again.
@@ -18,28 +18,28 @@ pub enum Verdict {
 /// Keeps the steps of a session in order, at the device.
 #[derive(Clone, Copy, Debug)]
 pub struct Requests {
-    pacing: Pacing,
+    pacing: StepPacing,
     aiding: Option<AidingMessage>,
     answered: bool,
-    status: Status,
+    status: DeviceStatus,
 }
 
 impl Requests {
     /// Begins a session.
     #[must_use]
-    pub fn new(pacing: Pacing) -> Self {
-        Self { pacing, aiding: None, answered: false, status: Status::default() }
+    pub fn new(pacing: StepPacing) -> Self {
+        Self { pacing, aiding: None, answered: false, status: DeviceStatus::default() }
     }
 
     /// Last step done.
     #[must_use]
-    pub fn last(&self) -> Step {
+    pub fn last(&self) -> StepNumber {
         self.status.step
     }
 
     /// Counts of steps and requests; the decoder has those of the line.
     #[must_use]
-    pub fn status(&self) -> Status {
+    pub fn status(&self) -> DeviceStatus {
         self.status
     }
 
@@ -50,19 +50,19 @@ impl Requests {
 
     /// Decides about a sample.
     #[must_use]
-    pub fn sample(&mut self, message: &SampleMessage) -> Verdict {
+    pub fn sample(&mut self, message: &SampleMessage) -> RequestDecision {
         let order = self.order(message.step);
-        if order != Verdict::Do(None) || !message.aided {
+        if order != RequestDecision::Do(None) || !message.aided {
             return self.decide(message.step, order);
         }
         let aiding = self.aiding.filter(|aiding| aiding.step == message.step);
         match (aiding, self.pacing) {
-            (Some(aiding), _) => self.decide(message.step, Verdict::Do(Some(aiding.aiding))),
+            (Some(aiding), _) => self.decide(message.step, RequestDecision::Do(Some(aiding.aiding))),
             (None, pacing) => {
                 add(&mut self.status.aiding_missing, 1);
                 match pacing {
-                    Pacing::LockStep => Verdict::Nothing,
-                    Pacing::RealTime => self.decide(message.step, order),
+                    StepPacing::LockStep => RequestDecision::Nothing,
+                    StepPacing::RealTime => self.decide(message.step, order),
                 }
             }
         }
@@ -70,31 +70,31 @@ impl Requests {
 
     /// Decides about a restart or the end.
     #[must_use]
-    pub fn other(&mut self, step: Step) -> Verdict {
+    pub fn other(&mut self, step: StepNumber) -> RequestDecision {
         let order = self.order(step);
         self.decide(step, order)
     }
 
-    fn order(&self, step: Step) -> Verdict {
+    fn order(&self, step: StepNumber) -> RequestDecision {
         match (step.since(self.status.step), self.pacing) {
-            (1, _) | (2.., Pacing::RealTime) => Verdict::Do(None),
-            (0, Pacing::LockStep) if self.answered => Verdict::Again,
-            _ => Verdict::Nothing,
+            (1, _) | (2.., StepPacing::RealTime) => RequestDecision::Do(None),
+            (0, StepPacing::LockStep) if self.answered => RequestDecision::Again,
+            _ => RequestDecision::Nothing,
         }
     }
 
-    fn decide(&mut self, step: Step, verdict: Verdict) -> Verdict {
+    fn decide(&mut self, step: StepNumber, verdict: RequestDecision) -> RequestDecision {
         let status = &mut self.status;
         match verdict {
-            Verdict::Do(_) => {
+            RequestDecision::Do(_) => {
                 let between = step.since(status.step) - 1;
                 add(&mut status.skipped, between.unsigned_abs().into());
                 add(&mut status.steps, 1);
                 status.step = step;
                 self.answered = true;
             }
-            Verdict::Again => add(&mut status.repeated, 1),
-            Verdict::Nothing => {}
+            RequestDecision::Again => add(&mut status.repeated, 1),
+            RequestDecision::Nothing => {}
         }
         verdict
     }
@@ -102,27 +102,27 @@ impl Requests {
 
 #[cfg(feature = "state")]
 mod state {
-    use super::{AidingMessage, Pacing, Requests};
-    use crate::{Kind, Message};
-    use octant_state::{Reader, State, StateError, Writer};
+    use super::{AidingMessage, StepPacing, Requests};
+    use crate::{MessageKind, Message};
+    use octant_state::{StateReader, State, StateError, Writer};
 
     impl State for Requests {
         fn save(&self, to: &mut Writer) {
-            to.value("real time", &(self.pacing == Pacing::RealTime));
+            to.value("real time", &(self.pacing == StepPacing::RealTime));
             let aiding = self.aiding.map(|aiding| Message::Aiding(aiding).payload());
             to.value("aiding", &aiding.as_ref().map(|payload| payload.bytes()));
             to.value("answered", &self.answered);
             to.value("status", Message::Status(self.status).payload().bytes());
         }
 
-        fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
             let none = |field| move |_| StateError::value(field, "it is no message");
             let real_time: bool = from.value("real time")?;
-            self.pacing = if real_time { Pacing::RealTime } else { Pacing::LockStep };
+            self.pacing = if real_time { StepPacing::RealTime } else { StepPacing::LockStep };
             let aiding: Option<&[u8]> = from.value("aiding")?;
             self.aiding = aiding
                 .map(|bytes| {
-                    let read = Message::read(Kind::Aiding, bytes).map_err(none("aiding"))?;
+                    let read = Message::read(MessageKind::Aiding, bytes).map_err(none("aiding"))?;
                     Ok::<Option<AidingMessage>, StateError>(match read {
                         Message::Aiding(aiding) => Some(aiding),
                         _ => None,
@@ -131,7 +131,7 @@ mod state {
                 .transpose()?
                 .flatten();
             self.answered = from.value("answered")?;
-            let status = Message::read(Kind::Status, from.value("status")?);
+            let status = Message::read(MessageKind::Status, from.value("status")?);
             if let Message::Status(status) = status.map_err(none("status"))? {
                 self.status = status;
             }

@@ -1,6 +1,6 @@
 //! Rates of messages, from which the load of a line or bus is computed.
 
-use crate::message::{Kind, Role};
+use crate::message::{MessageKind, EndRole};
 
 /// Rates of the messages of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,17 +44,17 @@ impl Traffic {
     }
 
     /// Sender, kind and rate of each message, Hz. Parameters count once for all segments.
-    pub fn messages(&self) -> impl Iterator<Item = (Role, Kind, f64)> {
+    pub fn messages(&self) -> impl Iterator<Item = (EndRole, MessageKind, f64)> {
         [
-            (Role::Harness, Kind::Sample, self.samples_hz),
-            (Role::Harness, Kind::Aiding, self.aiding_hz),
-            (Role::Harness, Kind::Heartbeat, self.heartbeat_hz),
-            (Role::Harness, Kind::TimeRequest, self.time_hz),
-            (Role::Device, Kind::Output, self.outputs_hz),
-            (Role::Device, Kind::Parameters, self.parameters_hz),
-            (Role::Device, Kind::Heartbeat, self.heartbeat_hz),
-            (Role::Device, Kind::Status, self.status_hz),
-            (Role::Device, Kind::TimeReply, self.time_hz),
+            (EndRole::Harness, MessageKind::Sample, self.samples_hz),
+            (EndRole::Harness, MessageKind::Aiding, self.aiding_hz),
+            (EndRole::Harness, MessageKind::Heartbeat, self.heartbeat_hz),
+            (EndRole::Harness, MessageKind::TimeRequest, self.time_hz),
+            (EndRole::Device, MessageKind::Output, self.outputs_hz),
+            (EndRole::Device, MessageKind::Parameters, self.parameters_hz),
+            (EndRole::Device, MessageKind::Heartbeat, self.heartbeat_hz),
+            (EndRole::Device, MessageKind::Status, self.status_hz),
+            (EndRole::Device, MessageKind::TimeReply, self.time_hz),
         ]
         .into_iter()
     }

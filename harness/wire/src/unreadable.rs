@@ -1,6 +1,6 @@
 //! Reasons why an intact payload is no message.
 
-use crate::{Kind, TextError, VERSION};
+use crate::{MessageKind, TextError, VERSION};
 
 /// Reason why undamaged bytes are no message of this version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum Unreadable {
         found: u16,
     },
     /// The code is unknown.
-    #[error("a message has code {code}, known are 1 to {}", Kind::ALL.len())]
+    #[error("a message has code {code}, known are 1 to {}", MessageKind::ALL.len())]
     Code {
         /// Code found.
         code: u8,
@@ -24,7 +24,7 @@ pub enum Unreadable {
     #[error("a message {} has {found} bytes, expected are {}", kind.name(), kind.payload_bytes())]
     Length {
         /// Kind of message.
-        kind: Kind,
+        kind: MessageKind,
         /// Bytes found.
         found: usize,
     },
@@ -32,7 +32,7 @@ pub enum Unreadable {
     #[error("a message {} has {field} {found}, expected is {expected}", kind.name())]
     Value {
         /// Kind of message.
-        kind: Kind,
+        kind: MessageKind,
         /// Name of the field.
         field: &'static str,
         /// Value found.
@@ -44,7 +44,7 @@ pub enum Unreadable {
     #[error("a message {} has a {field} that is no text: {reason}", kind.name())]
     Text {
         /// Kind of message.
-        kind: Kind,
+        kind: MessageKind,
         /// Name of the field.
         field: &'static str,
         /// Reason.

@@ -1,12 +1,12 @@
 //! Agreement of two hellos, and the bye to an end that doesn't fit.
 
 use octant_wire::message::{
-    Agreement, Capabilities, Hello, Limits, Pacing, Reason, Refusal, Role, agree,
+    Agreement, Capabilities, Hello, EndLimits, StepPacing, Reason, SessionRefusal, EndRole, agree,
 };
 
 fn harness() -> Hello {
     Hello {
-        role: Role::Harness,
+        role: EndRole::Harness,
         session: 0x1234_5678,
         sample_period_ns: 5_000_000,
         configuration: [7; 32],
@@ -15,10 +15,10 @@ fn harness() -> Hello {
 }
 
 fn device() -> Hello {
-    Hello { role: Role::Device, capabilities: Capabilities::LOCK_STEP, ..harness() }
+    Hello { role: EndRole::Device, capabilities: Capabilities::LOCK_STEP, ..harness() }
 }
 
-fn refusal(harness: &Hello, device: &Hello) -> Refusal {
+fn refusal(harness: &Hello, device: &Hello) -> SessionRefusal {
     let refusal = agree(harness, device).unwrap_err();
     assert!(agree(device, harness).is_err(), "both ends see it");
     refusal
@@ -27,7 +27,7 @@ fn refusal(harness: &Hello, device: &Hello) -> Refusal {
 #[test]
 fn two_that_fit_agree() {
     let expected =
-        Agreement { session: 0x1234_5678, pacing: Pacing::LockStep, configuration_compared: true };
+        Agreement { session: 0x1234_5678, pacing: StepPacing::LockStep, configuration_compared: true };
     assert_eq!(agree(&harness(), &device()), Ok(expected));
     assert_eq!(agree(&device(), &harness()), Ok(expected));
     let unknown = Hello { configuration: [0; 32], ..device() };
@@ -44,8 +44,8 @@ fn two_that_do_not_fit_hear_why() {
     let old = refusal(&harness(), &Hello { session: 1, ..device() });
     assert_eq!(old.to_string(), "the answer is of session 0x00000001, this is session 0x12345678");
 
-    let fast = Hello { pacing: Pacing::RealTime, ..harness() };
-    let slow = Hello { pacing: Pacing::RealTime, ..device() };
+    let fast = Hello { pacing: StepPacing::RealTime, ..harness() };
+    let slow = Hello { pacing: StepPacing::RealTime, ..device() };
     let refused = refusal(&fast, &slow);
     assert_eq!(
         refused.to_string(),
@@ -59,7 +59,7 @@ fn two_that_do_not_fit_hear_why() {
     );
 
     let able = Capabilities::LOCK_STEP | Capabilities::REAL_TIME;
-    let limits = Limits { shortest_period_ns: 6_000_000, ..Limits::default() };
+    let limits = EndLimits { shortest_period_ns: 6_000_000, ..EndLimits::default() };
     let rate = refusal(&fast, &Hello { capabilities: able, limits, ..slow });
     assert_eq!(
         rate.to_string(),

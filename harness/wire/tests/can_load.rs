@@ -1,9 +1,9 @@
 //! Bits of CAN frames compared with frames built bit by bit, with their CRC and their stuff bits; and
 //! the capacity of a bus.
 
-use octant_wire::can::{Bits, Bus, Format, Slot, classic_bits, fd_bits};
+use octant_wire::can::{Bits, Bus, CanVersion, Slot, classic_bits, fd_bits};
 use octant_wire::traffic::Traffic;
-use octant_wire::{Kind, Role};
+use octant_wire::{MessageKind, EndRole};
 use proptest::prelude::*;
 
 /// Lowest `count` bits of a number, highest first.
@@ -173,9 +173,9 @@ fn the_worst_case_is_nearly_reached_by_our_identifiers() {
     // The bound ignores that the 19 bits before the data are fixed. Data and CRC, the 79 bits after
     // them, can always have 19 of the 24 stuff bits of 8 bytes.
     for slot in Slot::ALL {
-        for segment in 0..slot.segments(Format::Classic) {
-            let bytes = slot.frame_bytes(segment, Format::Classic);
-            let worst = worst_classic(slot.id(segment, Format::Classic), bytes);
+        for segment in 0..slot.segments(CanVersion::Classic) {
+            let bytes = slot.frame_bytes(segment, CanVersion::Classic);
+            let worst = worst_classic(slot.id(segment, CanVersion::Classic), bytes);
             let bound = classic_bits(bytes).nominal;
             assert!((bound - 5..=bound).contains(&worst), "{slot:?} {segment}: {worst}, {bound}");
         }
@@ -228,7 +228,7 @@ fn a_bus_that_is_too_slow_says_what_it_carries() {
 #[test]
 fn the_load_is_the_sum_of_its_messages() {
     let bus = Bus::fd(500_000, 2_000_000);
-    let output = Slot::of(Role::Device, Kind::Output, 0).unwrap();
+    let output = Slot::of(EndRole::Device, MessageKind::Output, 0).unwrap();
     let bits = [fd_bits(64), fd_bits(64), fd_bits(8)];
     let seconds: f64 = bits.iter().map(|bits| bits.seconds(bus)).sum();
     assert_eq!(bus.seconds(output), seconds);

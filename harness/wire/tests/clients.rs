@@ -176,13 +176,13 @@ fn the_clients_notice_vectors_that_are_wrong() {
 /// Drives a client as a device, with this crate as the harness.
 fn drive(mut peer: Peer, garbage: bool) -> (i32, String) {
     let session = 0xABCD_0001;
-    let ours = hello(Role::Harness, session);
+    let ours = hello(EndRole::Harness, session);
     let theirs = peer.ask(&[Message::Hello(ours)], |message| match message {
         Message::Hello(hello) if hello.session == session => Some(*hello),
         _ => None,
     });
     agree(&ours, &theirs).unwrap();
-    let (mut step, mut echo, mut gathering) = (Step::default(), Echo::new(None), Gathering::new());
+    let (mut step, mut echo, mut gathering) = (StepNumber::default(), Echo::new(None), Gathering::new());
     let mut request = |peer: &mut Peer, messages: &[Message], expected: &[Message]| {
         let mut found: Vec<Message> = Vec::new();
         peer.ask(messages, |message| {
@@ -300,12 +300,12 @@ fn the_clients_notice_an_answer_that_is_not_the_echo() {
         let mut peer = Peer::spawn(&mut command);
         // This device wasn't restarted, but has an offset that the harness doesn't expect.
         let mut echo = Echo::new(Some(octant_sample::Parameters::from_array(&[1e-9; 30])));
-        let (mut done, mut answer, mut aiding) = (Step::default(), Vec::new(), None);
+        let (mut done, mut answer, mut aiding) = (StepNumber::default(), Vec::new(), None);
         while let Some(message) = peer.receive(Duration::from_secs(60)) {
             let request = match message {
                 Message::Bye(_) => break,
                 Message::Hello(theirs) => {
-                    peer.send(&Message::Hello(hello(Role::Device, theirs.session)));
+                    peer.send(&Message::Hello(hello(EndRole::Device, theirs.session)));
                     continue;
                 }
                 Message::Aiding(message) => {
@@ -345,7 +345,7 @@ fn the_clients_refuse_a_newer_device_in_plain_words() {
             Message::Hello(theirs) => Some(theirs.session),
             _ => None,
         });
-        let newer = Hello { version: 2, ..hello(Role::Device, session) };
+        let newer = Hello { version: 2, ..hello(EndRole::Device, session) };
         let reason = peer.ask(&[Message::Hello(newer)], |message| match message {
             Message::Bye(bye) => Some(bye.reason),
             _ => None,
@@ -361,7 +361,7 @@ fn the_clients_refuse_a_newer_device_in_plain_words() {
 fn the_clients_refuse_a_newer_harness() {
     for client in clients() {
         let mut peer = Peer::spawn(&mut client.run(&["device", "stdio"]));
-        let newer = Hello { version: 2, ..hello(Role::Harness, 7) };
+        let newer = Hello { version: 2, ..hello(EndRole::Harness, 7) };
         let bye = peer.ask(&[Message::Hello(newer)], |message| match message {
             Message::Bye(bye) => Some(*bye),
             _ => None,
@@ -370,7 +370,7 @@ fn the_clients_refuse_a_newer_harness() {
         assert_eq!(bye.text.as_str(), "version 1 is spoken here");
         // A harness of this version is still served.
         let session =
-            peer.ask(&[Message::Hello(hello(Role::Harness, 8))], |message| match message {
+            peer.ask(&[Message::Hello(hello(EndRole::Harness, 8))], |message| match message {
                 Message::Hello(theirs) => Some(theirs.session),
                 _ => None,
             });
@@ -443,7 +443,7 @@ fn a_device_obeys_the_harness_alone_that_said_hello() {
             socket
         };
         let say = |socket: &std::net::UdpSocket, message: &Message| {
-            let mut encoder = octant_wire::serial::Encoder::new();
+            let mut encoder = octant_wire::serial::SerialEncoder::new();
             socket.send(encoder.encode(message, ClockTime::default())).unwrap();
         };
         let heard = |socket: &std::net::UdpSocket, within_ms| {
@@ -452,9 +452,9 @@ fn a_device_obeys_the_harness_alone_that_said_hello() {
             socket.recv(&mut bytes).is_ok()
         };
         let (first, second) = (socket(), socket());
-        say(&first, &Message::Hello(hello(Role::Harness, 1)));
+        say(&first, &Message::Hello(hello(EndRole::Harness, 1)));
         assert!(heard(&first, 60_000), "{}", client.name);
-        say(&second, &Message::Hello(hello(Role::Harness, 2)));
+        say(&second, &Message::Hello(hello(EndRole::Harness, 2)));
         say(&second, &Message::TimeRequest(TimeRequest::default()));
         assert!(!heard(&second, 300), "{}: a second harness was heard", client.name);
         say(&first, &Message::TimeRequest(TimeRequest::default()));

@@ -2,9 +2,9 @@
 
 use crate::common::arbitrary::{message, one_of_each, output, sample};
 use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
-use octant_wire::can::{self, Format, Frame, Reassembler};
-use octant_wire::serial::{Cause, Decoder, Event, MAX_STUFFED_BYTES};
-use octant_wire::{Kind, Message, Unreadable};
+use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
+use octant_wire::serial::{FrameDefect, SerialDecoder, DecodeEvent, MAX_STUFFED_BYTES};
+use octant_wire::{MessageKind, Message, Unreadable};
 use proptest::prelude::*;
 
 #[test]
@@ -17,7 +17,7 @@ fn every_flipped_bit_of_a_frame_is_noticed() {
         for bit in 8 * from..8 * (from + parts[1].len()) {
             let mut flipped = bytes.clone();
             flipped[bit / 8] ^= 1 << (bit % 8);
-            let mut decoder = Decoder::new();
+            let mut decoder = SerialDecoder::new();
             let events = decode(&mut decoder, &[&flipped]);
             let found: Vec<Message> = received(&events).iter().map(|r| r.message).collect();
             assert!(!decoder.counters().is_clean(), "bit {bit} of {:?}", message.kind());
@@ -28,21 +28,21 @@ fn every_flipped_bit_of_a_frame_is_noticed() {
 }
 
 /// Flips one bit of identifier, data or length of a frame; `None`: no such frame exists.
-fn flip(frame: &Frame, bit: usize) -> Option<Frame> {
+fn flip(frame: &BusFrame, bit: usize) -> Option<BusFrame> {
     let bits = 8 * frame.data().len();
     let mut data = frame.data().to_vec();
     if bit < bits {
         data[bit / 8] ^= 1 << (bit % 8);
-        return Frame::new(frame.id(), frame.format(), &data);
+        return BusFrame::new(frame.id(), frame.format(), &data);
     }
     match bit - bits {
-        id @ 0..11 => Frame::new(frame.id() ^ 1 << id, frame.format(), &data),
+        id @ 0..11 => BusFrame::new(frame.id() ^ 1 << id, frame.format(), &data),
         11 => {
             data.pop();
-            while Frame::new(0, frame.format(), &data).is_none() {
+            while BusFrame::new(0, frame.format(), &data).is_none() {
                 data.pop();
             }
-            Frame::new(frame.id(), frame.format(), &data)
+            BusFrame::new(frame.id(), frame.format(), &data)
         }
         _ => None,
     }
@@ -50,7 +50,7 @@ fn flip(frame: &Frame, bit: usize) -> Option<Frame> {
 
 #[test]
 fn every_flipped_bit_of_a_can_message_is_noticed() {
-    for format in [Format::Classic, Format::Fd] {
+    for format in [CanVersion::Classic, CanVersion::Fd] {
         for message in one_of_each() {
             let good = frames(&message, format);
             for damaged in 0..good.len() {
@@ -90,7 +90,7 @@ proptest! {
             bytes.extend(frame);
             bytes.extend(garbage);
         }
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let events = decode(&mut decoder, &[&bytes]);
         let found: Vec<Message> = received(&events).iter().map(|r| r.message).collect();
         prop_assert!(same(&found, &sent));
@@ -116,7 +116,7 @@ proptest! {
         let from = hit.index(bytes.len());
         let to = (from + length).min(bytes.len());
         bytes[from..to].fill(with);
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let found: Vec<Message> =
             received(&decode(&mut decoder, &[&bytes])).iter().map(|r| r.message).collect();
         let mut at = 0;
@@ -138,7 +138,7 @@ proptest! {
     fn any_bytes_at_all_are_counted(
         pieces in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..400), 0..8),
     ) {
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         for piece in &pieces {
             decode(&mut decoder, &[piece]);
             decoder.end();
@@ -157,8 +157,8 @@ proptest! {
         strikes in proptest::collection::vec((any::<prop::sample::Index>(), 0..4u8), 0..12),
         fd: bool,
     ) {
-        let format = if fd { Format::Fd } else { Format::Classic };
-        let mut bus: Vec<Frame> = sent.iter().flat_map(|m| frames(m, format)).collect();
+        let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
+        let mut bus: Vec<BusFrame> = sent.iter().flat_map(|m| frames(m, format)).collect();
         for (at, strike) in strikes {
             if bus.is_empty() {
                 break;
@@ -180,12 +180,12 @@ proptest! {
                 }
             }
         }
-        let mut reassembler = Reassembler::new(&octant_wire::Role::ALL, format);
+        let mut reassembler = Reassembler::new(&octant_wire::EndRole::ALL, format);
         let found = messages(&reassemble(&mut reassembler, &bus));
         prop_assert!(found.iter().all(|f| sent.iter().any(|m| f.same_bits(m))));
         let counters = *reassembler.counters();
         prop_assert_eq!(counters.frames as usize, bus.len());
-        if found.len() < sent.len() && format == Format::Classic {
+        if found.len() < sent.len() && format == CanVersion::Classic {
             // Each of these messages has many segments, so a loss shows.
             let all_of_one = counters.is_clean();
             let whole: usize = sent.iter().map(|m| frames(m, format).len()).sum();
@@ -198,9 +198,9 @@ proptest! {
         bus in proptest::collection::vec((0..0x800u16, proptest::collection::vec(any::<u8>(), 0..65)), 0..60),
         fd: bool,
     ) {
-        let format = if fd { Format::Fd } else { Format::Classic };
-        let bus: Vec<Frame> = bus.iter().filter_map(|(id, data)| Frame::new(*id, format, data)).collect();
-        let mut reassembler = Reassembler::new(&octant_wire::Role::ALL, format);
+        let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
+        let bus: Vec<BusFrame> = bus.iter().filter_map(|(id, data)| BusFrame::new(*id, format, data)).collect();
+        let mut reassembler = Reassembler::new(&octant_wire::EndRole::ALL, format);
         let events = reassemble(&mut reassembler, &bus);
         prop_assert_eq!(messages(&events).len(), 0, "thirty-two bits by chance");
         prop_assert_eq!(reassembler.counters().frames as usize, bus.len());
@@ -209,7 +209,7 @@ proptest! {
 
 #[test]
 fn garbage_without_a_zero_is_counted_as_it_comes() {
-    let mut decoder = Decoder::new();
+    let mut decoder = SerialDecoder::new();
     for round in 1..=1000u64 {
         assert!(decode(&mut decoder, &[&[0xA5; 1000]]).is_empty());
         assert_eq!(decoder.counters().bytes_lost, 1000 * round);
@@ -217,8 +217,8 @@ fn garbage_without_a_zero_is_counted_as_it_comes() {
     let message = one_of_each()[0];
     let bytes = encode(&[message]);
     let events = decode(&mut decoder, &[&bytes]);
-    let Event::Lost(lost) = events[0] else { panic!("{events:?}") };
-    assert_eq!((lost.cause, lost.bytes), (Cause::Long, 1_000_000));
+    let DecodeEvent::Lost(lost) = events[0] else { panic!("{events:?}") };
+    assert_eq!((lost.cause, lost.bytes), (FrameDefect::Long, 1_000_000));
     assert!(same(&[received(&events)[0].message], &[message]));
     assert_eq!(decoder.counters().bytes_lost, 1_000_000);
 }
@@ -228,48 +228,48 @@ fn a_cut_line_or_datagram_ends_with_what_there_is() {
     let message = one_of_each()[3];
     let bytes = encode(&[message]);
     // A frame without its last zero is still complete.
-    let mut decoder = Decoder::new();
+    let mut decoder = SerialDecoder::new();
     assert!(decode(&mut decoder, &[&bytes[..bytes.len() - 1]]).is_empty());
-    let Some(Event::Received(received)) = decoder.end() else { panic!("it is whole") };
+    let Some(DecodeEvent::Received(received)) = decoder.end() else { panic!("it is whole") };
     assert!(received.message.same_bits(&message));
     assert_eq!(decoder.end(), None);
     // A frame cut anywhere else is none.
     for cut in 2..bytes.len() - 1 {
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         decode(&mut decoder, &[&bytes[..cut]]);
-        let Some(Event::Lost(lost)) = decoder.end() else { panic!("cut at {cut}") };
+        let Some(DecodeEvent::Lost(lost)) = decoder.end() else { panic!("cut at {cut}") };
         assert_eq!(lost.bytes, cut as u64 - 1);
     }
 }
 
 #[test]
 fn what_is_intact_but_not_understood_is_said_in_plain_words() {
-    let words = |kind: Kind, payload: &[u8]| Message::read(kind, payload).unwrap_err().to_string();
+    let words = |kind: MessageKind, payload: &[u8]| Message::read(kind, payload).unwrap_err().to_string();
     let mut hello = one_of_each()
         .into_iter()
-        .find(|m| m.kind() == Kind::Hello)
+        .find(|m| m.kind() == MessageKind::Hello)
         .unwrap()
         .payload()
         .bytes()
         .to_vec();
     hello[0] = 2;
     assert_eq!(
-        words(Kind::Hello, &hello),
+        words(MessageKind::Hello, &hello),
         "the peer speaks version 2 of the wire protocol, this program version 1: update this program, \
          or give the peer a firmware of version 1"
     );
     // Applies to a newer hello of any length.
-    assert_eq!(Message::read(Kind::Hello, &[3, 0]), Err(Unreadable::NewerVersion { found: 3 }));
-    assert_eq!(words(Kind::Sample, &[0; 3]), "a message sample has 3 bytes, expected are 52");
+    assert_eq!(Message::read(MessageKind::Hello, &[3, 0]), Err(Unreadable::NewerVersion { found: 3 }));
+    assert_eq!(words(MessageKind::Sample, &[0; 3]), "a message sample has 3 bytes, expected are 52");
     let mut output = [0; 132];
     output[20] = 5;
-    assert_eq!(words(Kind::Output, &output), "a message output has mode 5, expected is 0 to 4");
+    assert_eq!(words(MessageKind::Output, &output), "a message output has mode 5, expected is 0 to 4");
     output[20..22].copy_from_slice(&[0, 2]);
-    assert_eq!(words(Kind::Output, &output), "a message output has moving 2, expected is 0 or 1");
+    assert_eq!(words(MessageKind::Output, &output), "a message output has moving 2, expected is 0 or 1");
     let mut bye = [b'x'; 44];
     bye[10] = 0xFF;
     assert_eq!(
-        words(Kind::Bye, &bye),
+        words(MessageKind::Bye, &bye),
         "a message bye has a text that is no text: the text isn't UTF-8 from byte 6 on"
     );
     assert_eq!(
@@ -281,24 +281,24 @@ fn what_is_intact_but_not_understood_is_said_in_plain_words() {
 #[test]
 fn can_faults_are_told_apart() {
     let sent = one_of_each();
-    let message = *sent.iter().find(|m| m.kind() == Kind::Sample).unwrap();
-    let good = frames(&message, Format::Classic);
-    let run = |bus: &[Frame]| {
-        let mut reassembler = Reassembler::new(&[sender(&message)], Format::Classic);
+    let message = *sent.iter().find(|m| m.kind() == MessageKind::Sample).unwrap();
+    let good = frames(&message, CanVersion::Classic);
+    let run = |bus: &[BusFrame]| {
+        let mut reassembler = Reassembler::new(&[sender(&message)], CanVersion::Classic);
         let events = reassemble(&mut reassembler, bus);
         (events, *reassembler.counters())
     };
     let pick = |order: &[usize]| order.iter().map(|i| good[*i]).collect::<Vec<_>>();
-    let causes = |events: &[can::Event]| {
-        let cause = |event: &can::Event| match event {
-            can::Event::Lost(lost) => Some(lost.cause),
-            can::Event::Received { .. } => None,
+    let causes = |events: &[can::ReassemblyEvent]| {
+        let cause = |event: &can::ReassemblyEvent| match event {
+            can::ReassemblyEvent::Lost(lost) => Some(lost.cause),
+            can::ReassemblyEvent::Received { .. } => None,
         };
         events.iter().filter_map(cause).collect::<Vec<_>>()
     };
 
     let (events, counters) = run(&pick(&[0, 1, 2, 5, 6, 0, 1, 2, 3, 4, 5, 6]));
-    assert_eq!(causes(&events), [can::Cause::Missing(2)]);
+    assert_eq!(causes(&events), [can::DropCause::Missing(2)]);
     assert_eq!((counters.messages, counters.missing, counters.orphaned), (1, 2, 1));
 
     let (events, counters) = run(&pick(&[0, 1, 2, 2, 3, 4, 5, 5, 6, 6]));
@@ -306,23 +306,23 @@ fn can_faults_are_told_apart() {
     assert_eq!((counters.messages, counters.duplicated), (1, 3));
 
     let (events, counters) = run(&pick(&[0, 1, 2, 3, 1, 4, 5, 6]));
-    assert_eq!(causes(&events), [can::Cause::Disordered]);
+    assert_eq!(causes(&events), [can::DropCause::Disordered]);
     assert_eq!((counters.messages, counters.disordered, counters.orphaned), (0, 1, 3));
 
     let (events, counters) = run(&pick(&[0, 1, 2, 0, 1, 2, 3, 4, 5, 6]));
-    assert_eq!(causes(&events), [can::Cause::Incomplete]);
+    assert_eq!(causes(&events), [can::DropCause::Incomplete]);
     assert_eq!((counters.messages, counters.incomplete), (1, 1));
 
     let (events, counters) = run(&pick(&[4, 5, 6, 0, 1, 2, 3, 4, 5, 6]));
-    assert_eq!(causes(&events), [can::Cause::Missing(4)]);
+    assert_eq!(causes(&events), [can::DropCause::Missing(4)]);
     assert_eq!((counters.messages, counters.missing, counters.orphaned), (1, 4, 2));
 
     // First half of one message and second half of another: only the CRC can tell.
     let Message::Sample(mut other) = message else { unreachable!() };
     other.sample.delta_velocity[1] ^= 1;
-    let other = frames(&Message::Sample(other), Format::Classic);
-    let mixed: Vec<Frame> = good[..5].iter().chain(&other[5..]).copied().collect();
+    let other = frames(&Message::Sample(other), CanVersion::Classic);
+    let mixed: Vec<BusFrame> = good[..5].iter().chain(&other[5..]).copied().collect();
     let (events, counters) = run(&mixed);
-    assert!(matches!(causes(&events)[..], [can::Cause::Mixed { .. }]), "{events:?}");
+    assert!(matches!(causes(&events)[..], [can::DropCause::Mixed { .. }]), "{events:?}");
     assert_eq!((counters.messages, counters.mixed), (0, 1));
 }

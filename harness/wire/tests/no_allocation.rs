@@ -2,9 +2,9 @@
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common::arbitrary::one_of_each;
-use octant_wire::can::{self, Format, Reassembler};
-use octant_wire::message::{ClockTime, Role};
-use octant_wire::serial::{Decoder, Encoder};
+use octant_wire::can::{self, CanVersion, Reassembler};
+use octant_wire::message::{ClockTime, EndRole};
+use octant_wire::serial::{SerialDecoder, SerialEncoder};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
@@ -37,7 +37,7 @@ fn nothing_is_allocated() {
     let messages = one_of_each();
     let garbage = [0xA5; 1000];
     let before = COUNT.with(Cell::get);
-    let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+    let (mut encoder, mut decoder) = (SerialEncoder::new(), SerialDecoder::new());
     for round in 0..20u64 {
         for message in &messages {
             let frame = encoder.encode(message, ClockTime::from_ns(round));
@@ -51,9 +51,9 @@ fn nothing_is_allocated() {
             }
             black_box(decoder.end());
             for (sender, format) in
-                Role::ALL.into_iter().flat_map(|r| [(r, Format::Classic), (r, Format::Fd)])
+                EndRole::ALL.into_iter().flat_map(|r| [(r, CanVersion::Classic), (r, CanVersion::Fd)])
             {
-                let mut reassembler = Reassembler::new(&Role::ALL, format);
+                let mut reassembler = Reassembler::new(&EndRole::ALL, format);
                 for (i, frame) in
                     can::segments(message, sender, format).into_iter().flatten().enumerate()
                 {

@@ -2,12 +2,12 @@
 
 use octant_sample::parameters::NAMES;
 use octant_sample::{DeviceTime, GimbalAngles, Health, Sample};
-use octant_wire::can::{Bus, Format, Slot};
-use octant_wire::layout::{Type, fields, parameter_unit};
-use octant_wire::message::{Capabilities, ClockTime, SampleMessage, Step};
-use octant_wire::serial::{Encoder, HEADER_BYTES};
+use octant_wire::can::{Bus, CanVersion, Slot};
+use octant_wire::layout::{FieldType, fields, parameter_unit};
+use octant_wire::message::{Capabilities, ClockTime, SampleMessage, StepNumber};
+use octant_wire::serial::{SerialEncoder, HEADER_BYTES};
 use octant_wire::traffic::Traffic;
-use octant_wire::{Kind, Message};
+use octant_wire::{MessageKind, Message};
 use std::fmt::Write;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
@@ -20,25 +20,25 @@ fn kinds() -> String {
     let mut table = "| code | kind | from | payload, bytes | serial frame, bytes at most | classic frames | FD frames | \
                      what |\n|---|---|---|---|---|---|---|---|\n"
         .to_owned();
-    for kind in Kind::ALL {
+    for kind in MessageKind::ALL {
         let from: Vec<_> = kind.senders().iter().map(|role| role.name()).collect();
         let slot = Slot::of(kind.senders()[0], kind, 0).unwrap();
         let bytes = kind.payload_bytes();
         let frame = 2 + cobs::max_encoding_length(HEADER_BYTES + bytes + 4);
         let what = match kind {
-            Kind::Hello => "who the sender is, and what it can do",
-            Kind::Sample => "a sample, on which the device steps",
-            Kind::Aiding => "the reference that goes with the sample after it",
-            Kind::Output => "what the core answers",
-            Kind::Parameters => "a sixth of the parameters with their σ",
-            Kind::Restart => "the core is to start anew",
-            Kind::End => "no sample comes any more",
-            Kind::Ready => "the core has started anew",
-            Kind::Heartbeat => "the sender is there",
-            Kind::Status => "what it has done, received and lost",
-            Kind::TimeRequest => "what time is it there?",
-            Kind::TimeReply => "so late",
-            Kind::Bye => "the sender goes, and why",
+            MessageKind::Hello => "who the sender is, and what it can do",
+            MessageKind::Sample => "a sample, on which the device steps",
+            MessageKind::Aiding => "the reference that goes with the sample after it",
+            MessageKind::Output => "what the core answers",
+            MessageKind::Parameters => "a sixth of the parameters with their σ",
+            MessageKind::Restart => "the core is to start anew",
+            MessageKind::End => "no sample comes any more",
+            MessageKind::Ready => "the core has started anew",
+            MessageKind::Heartbeat => "the sender is there",
+            MessageKind::Status => "what it has done, received and lost",
+            MessageKind::TimeRequest => "what time is it there?",
+            MessageKind::TimeReply => "so late",
+            MessageKind::Bye => "the sender goes, and why",
         };
         writeln!(
             table,
@@ -46,15 +46,15 @@ fn kinds() -> String {
             kind.code(),
             kind.name(),
             from.join(", "),
-            slot.segments(Format::Classic),
-            slot.segments(Format::Fd),
+            slot.segments(CanVersion::Classic),
+            slot.segments(CanVersion::Fd),
         )
         .unwrap();
     }
     table
 }
 
-fn field_table(kind: Kind) -> String {
+fn field_table(kind: MessageKind) -> String {
     let mut table = "| at | type | name | unit | what |\n|---|---|---|---|---|\n".to_owned();
     for field in fields(kind) {
         let mut row = |at: usize, ty: &str, name: &str, unit: &str, what: &str| {
@@ -72,13 +72,13 @@ fn field_table(kind: Kind) -> String {
             what = format!("{what}: {}", values.join(", "));
         }
         match field.ty {
-            Type::Step(Some(flag)) => {
+            FieldType::Step(Some(flag)) => {
                 row(field.at, "step", field.name, "", "bits 0 to 14");
                 row(field.at, "flag", flag, "", &format!("bit 15; {what}"));
             }
-            Type::Bytes(n) => row(field.at, &format!("{n} bytes"), field.name, &unit, &what),
-            Type::Text(n) => row(field.at, &format!("text, {n} bytes"), field.name, &unit, &what),
-            Type::Zero(n) => row(field.at, &format!("zero, {n} bytes"), "", "", ""),
+            FieldType::Bytes(n) => row(field.at, &format!("{n} bytes"), field.name, &unit, &what),
+            FieldType::Text(n) => row(field.at, &format!("text, {n} bytes"), field.name, &unit, &what),
+            FieldType::Zero(n) => row(field.at, &format!("zero, {n} bytes"), "", "", ""),
             ty => row(field.at, ty.name(), field.name, &unit, &what),
         }
     }
@@ -103,11 +103,11 @@ fn slots() -> String {
             let first = format!("{:03X}", slot.id(0, format));
             if last == 0 { first } else { format!("{first}–{:03X}", slot.id(last, format)) }
         };
-        let lengths: Vec<_> = (0..slot.segments(Format::Fd))
-            .map(|segment| slot.frame_bytes(segment, Format::Fd).to_string())
+        let lengths: Vec<_> = (0..slot.segments(CanVersion::Fd))
+            .map(|segment| slot.frame_bytes(segment, CanVersion::Fd).to_string())
             .collect();
         let sixth = match slot.kind {
-            Kind::Parameters => format!(", segment {}", slot.parameters),
+            MessageKind::Parameters => format!(", segment {}", slot.parameters),
             _ => String::new(),
         };
         writeln!(
@@ -117,8 +117,8 @@ fn slots() -> String {
             slot.kind.name(),
             slot.sender.name(),
             slot.image_bytes(),
-            ids(Format::Classic),
-            ids(Format::Fd),
+            ids(CanVersion::Classic),
+            ids(CanVersion::Fd),
             lengths.join(", "),
         )
         .unwrap();
@@ -162,10 +162,10 @@ fn example() -> String {
         gimbal: GimbalAngles { azimuth: 0, roll: 105_414_357 },
         ..Sample::default()
     };
-    let message = Message::Sample(SampleMessage { step: Step::new(1), aided: true, sample });
+    let message = Message::Sample(SampleMessage { step: StepNumber::new(1), aided: true, sample });
     let payload = message.payload();
     let payload = payload.bytes();
-    let mut encoder = Encoder::starting_at(7);
+    let mut encoder = SerialEncoder::starting_at(7);
     let clock = ClockTime::from_ns(1_000_000_000);
     let frame = encoder.encode(&message, clock).to_vec();
     let mut bare = frame[1..frame.len() - 1].to_vec();
@@ -209,9 +209,9 @@ fn filled(page: &str, mark: &str, content: &str) -> String {
 fn the_tables_of_the_page_are_those_of_the_code() {
     let page = std::fs::read_to_string(FILE).unwrap();
     let mut made = filled(&page, "kinds", &kinds());
-    for kind in Kind::ALL {
+    for kind in MessageKind::ALL {
         // Ready shares the table of another kind.
-        if kind != Kind::Ready {
+        if kind != MessageKind::Ready {
             made = filled(&made, &format!("fields {}", kind.name()), &field_table(kind));
         }
     }

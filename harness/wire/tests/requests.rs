@@ -3,19 +3,19 @@
 
 use octant_sample::{Aiding, DeviceTime, Reference, Sample};
 use octant_wire::message::{
-    AidingMessage, ClockTime, Message, Offset, Pacing, SampleMessage, Step, TimeReply,
+    AidingMessage, ClockTime, Message, Offset, StepPacing, SampleMessage, StepNumber, TimeReply,
 };
-use octant_wire::requests::{Requests, Verdict};
+use octant_wire::requests::{Requests, RequestDecision};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 
-fn aiding(step: Step) -> AidingMessage {
+fn aiding(step: StepNumber) -> AidingMessage {
     let reference = Reference::Velocity([f64::from(step.number()), 0.0, 0.0]);
     let device_time = DeviceTime { ns: u64::from(step.number()) };
     AidingMessage { step, aiding: Aiding { device_time, reference } }
 }
 
-fn sample(step: Step, aided: bool) -> SampleMessage {
+fn sample(step: StepNumber, aided: bool) -> SampleMessage {
     let sequence = u64::from(step.number());
     SampleMessage { step, aided, sample: Sample { sequence, ..Sample::default() } }
 }
@@ -78,12 +78,12 @@ proptest! {
         let mut to_device = Line { late: Vec::new(), there: VecDeque::new() };
         let mut to_harness = Line { late: Vec::new(), there: VecDeque::new() };
         // Earlier steps are done first, so that the session begins in the middle of the numbers.
-        let mut requests = Requests::new(Pacing::LockStep);
+        let mut requests = Requests::new(StepPacing::LockStep);
         for number in 1..first & 0x7FFF {
-            prop_assert_eq!(requests.other(Step::new(number)), Verdict::Do(None));
+            prop_assert_eq!(requests.other(StepNumber::new(number)), RequestDecision::Do(None));
         }
         let before = requests.status().steps;
-        let mut done: Vec<(Step, Option<Aiding>)> = Vec::new();
+        let mut done: Vec<(StepNumber, Option<Aiding>)> = Vec::new();
         let mut step = requests.last();
         let mut expected = Vec::new();
         for k in 0..30u16 {
@@ -102,12 +102,12 @@ proptest! {
                     match message {
                         Message::Aiding(message) => requests.aiding(&message),
                         Message::Sample(message) => match requests.sample(&message) {
-                            Verdict::Do(aiding) => {
+                            RequestDecision::Do(aiding) => {
                                 done.push((message.step, aiding));
                                 to_harness.send(message.step, fates.1.next().unwrap());
                             }
-                            Verdict::Again => to_harness.send(message.step, fates.1.next().unwrap()),
-                            Verdict::Nothing => {}
+                            RequestDecision::Again => to_harness.send(message.step, fates.1.next().unwrap()),
+                            RequestDecision::Nothing => {}
                         },
                         _ => unreachable!(),
                     }
@@ -130,12 +130,12 @@ proptest! {
         seed: u64,
         every in 1..5u16,
     ) {
-        let mut requests = Requests::new(Pacing::RealTime);
+        let mut requests = Requests::new(StepPacing::RealTime);
         let mut line = Line { late: Vec::new(), there: VecDeque::new() };
         let mut fates = fates(seed);
         let (mut done, mut last) = (0, 0);
         for k in 1..=60u16 {
-            let step = Step::new(k);
+            let step = StepNumber::new(k);
             let aided = k % every == 0;
             if aided {
                 line.send(Message::Aiding(aiding(step)), fates.next().unwrap());
@@ -145,15 +145,15 @@ proptest! {
                 match message {
                     Message::Aiding(message) => requests.aiding(&message),
                     Message::Sample(message) => match requests.sample(&message) {
-                        Verdict::Do(found) => {
+                        RequestDecision::Do(found) => {
                             prop_assert!(message.step.number() > last);
                             last = message.step.number();
                             done += 1;
                             prop_assert!(found.is_none_or(|found| found == aiding(message.step).aiding));
                             prop_assert!(message.aided || found.is_none());
                         }
-                        Verdict::Nothing => {}
-                        Verdict::Again => prop_assert!(false, "nothing is asked for again"),
+                        RequestDecision::Nothing => {}
+                        RequestDecision::Again => prop_assert!(false, "nothing is asked for again"),
                     },
                     _ => unreachable!(),
                 }

@@ -2,10 +2,10 @@
 
 use crate::common::arbitrary::{message, one_of_each};
 use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
-use octant_wire::can::{Format, Reassembler};
+use octant_wire::can::{CanVersion, Reassembler};
 use octant_wire::message::ClockTime;
-use octant_wire::serial::{Decoder, Encoder, MAX_FRAME_BYTES, Order};
-use octant_wire::{Kind, Message, Role};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, MAX_FRAME_BYTES, FrameOrder};
+use octant_wire::{MessageKind, Message, EndRole};
 use proptest::prelude::*;
 
 proptest! {
@@ -18,23 +18,23 @@ proptest! {
 
     #[test]
     fn a_frame_is_its_message(message in message(), sequence: u16, ns: u64) {
-        let mut encoder = Encoder::starting_at(sequence);
+        let mut encoder = SerialEncoder::starting_at(sequence);
         let bytes = encoder.encode(&message, ClockTime::from_ns(ns)).to_vec();
         prop_assert!(bytes.len() <= MAX_FRAME_BYTES);
         let (last, inner) = bytes[1..].split_last().unwrap();
         prop_assert!(bytes[0] == 0 && *last == 0 && !inner.contains(&0));
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let all = received(&decode(&mut decoder, &[&bytes]));
         prop_assert_eq!(all.len(), 1);
         prop_assert_eq!((all[0].sequence, all[0].clock.ns), (sequence, ns));
-        prop_assert_eq!(all[0].order, Order::First);
+        prop_assert_eq!(all[0].order, FrameOrder::First);
         prop_assert!(all[0].message.same_bits(&message));
         prop_assert!(decoder.counters().is_clean());
     }
 
     #[test]
     fn can_frames_are_their_message(message in message(), fd: bool) {
-        let format = if fd { Format::Fd } else { Format::Classic };
+        let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
         let sender = sender(&message);
         let mut reassembler = Reassembler::new(&[sender], format);
         let events = reassemble(&mut reassembler, &frames(&message, format));
@@ -60,7 +60,7 @@ proptest! {
             pieces.push(&bytes[from..to]);
             from = to;
         }
-        let (mut whole, mut cut) = (Decoder::new(), Decoder::new());
+        let (mut whole, mut cut) = (SerialDecoder::new(), SerialDecoder::new());
         let expected = decode(&mut whole, &[&bytes]);
         let found = decode(&mut cut, &pieces);
         prop_assert_eq!(format!("{expected:?}"), format!("{found:?}"));
@@ -74,7 +74,7 @@ proptest! {
         fd: bool,
     ) {
         // Messages of one slot stay in order; those of different slots may overtake each other.
-        let format = if fd { Format::Fd } else { Format::Classic };
+        let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
         let mut queues: Vec<(u16, Vec<_>)> = Vec::new();
         for message in &sent {
             let frames = frames(message, format);
@@ -91,7 +91,7 @@ proptest! {
             on_bus.push(queues[queue].1.remove(0));
             queues.retain(|(_, queue)| !queue.is_empty());
         }
-        let mut reassembler = Reassembler::new(&Role::ALL, format);
+        let mut reassembler = Reassembler::new(&EndRole::ALL, format);
         let events = reassemble(&mut reassembler, &on_bus);
         prop_assert!(reassembler.counters().is_clean(), "{:?}", reassembler.counters());
         let mut found: Vec<_> = messages(&events).iter().map(|m| m.payload().bytes().to_vec()).collect();
@@ -107,7 +107,7 @@ proptest! {
         bytes in proptest::collection::vec(any::<u8>(), 0..260),
         fitting: bool,
     ) {
-        let Some(kind) = Kind::of(code) else { return Ok(()) };
+        let Some(kind) = MessageKind::of(code) else { return Ok(()) };
         let mut bytes = bytes;
         if fitting {
             bytes.resize(kind.payload_bytes(), 0);
@@ -124,17 +124,17 @@ proptest! {
 fn frames_are_numbered_and_gaps_counted() {
     let sent = one_of_each();
     // A hello restarts the numbering and is left out here.
-    let sent: Vec<_> = sent.into_iter().filter(|m| m.kind() != Kind::Hello).collect();
-    let mut encoder = Encoder::starting_at(0xFFFD);
+    let sent: Vec<_> = sent.into_iter().filter(|m| m.kind() != MessageKind::Hello).collect();
+    let mut encoder = SerialEncoder::starting_at(0xFFFD);
     let all: Vec<Vec<u8>> =
         sent.iter().map(|m| encoder.encode(m, ClockTime::default()).to_vec()).collect();
     let order = |picked: &[usize]| {
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let bytes: Vec<u8> = picked.iter().flat_map(|i| all[*i].clone()).collect();
         let events = decode(&mut decoder, &[&bytes]);
         (received(&events).iter().map(|r| r.order).collect::<Vec<_>>(), *decoder.counters())
     };
-    use Order::{Behind, First, Missing, Next};
+    use FrameOrder::{Behind, First, Missing, Next};
     let (orders, counters) = order(&[0, 1, 2, 3, 4]);
     assert_eq!(orders, [First, Next, Next, Next, Next]);
     assert!(counters.is_clean());
@@ -148,18 +148,18 @@ fn frames_are_numbered_and_gaps_counted() {
 
 #[test]
 fn half_of_the_numbers_are_ahead_and_half_behind() {
-    let end = *one_of_each().iter().find(|message| message.kind() == Kind::End).unwrap();
+    let end = *one_of_each().iter().find(|message| message.kind() == MessageKind::End).unwrap();
     for (second, expected) in [
-        (1, Order::Next),
-        (2, Order::Missing(1)),
-        (0x8000, Order::Missing(0x7FFF)),
-        (0x8001, Order::Behind(0x8000)),
-        (0xFFFF, Order::Behind(2)),
-        (0, Order::Behind(1)),
+        (1, FrameOrder::Next),
+        (2, FrameOrder::Missing(1)),
+        (0x8000, FrameOrder::Missing(0x7FFF)),
+        (0x8001, FrameOrder::Behind(0x8000)),
+        (0xFFFF, FrameOrder::Behind(2)),
+        (0, FrameOrder::Behind(1)),
     ] {
-        let mut decoder = Decoder::new();
-        let first = Encoder::starting_at(0).encode(&end, ClockTime::default()).to_vec();
-        let second = Encoder::starting_at(second).encode(&end, ClockTime::default()).to_vec();
+        let mut decoder = SerialDecoder::new();
+        let first = SerialEncoder::starting_at(0).encode(&end, ClockTime::default()).to_vec();
+        let second = SerialEncoder::starting_at(second).encode(&end, ClockTime::default()).to_vec();
         let events = decode(&mut decoder, &[&first, &second]);
         assert_eq!(received(&events)[1].order, expected);
     }
@@ -174,9 +174,9 @@ fn the_longest_frame_fits() {
         longest = longest.max(bytes.len());
     }
     let full = octant_sample::Parameters::from_array(&[f64::from_bits(0x0101_0101_0101_0101); 30]);
-    let step = octant_wire::Step::new(0x0101);
+    let step = octant_wire::StepNumber::new(0x0101);
     let restart = octant_wire::message::Restart { step, offset: Some(full) };
-    let mut encoder = Encoder::starting_at(0x0101);
+    let mut encoder = SerialEncoder::starting_at(0x0101);
     let clock = ClockTime::from_ns(0x0101_0101_0101_0101);
     longest = longest.max(encoder.encode(&Message::Restart(restart), clock).len());
     assert!(longest >= MAX_FRAME_BYTES - 1, "{longest} of {MAX_FRAME_BYTES}");

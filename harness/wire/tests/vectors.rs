@@ -3,10 +3,10 @@
 
 use crate::common::vectors::{self, Vector};
 use crate::common::{self, decode, reassemble, received, same};
-use octant_wire::can::{self, Format, Frame, Reassembler, Slot};
-use octant_wire::layout::{Type, fields};
-use octant_wire::message::{Kind, Message, Role};
-use octant_wire::serial::{Decoder, Encoder};
+use octant_wire::can::{self, CanVersion, BusFrame, Reassembler, Slot};
+use octant_wire::layout::{FieldType, fields};
+use octant_wire::message::{MessageKind, Message, EndRole};
+use octant_wire::serial::{SerialDecoder, SerialEncoder};
 use serde_json::{Value, json};
 
 fn hex(bytes: &[u8]) -> String {
@@ -20,44 +20,44 @@ fn object(pairs: &[(&str, impl std::fmt::Display)]) -> String {
 }
 
 /// Fields of a payload as JSON text, from the table alone and in its order.
-fn fields_of(kind: Kind, payload: &[u8]) -> String {
+fn fields_of(kind: MessageKind, payload: &[u8]) -> String {
     let mut all = Vec::new();
     for field in fields(kind) {
         let bytes = &payload[field.at..field.at + field.ty.bytes()];
         let number = bytes.iter().rev().take(8).fold(0u64, |n, byte| n << 8 | u64::from(*byte));
         let value = match field.ty {
-            Type::U8 | Type::U16 | Type::U32 => json!(number),
-            Type::U64 => json!(number.to_string()),
-            Type::I32 => json!(number as u32 as i32),
-            Type::F64 => json!(format!("{number:016x}")),
-            Type::Step(flag) => {
+            FieldType::U8 | FieldType::U16 | FieldType::U32 => json!(number),
+            FieldType::U64 => json!(number.to_string()),
+            FieldType::I32 => json!(number as u32 as i32),
+            FieldType::F64 => json!(format!("{number:016x}")),
+            FieldType::Step(flag) => {
                 if let Some(flag) = flag {
                     all.push((flag, json!(number >> 15 == 1)));
                 }
                 json!(number & 0x7FFF)
             }
-            Type::Bytes(_) => json!(hex(bytes)),
-            Type::Text(_) => {
+            FieldType::Bytes(_) => json!(hex(bytes)),
+            FieldType::Text(_) => {
                 let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
                 json!(std::str::from_utf8(&bytes[..end]).unwrap())
             }
-            Type::Zero(_) => continue,
+            FieldType::Zero(_) => continue,
         };
         all.push((field.name, value));
     }
     object(&all)
 }
 
-fn can_frames(vector: &Vector, format: Format) -> Vec<Frame> {
+fn can_frames(vector: &Vector, format: CanVersion) -> Vec<BusFrame> {
     can::segments(&vector.message, vector.sender, format).unwrap().collect()
 }
 
-fn texts(frames: &[Frame]) -> Vec<String> {
+fn texts(frames: &[BusFrame]) -> Vec<String> {
     frames.iter().map(|frame| format!("{frame:?}")).collect()
 }
 
 fn serial_frame(vector: &Vector) -> Vec<u8> {
-    Encoder::starting_at(vector.sequence).encode(&vector.message, vector.clock).to_vec()
+    SerialEncoder::starting_at(vector.sequence).encode(&vector.message, vector.clock).to_vec()
 }
 
 /// Writes or compares a file, with one entry on each line so that changes are readable.
@@ -88,10 +88,10 @@ fn messages_have_these_bytes() {
     for vector in &all {
         let (kind, payload) = (vector.message.kind(), vector.message.payload());
         let frame = serial_frame(vector);
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let found = received(&decode(&mut decoder, &[&frame]));
         assert!(same(&[found[0].message], &[vector.message]), "{}", vector.name);
-        for format in [Format::Classic, Format::Fd] {
+        for format in [CanVersion::Classic, CanVersion::Fd] {
             let mut reassembler = Reassembler::new(&[vector.sender], format);
             let events = reassemble(&mut reassembler, &can_frames(vector, format));
             assert!(same(&common::messages(&events), &[vector.message]), "{}", vector.name);
@@ -105,14 +105,14 @@ fn messages_have_these_bytes() {
             ("sequence", json!(vector.sequence).to_string()),
             ("clock_ns", json!(vector.clock.ns.to_string()).to_string()),
             ("frame", json!(hex(&frame)).to_string()),
-            ("classic", json!(texts(&can_frames(vector, Format::Classic))).to_string()),
-            ("fd", json!(texts(&can_frames(vector, Format::Fd))).to_string()),
+            ("classic", json!(texts(&can_frames(vector, CanVersion::Classic))).to_string()),
+            ("fd", json!(texts(&can_frames(vector, CanVersion::Fd))).to_string()),
         ]);
     }
     // Every identifier occurs.
     for slot in Slot::ALL {
-        let id = slot.id(0, Format::Classic);
-        let sent = all.iter().any(|vector| can_frames(vector, Format::Classic)[0].id() == id);
+        let id = slot.id(0, CanVersion::Classic);
+        let sent = all.iter().any(|vector| can_frames(vector, CanVersion::Classic)[0].id() == id);
         assert!(sent, "{slot:?}");
     }
     check("messages.json", "messages and their bytes; see harness/wire/README.md", &entries);
@@ -130,10 +130,10 @@ fn the_table_knows_every_bit_that_the_code_looks_at() {
                 flipped[bit / 8] ^= 1 << (bit % 8);
                 let place = format!("{} bit {bit} ({})", vector.name, field.name);
                 let unused = match field.ty {
-                    Type::Zero(_) => true,
-                    Type::Step(None) => bit % 16 == 15,
+                    FieldType::Zero(_) => true,
+                    FieldType::Step(None) => bit % 16 == 15,
                     // The offset is absent.
-                    Type::F64 => kind == Kind::Restart && payload[1] >> 7 == 0,
+                    FieldType::F64 => kind == MessageKind::Restart && payload[1] >> 7 == 0,
                     _ => false,
                 };
                 match Message::read(kind, &flipped) {
@@ -148,7 +148,7 @@ fn the_table_knows_every_bit_that_the_code_looks_at() {
                             && (!field.values.is_empty()
                                 || field.name == "version"
                                 || field.name == "segment"
-                                || matches!(field.ty, Type::Text(_))),
+                                || matches!(field.ty, FieldType::Text(_))),
                         "{place}"
                     ),
                 }
@@ -190,7 +190,7 @@ fn forged(kind: u8, sequence: u16, payload: &[u8]) -> Vec<u8> {
 fn serial_cases() -> Vec<Case> {
     // A stream of five frames in order.
     let names = ["sample with aiding", "output", "end", "time request", "bye of a device"];
-    let mut encoder = Encoder::new();
+    let mut encoder = SerialEncoder::new();
     let frames: Vec<Vec<u8>> = names
         .iter()
         .map(|name| {
@@ -217,7 +217,7 @@ fn serial_cases() -> Vec<Case> {
     wrong_mode[20] = 5;
     let mut no_text = hello_payload;
     no_text[60] = 0xFF;
-    let hello_anew = Encoder::new().encode(&hello.message, hello.clock).to_vec();
+    let hello_anew = SerialEncoder::new().encode(&hello.message, hello.clock).to_vec();
     let case = |name,
                 about,
                 bytes: &[&[u8]],
@@ -409,7 +409,7 @@ fn serial_cases() -> Vec<Case> {
 fn damage_on_a_line_leaves_this() {
     let mut entries = Vec::new();
     for case in serial_cases() {
-        let mut decoder = Decoder::new();
+        let mut decoder = SerialDecoder::new();
         let mut events = Vec::new();
         for piece in &case.pieces {
             events.extend(decode(&mut decoder, &[piece]));
@@ -457,8 +457,8 @@ fn damage_on_a_line_leaves_this() {
 struct BusCase {
     name: &'static str,
     about: &'static str,
-    format: Format,
-    frames: Vec<Frame>,
+    format: CanVersion,
+    frames: Vec<BusFrame>,
     messages: Vec<&'static str>,
     counts: Vec<(&'static str, u64)>,
     unfinished: usize,
@@ -466,12 +466,12 @@ struct BusCase {
 
 fn bus_cases() -> Vec<BusCase> {
     let of = |name, format| can_frames(&vectors::named(name), format);
-    let classic = |name| of(name, Format::Classic);
+    let classic = |name| of(name, CanVersion::Classic);
     let (s, z) = (classic("sample with aiding"), classic("sample of zeros"));
-    let output = of("output", Format::Fd);
-    let heartbeat = of("heartbeat of a device", Format::Fd);
+    let output = of("output", CanVersion::Fd);
+    let heartbeat = of("heartbeat of a device", CanVersion::Fd);
     let pick =
-        |frames: &[Frame], order: &[usize]| order.iter().map(|i| frames[*i]).collect::<Vec<_>>();
+        |frames: &[BusFrame], order: &[usize]| order.iter().map(|i| frames[*i]).collect::<Vec<_>>();
     let (sn, zn, on) = ("sample with aiding", "sample of zeros", "output");
     let case = |name,
                 about,
@@ -481,26 +481,26 @@ fn bus_cases() -> Vec<BusCase> {
                 unfinished| BusCase {
         name,
         about,
-        format: Format::Classic,
+        format: CanVersion::Classic,
         frames,
         messages: messages.to_vec(),
         counts: counts.to_vec(),
         unfinished,
     };
-    let fd = |case: BusCase| BusCase { format: Format::Fd, ..case };
-    let altered = |frame: &Frame, at: usize| {
+    let fd = |case: BusCase| BusCase { format: CanVersion::Fd, ..case };
+    let altered = |frame: &BusFrame, at: usize| {
         let mut data = frame.data().to_vec();
         data[at] ^= 0x10;
-        Frame::new(frame.id(), frame.format(), &data).unwrap()
+        BusFrame::new(frame.id(), frame.format(), &data).unwrap()
     };
-    let cut = |frame: &Frame, to: usize| {
-        Frame::new(frame.id(), frame.format(), &frame.data()[..to]).unwrap()
+    let cut = |frame: &BusFrame, to: usize| {
+        BusFrame::new(frame.id(), frame.format(), &frame.data()[..to]).unwrap()
     };
     let mut newer = classic("hello of a device");
     newer[0] = {
         let mut data = newer[0].data().to_vec();
         data[0] = 2;
-        Frame::new(newer[0].id(), Format::Classic, &data).unwrap()
+        BusFrame::new(newer[0].id(), CanVersion::Classic, &data).unwrap()
     };
     let whole = &[0, 1, 2, 3, 4, 5, 6];
     vec![
@@ -623,7 +623,7 @@ fn bus_cases() -> Vec<BusCase> {
             "others on the bus",
             "identifiers of others, a slot that is free, a segment beyond the message, the other format, a sender that isn't listened to",
             {
-                let other = |id, data: &[u8]| Frame::new(id, Format::Classic, data).unwrap();
+                let other = |id, data: &[u8]| BusFrame::new(id, CanVersion::Classic, data).unwrap();
                 [
                     vec![
                         other(0x7DF, &[2, 1, 12]),
@@ -675,7 +675,7 @@ fn bus_cases() -> Vec<BusCase> {
         fd(case(
             "CAN FD, not zero behind the end",
             "a sample has 56 bytes in a frame of 64",
-            vec![altered(&of(sn, Format::Fd)[0], 60)],
+            vec![altered(&of(sn, CanVersion::Fd)[0], 60)],
             &[],
             &[("frames", 1), ("malformed", 1)],
             0,
@@ -685,7 +685,7 @@ fn bus_cases() -> Vec<BusCase> {
 
 #[test]
 fn damage_on_a_bus_leaves_this() {
-    let listened = [Role::Harness, Role::Device];
+    let listened = [EndRole::Harness, EndRole::Device];
     let mut entries = Vec::new();
     for case in bus_cases() {
         let mut reassembler = Reassembler::new(&listened, case.format);
@@ -716,8 +716,8 @@ fn damage_on_a_bus_leaves_this() {
         entries.push(vec![
             ("name", json!(case.name).to_string()),
             ("about", json!(case.about).to_string()),
-            ("format", json!(if case.format == Format::Fd { "fd" } else { "classic" }).to_string()),
-            ("senders", json!(listened.map(Role::name)).to_string()),
+            ("format", json!(if case.format == CanVersion::Fd { "fd" } else { "classic" }).to_string()),
+            ("senders", json!(listened.map(EndRole::name)).to_string()),
             ("frames", json!(texts(&case.frames)).to_string()),
             ("messages", json!(case.messages).to_string()),
             ("counts", object(&counts)),

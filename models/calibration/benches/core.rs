@@ -17,8 +17,8 @@ const PERIOD_NS: u64 = 5_000_000;
 const SECOND: usize = 200;
 const LATITUDE_RAD: f64 = 30.5 * DEG;
 
-fn config(calibration: bool) -> Config {
-    Config {
+fn config(calibration: bool) -> CoreConfig {
+    CoreConfig {
         sample_period_ns: PERIOD_NS,
         site: Site { latitude_rad: LATITUDE_RAD, longitude_rad: 0.0, height_m: 0.0 },
         alignment: Alignment::Given {

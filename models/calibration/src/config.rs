@@ -3,12 +3,12 @@
 use crate::sequence::Sequence;
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_sample::Parameters;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// Configuration of the core.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub struct Config {
+pub struct CoreConfig {
     /// Sample period, ns.
     pub sample_period_ns: u64,
     /// Position of the instrument; navigation starts here.
@@ -100,8 +100,8 @@ pub enum ErrorModel {
 pub struct Kalman {
     /// Form of the error model.
     pub error_model: ErrorModel,
-    /// Groups of parameters that are states, in the order of [`Group::ALL`]. The six-position
-    /// filter of the conventional method has no [`Group::GDependent`].
+    /// Groups of parameters that are states, in the order of [`ParameterGroup::ALL`]. The six-position
+    /// filter of the conventional method has no [`ParameterGroup::GDependent`].
     pub estimated: [bool; 7],
     /// Prior standard deviations.
     pub prior: Prior,
@@ -123,14 +123,14 @@ pub struct Prior {
     pub velocity_mps: f64,
     /// Position, each axis, m.
     pub position_m: f64,
-    /// Parameters by group, in the order of [`Group::ALL`], SI.
+    /// Parameters by group, in the order of [`ParameterGroup::ALL`], SI.
     pub parameters: [f64; 7],
 }
 
 impl Prior {
     /// Prior standard deviation of a parameter group, SI.
     #[must_use]
-    pub fn of(&self, group: Group) -> f64 {
+    pub fn of(&self, group: ParameterGroup) -> f64 {
         self.parameters[group as usize]
     }
 }

@@ -32,7 +32,7 @@ use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use step::DEGREE;
 use way::Way;
 
@@ -199,12 +199,12 @@ impl Continuity {
         };
         let prior = |group| kalman.prior.of(group);
         let encoder = SLOPE * screening.encoder_sigma_rad;
-        let (scale, across) = (prior(Group::GyroScale), prior(Group::GyroMisalignment));
+        let (scale, across) = (prior(ParameterGroup::GyroScale), prior(ParameterGroup::GyroMisalignment));
         let walk = noise.angle_random_walk;
         // Biases and Earth rate through the error of the initial attitude, rad/s.
         let known = AXES_SIGMAS
-            * (prior(Group::GyroBias)
-                + 10.0 * prior(Group::GDependent)
+            * (prior(ParameterGroup::GyroBias)
+                + 10.0 * prior(ParameterGroup::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
         let weights = step::weights();
         // While the acceleration lasts, the mean of two encoder angles is wrong by a twelfth of the

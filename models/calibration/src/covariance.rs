@@ -21,13 +21,13 @@ pub const DR: usize = 6;
 pub const PARAMETERS: usize = 9;
 
 /// One padded row of a matrix over the states.
-pub type Row = [f64; ROW];
+pub type CovarianceRow = [f64; ROW];
 
 /// The nine moving rows of a transition matrix, `[A B]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transition {
     /// Rows of φ, δv, δr.
-    pub rows: [Row; MOVING],
+    pub rows: [CovarianceRow; MOVING],
 }
 
 #[cfg(feature = "state")]
@@ -38,7 +38,7 @@ impl octant_state::State for Transition {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         load_rows(&mut self.rows, from)
     }
@@ -49,7 +49,7 @@ impl octant_state::State for Transition {
 type Eights = [[f64; 8]; ROW / 8];
 
 #[cfg(feature = "state")]
-fn save_rows(rows: &[Row], to: &mut octant_state::Writer) {
+fn save_rows(rows: &[CovarianceRow], to: &mut octant_state::Writer) {
     for row in rows {
         let eights: Eights = core::array::from_fn(|i| core::array::from_fn(|j| row[8 * i + j]));
         to.value("row", &eights);
@@ -58,8 +58,8 @@ fn save_rows(rows: &[Row], to: &mut octant_state::Writer) {
 
 #[cfg(feature = "state")]
 fn load_rows(
-    rows: &mut [Row],
-    from: &mut octant_state::Reader<'_>,
+    rows: &mut [CovarianceRow],
+    from: &mut octant_state::StateReader<'_>,
 ) -> Result<(), octant_state::StateError> {
     for row in rows {
         let eights: Eights = from.value("row")?;
@@ -83,7 +83,7 @@ impl Transition {
 /// Symmetric covariance, stored in full.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariance {
-    p: [Row; STATE_COUNT],
+    p: [CovarianceRow; STATE_COUNT],
 }
 
 #[cfg(feature = "state")]
@@ -94,7 +94,7 @@ impl octant_state::State for Covariance {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         load_rows(&mut self.p, from)
     }
@@ -222,7 +222,7 @@ impl Covariance {
     }
 
     /// Row `s` and 1/√(P_ss + r).
-    fn gain_row(&self, s: usize, r: f64) -> (Row, f64) {
+    fn gain_row(&self, s: usize, r: f64) -> (CovarianceRow, f64) {
         let row = self.p[s];
         (row, 1.0 / libm::sqrt(row[s] + r))
     }

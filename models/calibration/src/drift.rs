@@ -58,7 +58,7 @@ pub struct Largest {
 
 /// Drift test of one calibration.
 #[derive(Clone, Debug)]
-pub struct Drift {
+pub struct DriftTest {
     limit_sigmas: f64,
     prior: [f64; PARAMETER_COUNT],
     marks: [Mark; MARKS],
@@ -69,7 +69,7 @@ pub struct Drift {
 }
 
 #[cfg(feature = "state")]
-impl octant_state::State for Drift {
+impl octant_state::State for DriftTest {
     fn save(&self, to: &mut octant_state::Writer) {
         let Self { limit_sigmas: _, prior: _, marks, len, spacing_s, next_s, largest } = self;
         to.value("spacing_s", spacing_s);
@@ -83,7 +83,7 @@ impl octant_state::State for Drift {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.spacing_s = from.value("spacing_s")?;
         self.next_s = from.value("next_s")?;
@@ -103,7 +103,7 @@ fn variances(covariance: &Covariance) -> [f64; PARAMETER_COUNT] {
     core::array::from_fn(|i| covariance.at(PARAMETERS + i, PARAMETERS + i))
 }
 
-impl Drift {
+impl DriftTest {
     /// Makes a test that starts with the prior.
     #[must_use]
     pub fn new(limit_sigmas: f64, prior: &Covariance) -> Self {
@@ -190,11 +190,11 @@ mod tests {
 
     /// Estimates a scalar parameter from white measurements of σ 1 every 10 s, alone in the filter.
     /// `z` are the measurement errors; the parameter steps by `step` at the middle.
-    fn estimate(z: impl Fn(u64) -> f64, step: f64) -> Drift {
+    fn estimate(z: impl Fn(u64) -> f64, step: f64) -> DriftTest {
         let mut sigmas = [1e-3; STATE_COUNT];
         sigmas[PARAMETERS + 4] = 10.0;
         let mut covariance = Covariance::from_sigmas(&sigmas);
-        let mut drift = Drift::new(LIMIT_SIGMAS, &covariance);
+        let mut drift = DriftTest::new(LIMIT_SIGMAS, &covariance);
         let mut all = [0.0; PARAMETER_COUNT];
         for k in 1..=1440u64 {
             let truth = if k > 720 { 2.0 + step } else { 2.0 };

@@ -17,7 +17,7 @@
 //! δM ω + δG f and ∇ = δb_a + δM_a f are the errors that remain after compensation.
 
 use crate::config::ErrorModel;
-use crate::covariance::{DR, DV, PARAMETERS, PHI, Row, Transition};
+use crate::covariance::{DR, DV, PARAMETERS, PHI, CovarianceRow, Transition};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 
@@ -29,7 +29,7 @@ const ACCEL_OFF_DIAGONAL: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
 /// Motion in a short interval, as far as errors depend on it. Accurate to second order in its
 /// length as long as the body turns by less than about a degree.
 #[derive(Clone, Copy, Debug)]
-pub struct Interval {
+pub struct MotionInterval {
     /// Length, s.
     pub interval_s: f64,
     /// Attitude in the middle of the interval.
@@ -47,7 +47,7 @@ pub struct Interval {
 impl Transition {
     /// Advances the transition over one interval: `Φ ← (I + F h) Φ`, with the attitude error at the
     /// middle of the interval driving velocity and the velocity error driving position.
-    pub fn advance(&mut self, model: ErrorModel, interval: &Interval, earth: &Ellipsoid) {
+    pub fn advance(&mut self, model: ErrorModel, interval: &MotionInterval, earth: &Ellipsoid) {
         let input = parameter_input(interval, [true; 3], true);
         self.advance_by(model, interval, earth, &input);
     }
@@ -58,7 +58,7 @@ impl Transition {
     pub fn advance_bridged(
         &mut self,
         model: ErrorModel,
-        interval: &Interval,
+        interval: &MotionInterval,
         earth: &Ellipsoid,
         gyros_used: [bool; 3],
         accelerometers_used: bool,
@@ -74,9 +74,9 @@ impl Transition {
     fn advance_by(
         &mut self,
         model: ErrorModel,
-        interval: &Interval,
+        interval: &MotionInterval,
         earth: &Ellipsoid,
-        input: &[Row; 6],
+        input: &[CovarianceRow; 6],
     ) {
         let h = interval.interval_s;
         let v = &interval.velocity_mps;
@@ -159,13 +159,13 @@ impl Transition {
 
 /// Contribution of the parameter errors to φ (rows 0 to 2) and δv (rows 3 to 5) in the interval.
 fn parameter_input(
-    interval: &Interval,
+    interval: &MotionInterval,
     gyros_used: [bool; 3],
     accelerometers_used: bool,
-) -> [Row; 6] {
+) -> [CovarianceRow; 6] {
     let h = interval.interval_s;
     let (dtheta, dv) = (&interval.delta_theta, &interval.delta_velocity);
-    let mut input: [Row; 6] = [[0.0; 40]; 6];
+    let mut input: [CovarianceRow; 6] = [[0.0; 40]; 6];
     for i in 0..3 {
         let full = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
         let c: [f64; 3] =

@@ -10,20 +10,20 @@ mod noise;
 mod recovery;
 mod sub_step;
 
-pub use measurement::Measured;
+pub use measurement::MeasurementResult;
 pub use noise::add_process_noise;
-pub use sub_step::{Turned, sub_step_samples};
+pub use sub_step::{SensorIntegrals, sub_step_samples};
 
 use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Screening, Site};
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
-use crate::drift::Drift;
-use crate::error_model::Interval;
+use crate::drift::DriftTest;
+use crate::error_model::MotionInterval;
 use crate::screen::ACCELEROMETERS;
 use crate::strapdown::Strapdown;
 use checkpoint::Checkpoint;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
 use sub_step::SubStep;
 
 /// Counts over the whole calibration.
@@ -69,13 +69,13 @@ pub struct CalibrationFilter {
     force_sum: Vector3<f64>,
     time_s: f64,
     /// Closed sub-steps since the last call of [`Self::take_turned`].
-    turned: Turned,
+    turned: SensorIntegrals,
     rejected_in_a_row: u32,
     stage: Stage,
     /// True if the recovery is of velocity and position alone: the gyros' turn had no edge.
     keeps_attitude: bool,
     tally: Tally,
-    drift: Option<Drift>,
+    drift: Option<DriftTest>,
     /// The older and the newer checkpoint.
     checkpoints: Option<[Checkpoint; 2]>,
 }
@@ -110,7 +110,7 @@ pub fn prior_sigmas(kalman: &Kalman) -> [f64; STATE_COUNT] {
         sigmas[DV + axis] = kalman.prior.velocity_mps;
         sigmas[DR + axis] = kalman.prior.position_m;
     }
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         if kalman.estimated[group as usize] {
             sigmas[PARAMETERS..][group.range()].fill(kalman.prior.of(group));
         }
@@ -133,7 +133,7 @@ impl CalibrationFilter {
         // A filter without a group of parameters attributes them to the others, which then aren't
         // constant: by design, and not by a fault of the sensors.
         let drift = match screening.drift_sigmas {
-            Some(limit) if kalman.estimated == [true; 7] => Some(Drift::new(limit, &covariance)),
+            Some(limit) if kalman.estimated == [true; 7] => Some(DriftTest::new(limit, &covariance)),
             _ => None,
         };
         let start =
@@ -151,7 +151,7 @@ impl CalibrationFilter {
             elapsed_s: 0.0,
             force_sum: Vector3::zeros(),
             time_s: 0.0,
-            turned: Turned::default(),
+            turned: SensorIntegrals::default(),
             rejected_in_a_row: 0,
             stage: Stage::Normal,
             keeps_attitude: false,
@@ -217,7 +217,7 @@ impl CalibrationFilter {
         } else {
             step.c_middle
         };
-        let interval = Interval {
+        let interval = MotionInterval {
             interval_s: step.elapsed_s,
             c_nb,
             delta_theta: step.delta_theta,
@@ -243,7 +243,7 @@ impl CalibrationFilter {
     }
 
     /// Returns the integrals of the sensors since the last call.
-    pub fn take_turned(&mut self) -> Turned {
+    pub fn take_turned(&mut self) -> SensorIntegrals {
         let open = self.sub_step.turned();
         let mut turned = core::mem::take(&mut self.turned);
         turned.add(&open);
@@ -294,7 +294,7 @@ impl CalibrationFilter {
 
     /// Drift test, if there is one.
     #[must_use]
-    pub fn drift(&self) -> Option<&Drift> {
+    pub fn drift(&self) -> Option<&DriftTest> {
         self.drift.as_ref()
     }
 

@@ -46,5 +46,5 @@ pub mod state_machine;
 pub mod strapdown;
 pub mod table;
 
-pub use config::Config;
+pub use config::CoreConfig;
 pub use state_machine::Core;

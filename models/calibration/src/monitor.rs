@@ -5,7 +5,7 @@ use octant_sample::{Health, Sample, Status};
 
 /// Position of a sample after the last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum SampleOrder {
     /// The next sample, with its interval in ns.
     Next(u64),
     /// A later sample than the next one.
@@ -114,20 +114,20 @@ impl Monitor {
     /// Returns the position of this sample after the last, and its health flags without those of
     /// stuck channels, for which [`Self::stuck`] or a [`crate::screen::Screen`] tests.
     #[inline]
-    pub fn check(&mut self, sample: &Sample) -> (Order, Health) {
+    pub fn check(&mut self, sample: &Sample) -> (SampleOrder, Health) {
         let mut health = Health::empty();
         let order = self.order(sample);
         match order {
-            Order::Behind => {
+            SampleOrder::Behind => {
                 self.tally.out_of_order += 1;
                 return (order, Health::OUT_OF_ORDER);
             }
-            Order::Gap { missing } => {
+            SampleOrder::Gap { missing } => {
                 self.tally.gaps += 1;
                 self.tally.missing += missing;
                 health |= Health::GAP;
             }
-            Order::Next(_) => {}
+            SampleOrder::Next(_) => {}
         }
         if sample.status.intersects(
             Status::GYRO_SATURATED | Status::ACCELEROMETER_SATURATED | Status::INERTIAL_INVALID,
@@ -140,23 +140,23 @@ impl Monitor {
     }
 
     #[inline]
-    fn order(&self, sample: &Sample) -> Order {
-        let Some(last) = &self.last else { return Order::Next(self.period_ns) };
+    fn order(&self, sample: &Sample) -> SampleOrder {
+        let Some(last) = &self.last else { return SampleOrder::Next(self.period_ns) };
         if sample.sequence <= last.sequence || sample.device_time.ns <= last.time_ns {
-            return Order::Behind;
+            return SampleOrder::Behind;
         }
         let interval_ns = sample.device_time.ns - last.time_ns;
         if interval_ns == self.period_ns && sample.sequence == last.sequence + 1 {
             // The usual case, without a division: division is slow for every sample.
-            return Order::Next(interval_ns);
+            return SampleOrder::Next(interval_ns);
         }
         let jump = sample.sequence - last.sequence;
         if interval_ns > JUMP_MAX_NS || jump > JUMP_MAX_NS / self.period_ns.max(1) {
-            return Order::Behind;
+            return SampleOrder::Behind;
         }
         // Rounded to whole samples: stamps of real instruments jitter.
         let periods = (interval_ns + self.period_ns / 2) / self.period_ns;
-        if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
+        if periods >= 2 { SampleOrder::Gap { missing: periods - 1 } } else { SampleOrder::Next(interval_ns) }
     }
 
     /// Finds channels that repeat the same count; to be called for every sample.

@@ -233,7 +233,7 @@ pub const SIXTEEN: &[Degrees] = &[
 
 /// A body axis to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
+pub enum BodyAxis {
     /// Body x.
     X,
     /// Body y.
@@ -242,14 +242,14 @@ pub enum Axis {
     Z,
 }
 
-use Axis::{X, Y, Z};
+use BodyAxis::{X, Y, Z};
 
 /// Published sequences for a table that turns freely about the body axes: name, and turns in
 /// degrees. The first attitude is the one before the first turn.
 ///
 /// - `nineteen`: Xie Bo, 2011.
 /// - `twelve`: twelve turns, thirteen attitudes.
-pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = &[
+pub const FREE_TABLE: &[(&str, &[(BodyAxis, f64)])] = &[
     (
         "nineteen",
         &[
@@ -292,7 +292,7 @@ pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = &[
     ),
 ];
 
-fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
+fn about(axis: BodyAxis, degrees: f64) -> Matrix3<f64> {
     let angle_rad = degrees.to_radians();
     match axis {
         X => rotation::rx(angle_rad),
@@ -305,7 +305,7 @@ fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
 /// attitude after each turn.
 pub fn attitudes(
     start: Matrix3<f64>,
-    turns: &[(Axis, f64)],
+    turns: &[(BodyAxis, f64)],
 ) -> impl Iterator<Item = Matrix3<f64>> + '_ {
     let after = turns.iter().scan(start, |c_cb, (axis, degrees)| {
         *c_cb *= about(*axis, *degrees);
@@ -318,7 +318,7 @@ pub fn attitudes(
 /// at roll 0: an attitude that isn't `Rx(roll) · Rz(azimuth)`, in which body z stays at right
 /// angles to the roll axis. Returns its index; `None`: they reach all.
 #[must_use]
-pub fn unreachable_turn(azimuth_deg: f64, turns: &[(Axis, f64)]) -> Option<usize> {
+pub fn unreachable_turn(azimuth_deg: f64, turns: &[(BodyAxis, f64)]) -> Option<usize> {
     let start = frames::c_cb(azimuth_deg.to_radians(), 0.0);
     // The roll axis is case x: the first row of c_cb. Published angles are whole degrees.
     attitudes(start, turns).skip(1).position(|c_cb| c_cb[(0, 2)].abs() > 1e-9)

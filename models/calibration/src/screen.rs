@@ -22,7 +22,7 @@ use crate::config::{Base, Noise, Screening, TurntableRates};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
 /// Counts of gyros x y z and accelerometers x y z.
-pub type Counts = [i32; 6];
+pub type SensorCounts = [i32; 6];
 
 /// Channels of the gyros as bits.
 pub const GYROS: u8 = 0b00_0111;
@@ -68,7 +68,7 @@ pub struct Examined {
 #[derive(Clone, Debug)]
 pub struct Screen {
     /// Last counts that were accepted.
-    last: Counts,
+    last: SensorCounts,
     /// Limits while the gimbals rest and while they move; `floor` is 1 where identical counts are a
     /// fault.
     limits: [[u32; 6]; 2],
@@ -80,7 +80,7 @@ pub struct Screen {
     hold: [u32; 2],
     stretch: u64,
 
-    seen: Counts,
+    seen: SensorCounts,
     runs: [u32; 6],
     held: [u32; 6],
     jumps: [u32; 2],
@@ -211,7 +211,7 @@ impl Screen {
     /// `tick`: number of the sample.
     pub fn examine(
         &mut self,
-        counts: &Counts,
+        counts: &SensorCounts,
         moving: bool,
         expected: Option<&[f64; 6]>,
         tick: u64,
@@ -306,7 +306,7 @@ impl Screen {
 
     /// Last counts that were accepted.
     #[must_use]
-    pub fn last(&self) -> &Counts {
+    pub fn last(&self) -> &SensorCounts {
         &self.last
     }
 }
@@ -331,11 +331,11 @@ mod tests {
     }
 
     /// Counts that change from sample to sample by less than the noise.
-    fn still(k: i32) -> Counts {
+    fn still(k: i32) -> SensorCounts {
         [100 + k % 2, 200 + k % 2, 300 + k % 2, k % 2, 1 + k % 2, -52_000_000 + k % 2]
     }
 
-    fn passes(screen: &mut Screen, [x, y, z, u, v, w]: Counts, moving: bool) -> bool {
+    fn passes(screen: &mut Screen, [x, y, z, u, v, w]: SensorCounts, moving: bool) -> bool {
         screen.passes(moving, x, y, z, u, v, w)
     }
 

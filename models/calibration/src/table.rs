@@ -78,7 +78,7 @@ pub struct Provenance {
 
 /// Reason why bytes are not a calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TableError {
+pub enum CalibrationTableError {
     /// Wrong length.
     #[error("calibration table has {found} bytes, {expected} are expected")]
     Length {
@@ -181,23 +181,23 @@ impl CalibrationTable {
     ///
     /// # Errors
     /// If the bytes are not a table, are damaged, or are of a newer version.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CalibrationTableError> {
         if bytes.len() < 8 || bytes[..6] != *MAGIC {
-            return Err(TableError::Magic);
+            return Err(CalibrationTableError::Magic);
         }
         let version = u16::from_le_bytes([bytes[6], bytes[7]]);
         if version > TABLE_VERSION {
-            return Err(TableError::Version { found: version });
+            return Err(CalibrationTableError::Version { found: version });
         }
         let expected = if version < 2 { FIRST_TABLE_BYTES } else { TABLE_BYTES };
         if bytes.len() != expected {
-            return Err(TableError::Length { found: bytes.len(), expected });
+            return Err(CalibrationTableError::Length { found: bytes.len(), expected });
         }
         let (body, tail) = bytes.split_at(expected - 4);
         let found = u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]);
         let computed = CRC.checksum(body);
         if found != computed {
-            return Err(TableError::Checksum { found, computed });
+            return Err(CalibrationTableError::Checksum { found, computed });
         }
         let mut r = Reader { bytes: body, at: 8 };
         let mut all = [0.0; PARAMETER_COUNT];
@@ -306,6 +306,6 @@ mod tests {
     fn a_newer_version_is_refused_in_plain_words() {
         let mut bytes = example().to_bytes();
         bytes[6] = 9;
-        assert_eq!(CalibrationTable::from_bytes(&bytes), Err(TableError::Version { found: 9 }));
+        assert_eq!(CalibrationTable::from_bytes(&bytes), Err(CalibrationTableError::Version { found: 9 }));
     }
 }

@@ -4,20 +4,20 @@
 use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
 use octant_calibration::config::{ExternalTurntable, Noise};
 use octant_calibration::external_turntable::ExternalTurntableEstimator;
-use octant_calibration::least_squares::{Estimate, Refusal};
+use octant_calibration::least_squares::{Adjustment, AdjustmentRefusal};
 use octant_earth::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::{c_cb, c_nc, quaternion_from_matrix};
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR_PER_G};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 
 fn run(
     instrument: Instrument,
     stops: &[(f64, f64)],
     dwell_s: f64,
     initial: &Parameters,
-) -> Result<Estimate, Refusal> {
+) -> Result<Adjustment, AdjustmentRefusal> {
     let settings = ExternalTurntable {
         q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)),
         encoder_sigma_rad: ARCSEC,
@@ -42,9 +42,9 @@ fn without_noise_all_thirty_parameters_come_back() {
     for (estimate, tolerance, g_tolerance) in [(&first, 0.1, 1e-5), (&second, 3e-3, 3e-7)] {
         let (found, expected) = (estimate.parameters.to_array(), truth.to_array());
         for i in 0..30 {
-            let error = (found[i] - expected[i]).abs() / Group::of(i).si_per_unit();
+            let error = (found[i] - expected[i]).abs() / ParameterGroup::of(i).si_per_unit();
             assert!(error < tolerance, "{}: {error:e}", NAMES[i]);
-            if Group::of(i) == Group::GDependent {
+            if ParameterGroup::of(i) == ParameterGroup::GDependent {
                 assert!(error < g_tolerance, "{}: {error:e} deg/h/g", NAMES[i]);
             }
         }
@@ -122,7 +122,7 @@ fn too_few_positions_and_missing_encoders_are_refused() {
     let one_gimbal = [(0.0, 0.0), (0.0, 90.0), (0.0, 180.0), (0.0, 0.0)];
     let refused =
         run(Instrument::new(truth(), 0.0, 0.0, 1), &one_gimbal, 20.0, &Parameters::default());
-    assert!(matches!(refused, Err(Refusal::Undetermined { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(AdjustmentRefusal::Undetermined { .. })), "{refused:?}");
 
     let settings = ExternalTurntable {
         q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)),
@@ -137,5 +137,5 @@ fn too_few_positions_and_missing_encoders_are_refused() {
         sample.status |= octant_sample::Status::GIMBAL_INVALID;
         estimator.step(&sample, dt_s, standing);
     });
-    assert_eq!(estimator.finish(), Err(Refusal::NoEncoder { interval: 0 }));
+    assert_eq!(estimator.finish(), Err(AdjustmentRefusal::NoEncoder { interval: 0 }));
 }

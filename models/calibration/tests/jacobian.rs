@@ -6,7 +6,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use octant_calibration::compensation::Compensation;
 use octant_calibration::config::ErrorModel;
 use octant_calibration::covariance::{DR, DV, MOVING, PARAMETERS, PHI, STATE_COUNT, Transition};
-use octant_calibration::error_model::{Interval, computer_frame_error};
+use octant_calibration::error_model::{MotionInterval, computer_frame_error};
 use octant_calibration::strapdown::{Strapdown, Vertical};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::phi_of;
@@ -102,7 +102,7 @@ fn transition(model: ErrorModel) -> Transition {
     let mut strapdown = start();
     let mut transition = Transition::identity();
     for first in (0..SECONDS * 200).step_by(SUB_STEP) {
-        let mut interval = Interval {
+        let mut interval = MotionInterval {
             interval_s: SUB_STEP as f64 * DT,
             c_nb: strapdown.c_nb(),
             delta_theta: Vector3::zeros(),

@@ -2,9 +2,9 @@
 
 use crate::instrument::{self, EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
 use octant_calibration::config::{GyroReference, LeastSquares, StaticIntervals};
-use octant_calibration::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
+use octant_calibration::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 
 fn settings(gyro: GyroReference) -> LeastSquares {
     LeastSquares { gravity_mps2: None, gyro, intervals: StaticIntervals::Commanded }
@@ -16,7 +16,7 @@ fn run(
     gyro: GyroReference,
     dwell_s: f64,
     initial: &Parameters,
-) -> Result<Estimate, Refusal> {
+) -> Result<Adjustment, AdjustmentRefusal> {
     let mut estimator =
         LeastSquaresEstimator::new(&settings(gyro), &SITE, PERIOD_NS, initial).unwrap();
     instrument.run(stops, dwell_s, |sample, dt_s, standing| {
@@ -26,11 +26,11 @@ fn run(
 }
 
 /// Largest error of an estimated parameter, in units shown to users.
-fn worst(estimate: &Estimate, truth: &Parameters) -> (f64, &'static str) {
+fn worst(estimate: &Adjustment, truth: &Parameters) -> (f64, &'static str) {
     let (found, expected) = (estimate.parameters.to_array(), truth.to_array());
     let mut worst = (0.0, "");
     for i in 0..30 {
-        let error = (found[i] - expected[i]).abs() / Group::of(i).si_per_unit();
+        let error = (found[i] - expected[i]).abs() / ParameterGroup::of(i).si_per_unit();
         if !estimate.sigma[i].is_nan() && error > worst.0 {
             worst = (error, NAMES[i]);
         }
@@ -148,7 +148,7 @@ fn positions_that_do_not_determine_the_parameters_are_refused() {
         5.0,
         &Parameters::default(),
     );
-    assert!(matches!(rotated, Err(Refusal::Undetermined { parameter: 27..30 })), "{rotated:?}");
+    assert!(matches!(rotated, Err(AdjustmentRefusal::Undetermined { parameter: 27..30 })), "{rotated:?}");
     // Turning only one gimbal leaves the scale of body z undetermined.
     let one_gimbal = [(0.0, 0.0), (0.0, 90.0), (0.0, 180.0), (0.0, 270.0), (0.0, 0.0)];
     let chain = run(
@@ -158,7 +158,7 @@ fn positions_that_do_not_determine_the_parameters_are_refused() {
         5.0,
         &Parameters::default(),
     );
-    assert!(matches!(chain, Err(Refusal::Undetermined { .. })), "{chain:?}");
+    assert!(matches!(chain, Err(AdjustmentRefusal::Undetermined { .. })), "{chain:?}");
 }
 
 #[test]
@@ -276,7 +276,7 @@ fn sway_and_coarse_gyros_are_refused_against_earth_rate() {
         estimator.step(&sample, dt_s, Some(standing));
     });
     let refused = estimator.finish();
-    assert!(matches!(refused, Err(Refusal::Inconsistent { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(AdjustmentRefusal::Inconsistent { .. })), "{refused:?}");
 
     let mut mems = truth();
     mems.gyro_bias = [0.001, 0.0, 0.0];
@@ -287,7 +287,7 @@ fn sway_and_coarse_gyros_are_refused_against_earth_rate() {
         5.0,
         &Parameters::default(),
     );
-    assert_eq!(refused, Err(Refusal::NoEarthRate { interval: 0 }));
+    assert_eq!(refused, Err(AdjustmentRefusal::NoEarthRate { interval: 0 }));
 }
 
 #[test]
@@ -300,7 +300,7 @@ fn the_store_has_an_end_and_says_so() {
         1.5,
         &Parameters::default(),
     );
-    assert_eq!(refused, Err(Refusal::TooManyIntervals));
+    assert_eq!(refused, Err(AdjustmentRefusal::TooManyIntervals));
     let none = run(
         Instrument::new(truth(), 0.0, 0.0, 1),
         &[(0.0, 0.0)],
@@ -308,7 +308,7 @@ fn the_store_has_an_end_and_says_so() {
         1.5,
         &Parameters::default(),
     );
-    assert_eq!(none, Err(Refusal::TooFewIntervals { found: 1, needed: 2 }));
+    assert_eq!(none, Err(AdjustmentRefusal::TooFewIntervals { found: 1, needed: 2 }));
 }
 
 #[test]
@@ -325,23 +325,23 @@ fn settings_out_of_range_are_refused_before_the_first_sample() {
     assert_eq!(new(&detected(50.0, 1.0, 3.0, 1.0), &zero), None);
     assert_eq!(
         new(&detected(50.0, 20.0, 3.0, 1.0), &zero),
-        Some(Refusal::Window { samples: 1000.0 })
+        Some(AdjustmentRefusal::Window { samples: 1000.0 })
     );
     assert!(matches!(
         new(&detected(0.5, 1.0, 3.0, 1.0), &zero),
-        Some(Refusal::InitialInterval { .. })
+        Some(AdjustmentRefusal::InitialInterval { .. })
     ));
     assert!(matches!(
         new(&detected(50.0, 1.0, f64::NAN, 1.0), &zero),
-        Some(Refusal::Threshold { .. })
+        Some(AdjustmentRefusal::Threshold { .. })
     ));
     assert_eq!(
         new(&detected(50.0, 1.0, 3.0, -1.0), &zero),
-        Some(Refusal::NotPositive { field: "shortest_s", found: -1.0 })
+        Some(AdjustmentRefusal::NotPositive { field: "shortest_s", found: -1.0 })
     );
     let broken = Parameters { gyro_bias: [f64::NAN, 0.0, 0.0], ..zero };
-    assert_eq!(new(&detected(50.0, 1.0, 3.0, 1.0), &broken), Some(Refusal::InitialParameters));
-    let text = Refusal::Undetermined { parameter: 29 }.to_string();
+    assert_eq!(new(&detected(50.0, 1.0, 3.0, 1.0), &broken), Some(AdjustmentRefusal::InitialParameters));
+    let text = AdjustmentRefusal::Undetermined { parameter: 29 }.to_string();
     assert_eq!(text, "the positions do not determine accel_misalignment_zy");
 }
 

@@ -3,7 +3,7 @@
 
 use octant_calibration::config::{GyroReference, LeastSquares, Site, StaticIntervals};
 use octant_calibration::least_squares::raw::{self, Nominal};
-use octant_calibration::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
+use octant_calibration::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, Parameters, Sample};
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ fn samples(folder: &Path) -> Vec<(Sample, f64)> {
     all
 }
 
-fn pass(samples: &[(Sample, f64)], initial: &Parameters) -> Result<Estimate, Refusal> {
+fn pass(samples: &[(Sample, f64)], initial: &Parameters) -> Result<Adjustment, AdjustmentRefusal> {
     let settings = LeastSquares {
         gravity_mps2: Some(9.81744),
         gyro: GyroReference::RotatedGravity,

@@ -45,9 +45,9 @@ fn kalman() -> Estimator {
     })
 }
 
-fn config(estimator: Estimator, screening: Screening) -> Config {
+fn config(estimator: Estimator, screening: Screening) -> CoreConfig {
     let stops: Vec<_> = EIGHT.iter().map(|(azimuth, roll)| (*azimuth, *roll, 1.0)).collect();
-    Config {
+    CoreConfig {
         sample_period_ns: PERIOD_NS,
         site: SITE,
         alignment: Alignment::Given { q_nb: q_nc(), velocity_mps: Vector3::zeros() },
@@ -88,7 +88,7 @@ fn go_on(core: &mut Core, from: usize, to: usize) {
     }
 }
 
-fn after(config: &Config, samples: usize) -> Core {
+fn after(config: &CoreConfig, samples: usize) -> Core {
     let mut core = Core::new(config).unwrap();
     go_on(&mut core, 0, samples);
     core

@@ -4,7 +4,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Channels, Setup, Spec, Station, Value, Values, kinds};
+use octant_faults::{Channels, Setup, FaultSpec, Station, Value, Values, kinds};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, Mode, Output, Sample, Truth};
 use std::hint::black_box;
@@ -37,13 +37,13 @@ fn setup() -> Setup {
     }
 }
 
-fn spec(id: String, kind: &str, trigger: Trigger) -> Spec {
+fn spec(id: String, kind: &str, trigger: Trigger) -> FaultSpec {
     let mut values = Values::default();
     values.set("channels", Value::Channels(Channels::gyro(0)));
     values.set("amplitude", Value::Quantity(5e-5, Dimension::GyroBias));
     let schedule = Schedule { trigger, duration: None, recovery: 0, repeat: Repeat::Once };
     let kind = kinds::named(kind).expect("a kind of the catalogue");
-    Spec { id, kind, values, schedule }
+    FaultSpec { id, kind, values, schedule }
 }
 
 fn station(kind: &str, trigger: &Trigger, faults: usize) -> Station {

@@ -1,14 +1,14 @@
 //! Kinds of faults as data: name, place, parameters and effect.
 
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 
 pub use crate::dimension::Dimension;
 
 /// A kind of fault.
 #[derive(Debug)]
-pub struct Kind {
+pub struct FaultKind {
     /// Name in scenarios: lower case, words joined by hyphens.
     pub name: &'static str,
     /// Family of the kind.
@@ -21,19 +21,19 @@ pub struct Kind {
     /// empty lines, equations stand on indented lines.
     pub model: &'static str,
     /// Parameters, beside those that every fault has.
-    pub parameters: &'static [Parameter],
+    pub parameters: &'static [FaultParameter],
     /// Duration of faults of this kind.
     pub lasts: Lasts,
     /// Example of the kind, as its page shows it.
     pub example: Example,
     /// Makes the rule of one fault of this kind.
-    pub build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
+    pub build: fn(&Values, &Setup) -> Result<FaultRule, FaultBuildError>,
 }
 
-impl Kind {
+impl FaultKind {
     /// Finds a parameter by its name.
     #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+    pub fn parameter(&self, name: &str) -> Option<&'static FaultParameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 }
@@ -161,7 +161,7 @@ impl Example {
 
 /// One parameter of a kind.
 #[derive(Debug)]
-pub struct Parameter {
+pub struct FaultParameter {
     /// Key in the scenario.
     pub name: &'static str,
     /// Form of the value.
@@ -177,7 +177,7 @@ pub struct Parameter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Takes {
     /// A quantity of one of these dimensions.
-    Quantity(&'static [Dimension], Bounds),
+    Quantity(&'static [Dimension], ParameterBounds),
     /// A quantity for each of x, y, z.
     Vector(&'static [Dimension]),
     /// A whole number, from and to.
@@ -189,17 +189,17 @@ pub enum Takes {
     /// Channels of the sensors.
     Channels,
     /// A plain number.
-    Number(Bounds),
+    Number(ParameterBounds),
     /// On a connection: a value that its input can have, with a unit or in that of the input, or
     /// `last`.
     Value,
     /// On a connection: a difference of values, with a unit or in that of the input.
-    Difference(Bounds),
+    Difference(ParameterBounds),
 }
 
 /// Limits of a quantity, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bounds {
+pub enum ParameterBounds {
     /// Any finite value but zero: at zero the fault would have no effect.
     NotZero,
     /// Any finite value.

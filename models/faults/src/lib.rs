@@ -38,8 +38,8 @@ pub mod trigger;
 pub mod values;
 pub mod wire;
 
-pub use catalogue::Kind;
+pub use catalogue::FaultKind;
 pub use receipt::Receipt;
-pub use setup::{BuildError, Setup};
-pub use station::{Spec, Station};
+pub use setup::{FaultBuildError, Setup};
+pub use station::{FaultSpec, Station};
 pub use values::{Channels, Value, Values};

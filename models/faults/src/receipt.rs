@@ -4,7 +4,7 @@ use crate::wire::Altered;
 use alloc::string::String;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{Epoch, GimbalCommand};
-use octant_state::{Reader, State, StateError, Writer};
+use octant_state::{StateReader, State, StateError, Writer};
 
 /// The receipt of one fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl State for Ledger {
         to.value("faulted", &faulted.clone().finalize());
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.first = from.value("first")?;
         self.last = from.value("last")?;
         self.altered = from.value("altered")?;

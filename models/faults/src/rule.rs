@@ -17,11 +17,11 @@ use octant_random::philox::block;
 use octant_random::stream::Phase;
 use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
-use octant_state::{Reader, State, StateError, Writer};
+use octant_state::{StateReader, State, StateError, Writer};
 
 /// The rule of one fault, by the place where it acts.
 #[derive(Clone, Debug)]
-pub enum Rule {
+pub enum FaultRule {
     /// Inside the plant.
     Plant(Box<dyn PlantRule>),
     /// On set points.
@@ -45,7 +45,7 @@ dyn_clone::clone_trait_object!(DeliveryRule);
 dyn_clone::clone_trait_object!(UnitRule);
 dyn_clone::clone_trait_object!(WireRule);
 
-impl State for Rule {
+impl State for FaultRule {
     fn save(&self, to: &mut Writer) {
         match self {
             Self::Plant(rule) => rule.save(to),
@@ -58,7 +58,7 @@ impl State for Rule {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         match self {
             Self::Plant(rule) => rule.load(from),
             Self::Command(rule) => rule.load(from),

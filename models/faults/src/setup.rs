@@ -1,7 +1,7 @@
 //! Data of the run that a fault needs before it starts.
 
 use alloc::string::String;
-use octant_random::philox::Key;
+use octant_random::philox::StreamKey;
 use octant_random::stream::{Phase, key};
 
 /// Facts of the run that faults are built with.
@@ -47,14 +47,14 @@ impl Setup {
 /// A random stream of one fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stream {
-    calibration: Key,
-    navigation: Key,
+    calibration: StreamKey,
+    navigation: StreamKey,
 }
 
 impl Stream {
     /// The key of a phase.
     #[must_use]
-    pub fn key(&self, phase: Phase) -> Key {
+    pub fn key(&self, phase: Phase) -> StreamKey {
         match phase {
             Phase::Navigation => self.navigation,
             Phase::Calibration | Phase::Draw => self.calibration,
@@ -64,7 +64,7 @@ impl Stream {
 
 /// Reason why a fault can't be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BuildError {
+pub enum FaultBuildError {
     /// A value doesn't fit the others.
     #[error("{parameter}: {problem}")]
     Value {
@@ -86,7 +86,7 @@ pub enum BuildError {
     },
 }
 
-impl BuildError {
+impl FaultBuildError {
     /// Error for a parameter without a value.
     #[must_use]
     pub fn missing(parameter: &'static str) -> Self {

@@ -10,11 +10,11 @@ mod passage;
 mod stage;
 mod state;
 
-use crate::catalogue::{Acts, Kind, Lasts};
+use crate::catalogue::{Acts, FaultKind, Lasts};
 use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
-use crate::rule::{Rule, SetPoints, UnitEvent};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{FaultRule, SetPoints, UnitEvent};
+use crate::setup::{FaultBuildError, Setup};
 use crate::trigger::{Clock, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
@@ -30,11 +30,11 @@ pub use state::FORMAT as STATE_FORMAT;
 
 /// One fault of a scenario.
 #[derive(Clone, Debug)]
-pub struct Spec {
+pub struct FaultSpec {
     /// Id, unique in the run.
     pub id: String,
     /// Kind of the fault.
-    pub kind: &'static Kind,
+    pub kind: &'static FaultKind,
     /// Values of every parameter of the kind.
     pub values: Values,
     /// Time of the fault.
@@ -156,7 +156,7 @@ impl Station {
     /// # Errors
     /// If a fault's values contradict each other, an id is given twice, or a fault waits for one
     /// that isn't there.
-    pub fn new(specs: &[Spec], setup: &Setup) -> Result<Self, (String, BuildError)> {
+    pub fn new(specs: &[FaultSpec], setup: &Setup) -> Result<Self, (String, FaultBuildError)> {
         let mut stages: Vec<Stage> = Vec::with_capacity(specs.len());
         for spec in specs {
             let stage = Self::stage(spec, specs, &stages, setup);
@@ -164,7 +164,7 @@ impl Station {
         }
         let conditions = stages.iter().any(|stage| stage.clock.has_condition());
         let truth = stages.iter().any(|stage| stage.clock.needs_truth());
-        let commands = stages.iter().any(|stage| matches!(stage.rule, Rule::Command(_)));
+        let commands = stages.iter().any(|stage| matches!(stage.rule, FaultRule::Command(_)));
         let burst = burst(&stages)?;
         let mut station = Self {
             stages,
@@ -193,31 +193,31 @@ impl Station {
     }
 
     fn stage(
-        spec: &Spec,
-        specs: &[Spec],
+        spec: &FaultSpec,
+        specs: &[FaultSpec],
         before: &[Stage],
         setup: &Setup,
-    ) -> Result<Stage, BuildError> {
+    ) -> Result<Stage, FaultBuildError> {
         if before.iter().any(|stage| stage.id == spec.id) {
-            return Err(BuildError::DuplicateId(spec.id.clone()));
+            return Err(FaultBuildError::DuplicateId(spec.id.clone()));
         }
         if let Trigger::After { fault, .. } = &spec.schedule.trigger
             && !specs.iter().any(|other| other.id == *fault && other.id != spec.id)
         {
-            return Err(BuildError::NoSuchFault { id: spec.id.clone(), after: fault.clone() });
+            return Err(FaultBuildError::NoSuchFault { id: spec.id.clone(), after: fault.clone() });
         }
         let mut schedule = spec.schedule.clone();
         match spec.kind.lasts {
             Lasts::Fading => {}
             Lasts::Span if schedule.recovery > 0 => {
                 let problem = "this kind doesn't fade: it is there or it isn't";
-                return Err(BuildError::value("recovery", problem));
+                return Err(FaultBuildError::value("recovery", problem));
             }
             Lasts::Span => {}
             Lasts::Instant => (schedule.duration, schedule.recovery) = (Some(1), 0),
         }
         if schedule.duration == Some(0) {
-            return Err(BuildError::value(
+            return Err(FaultBuildError::value(
                 "duration",
                 "less than a sample, at least one is expected",
             ));
@@ -306,7 +306,7 @@ impl Station {
     pub fn exchanged(&mut self, wire: &mut dyn Wired) {
         let epoch = self.epoch;
         for (handle, stage) in self.stages.iter_mut().enumerate() {
-            if matches!(stage.rule, Rule::Wire(_)) {
+            if matches!(stage.rule, FaultRule::Wire(_)) {
                 stage.ledger.frames(epoch, &wire.altered(handle as u32));
             }
         }
@@ -405,17 +405,17 @@ impl Station {
 }
 
 /// Largest number of epochs that can leave the last stage in one step of the source.
-fn burst(stages: &[Stage]) -> Result<usize, (String, BuildError)> {
+fn burst(stages: &[Stage]) -> Result<usize, (String, FaultBuildError)> {
     let mut most = 1;
     for stage in stages {
-        let Rule::Delivery(rule) = &stage.rule else { continue };
+        let FaultRule::Delivery(rule) = &stage.rule else { continue };
         most = rule.most_out(most);
         if most > BURST_MAX {
             let problem = alloc::format!(
                 "with the faults before it, up to {most} epochs could be delivered in one step, at \
                  most {BURST_MAX} are possible"
             );
-            return Err((stage.id.clone(), BuildError::value("kind", problem)));
+            return Err((stage.id.clone(), FaultBuildError::value("kind", problem)));
         }
     }
     Ok(most)

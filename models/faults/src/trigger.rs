@@ -6,7 +6,7 @@
 
 use alloc::string::String;
 use octant_random::normal::{uniform, words};
-use octant_random::philox::Key;
+use octant_random::philox::StreamKey;
 use octant_sample::{Health, Mode, Output, Truth};
 use octant_state::StateError;
 
@@ -58,7 +58,7 @@ pub enum Trigger {
         /// Signal.
         signal: Signal,
         /// Above or below.
-        comparison: Comparison,
+        comparison: ThresholdSide,
         /// The value, SI.
         value: f64,
         /// Epochs after the crossing.
@@ -170,7 +170,7 @@ impl Signal {
 
 /// Side of the value on which a condition is true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Comparison {
+pub enum ThresholdSide {
     /// Above it.
     Above,
     /// Below it.
@@ -242,7 +242,7 @@ pub(crate) enum State {
 pub(crate) struct Clock {
     schedule: Schedule,
     /// Key of the random numbers of a Poisson trigger, one for each onset.
-    key: Key,
+    key: StreamKey,
     pub(crate) state: State,
     pub(crate) firings: u32,
     /// True if the condition held at the epoch before.
@@ -259,7 +259,7 @@ pub(crate) struct Ticked {
 }
 
 impl Clock {
-    pub(crate) fn new(schedule: Schedule, key: Key) -> Self {
+    pub(crate) fn new(schedule: Schedule, key: StreamKey) -> Self {
         let mut clock = Self { schedule, key, state: State::Waiting, firings: 0, held: false };
         clock.state = match clock.schedule.trigger {
             Trigger::Epoch(first) | Trigger::Periodic { first, .. } => State::Pending(first.max(1)),
@@ -397,8 +397,8 @@ impl Clock {
                     return None;
                 }
                 let holds = match comparison {
-                    Comparison::Above => found > value,
-                    Comparison::Below => found < value,
+                    ThresholdSide::Above => found > value,
+                    ThresholdSide::Below => found < value,
                 };
                 let crossed = holds && !self.held;
                 self.held = holds;

@@ -1,7 +1,7 @@
 //! Values of a fault's parameters, checked and in SI.
 
 use crate::dimension::Dimension;
-use crate::setup::BuildError;
+use crate::setup::FaultBuildError;
 use alloc::vec::Vec;
 
 /// Value of a parameter.
@@ -53,7 +53,7 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn quantity(&self, name: &'static str) -> Result<f64, BuildError> {
+    pub fn quantity(&self, name: &'static str) -> Result<f64, FaultBuildError> {
         self.quantity_and_dimension(name).map(|(value, _)| value)
     }
 
@@ -64,10 +64,10 @@ impl Values {
     pub fn quantity_and_dimension(
         &self,
         name: &'static str,
-    ) -> Result<(f64, Dimension), BuildError> {
+    ) -> Result<(f64, Dimension), FaultBuildError> {
         match self.get(name) {
             Some(Value::Quantity(value, dimension)) => Ok((value, dimension)),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -75,10 +75,10 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn vector(&self, name: &'static str) -> Result<[f64; 3], BuildError> {
+    pub fn vector(&self, name: &'static str) -> Result<[f64; 3], FaultBuildError> {
         match self.get(name) {
             Some(Value::Vector(value, _)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -86,10 +86,10 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn integer(&self, name: &'static str) -> Result<i64, BuildError> {
+    pub fn integer(&self, name: &'static str) -> Result<i64, FaultBuildError> {
         match self.get(name) {
             Some(Value::Integer(value)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -97,10 +97,10 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn number(&self, name: &'static str) -> Result<f64, BuildError> {
+    pub fn number(&self, name: &'static str) -> Result<f64, FaultBuildError> {
         match self.get(name) {
             Some(Value::Number(value)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -108,10 +108,10 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn flag(&self, name: &'static str) -> Result<bool, BuildError> {
+    pub fn flag(&self, name: &'static str) -> Result<bool, FaultBuildError> {
         match self.get(name) {
             Some(Value::Flag(value)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -119,10 +119,10 @@ impl Values {
     ///
     /// # Errors
     /// If there is none under the name.
-    pub fn choice(&self, name: &'static str) -> Result<&'static str, BuildError> {
+    pub fn choice(&self, name: &'static str) -> Result<&'static str, FaultBuildError> {
         match self.get(name) {
             Some(Value::Choice(value)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 
@@ -130,10 +130,10 @@ impl Values {
     ///
     /// # Errors
     /// If there are none under the name.
-    pub fn channels(&self, name: &'static str) -> Result<Channels, BuildError> {
+    pub fn channels(&self, name: &'static str) -> Result<Channels, FaultBuildError> {
         match self.get(name) {
             Some(Value::Channels(value)) => Ok(value),
-            _ => Err(BuildError::missing(name)),
+            _ => Err(FaultBuildError::missing(name)),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! numbers come from the fault's own streams, counted by the frames that it sees.
 
 use octant_random::normal::uniform;
-use octant_random::philox::{Key, block};
+use octant_random::philox::{StreamKey, block};
 
 /// Direction on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,7 +45,7 @@ pub struct WireFault {
     /// Action on the frame.
     pub action: WireAction,
     /// Key of its random numbers.
-    pub key: Key,
+    pub key: StreamKey,
 }
 
 impl WireFault {

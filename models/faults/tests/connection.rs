@@ -2,7 +2,7 @@
 
 use octant_faults::catalogue::Dimension;
 use octant_faults::connection::kinds::{self, Target};
-use octant_faults::connection::{Spec, Station};
+use octant_faults::connection::{ConnectionFaultSpec, ConnectionStation};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Value, Values};
 
@@ -18,7 +18,7 @@ fn schedule(first: u64, duration: u64) -> Schedule {
     }
 }
 
-fn spec(kind: &str, given: &[(&'static str, Value)], schedule: Schedule) -> Spec {
+fn spec(kind: &str, given: &[(&'static str, Value)], schedule: Schedule) -> ConnectionFaultSpec {
     spec_on(kind, given, schedule, &[Target::Float64])
 }
 
@@ -27,12 +27,12 @@ fn spec_on(
     given: &[(&'static str, Value)],
     schedule: Schedule,
     targets: &[Target],
-) -> Spec {
+) -> ConnectionFaultSpec {
     let mut values = Values::default();
     for (name, value) in given {
         values.set(name, *value);
     }
-    Spec {
+    ConnectionFaultSpec {
         id: format!("{kind}-1"),
         kind: kinds::named(kind).unwrap(),
         values,
@@ -42,8 +42,8 @@ fn spec_on(
 }
 
 /// Values that element 0 gets when x(k) = 10 k is sent at epochs 1 to `epochs`.
-fn sent(specs: &[Spec], epochs: u64) -> (Vec<f64>, Vec<Receipt>) {
-    let mut station = Station::new(specs, SEED, PERIOD_S).unwrap();
+fn sent(specs: &[ConnectionFaultSpec], epochs: u64) -> (Vec<f64>, Vec<Receipt>) {
+    let mut station = ConnectionStation::new(specs, SEED, PERIOD_S).unwrap();
     let got = (1..=epochs)
         .map(|k| {
             station.begin(|_| None);
@@ -92,7 +92,7 @@ fn bias_and_scale_act_with_their_strength() {
 fn whole_numbers_are_rounded_and_end_at_their_limits() {
     let value = [("value", Value::Number(100.5))];
     let spec = spec_on("bias", &value, schedule(1, 3), &[Target::Integer(-128.0, 127.0)]);
-    let mut station = Station::new(&[spec], SEED, PERIOD_S).unwrap();
+    let mut station = ConnectionStation::new(&[spec], SEED, PERIOD_S).unwrap();
     let got: Vec<f64> = [1.0, 2.0, 100.0]
         .into_iter()
         .map(|value| {
@@ -113,7 +113,7 @@ fn a_delay_gives_what_was_sent_before() {
     let time = [("delay", Value::Quantity(0.025, Dimension::Time))];
     assert_eq!(sent(&[spec("delay", &time, schedule(4, 2))], 6).0[3..], [20.0, 30.0, 60.0]);
     let none = [("delay", Value::Quantity(0.004, Dimension::Time))];
-    let error = Station::new(&[spec("delay", &none, schedule(1, 1))], SEED, PERIOD_S).unwrap_err();
+    let error = ConnectionStation::new(&[spec("delay", &none, schedule(1, 1))], SEED, PERIOD_S).unwrap_err();
     assert!(error.1.to_string().contains("0 steps"), "{}", error.1);
 }
 
@@ -150,7 +150,7 @@ fn noise_is_white_and_normal_and_moves_with_seed_and_id_alone() {
     let noise = |id: &str, seed: u64| {
         let mut spec = spec_on("noise", &sigma, schedule(1, N), &targets);
         spec.id = id.to_owned();
-        let mut station = Station::new(&[spec], seed, PERIOD_S).unwrap();
+        let mut station = ConnectionStation::new(&[spec], seed, PERIOD_S).unwrap();
         let mut all: [Vec<f64>; 5] = Default::default();
         for _ in 0..N {
             station.begin(|_| None);
@@ -195,7 +195,7 @@ fn numbers_that_are_none_are_on_floats_alone() {
         ("noise", &[("sigma", Value::Number(1.0))], Target::Enumeration),
     ] {
         let spec = spec_on(kind, given, schedule(1, 1), &[target]);
-        let (id, error) = Station::new(&[spec], SEED, PERIOD_S).unwrap_err();
+        let (id, error) = ConnectionStation::new(&[spec], SEED, PERIOD_S).unwrap_err();
         assert_eq!(id, format!("{kind}-1"));
         assert!(error.to_string().contains("can't act on"), "{error}");
     }
@@ -220,7 +220,7 @@ fn triggers_are_those_of_all_faults() {
     let outside = bias("outside", Trigger::Outside { delay: 1 });
     let after = bias("after", Trigger::After { fault: "outside".into(), delay: 2 });
     let by_hand = bias("by-hand", Trigger::Manual);
-    let mut station = Station::new(&[outside, after, by_hand], SEED, PERIOD_S).unwrap();
+    let mut station = ConnectionStation::new(&[outside, after, by_hand], SEED, PERIOD_S).unwrap();
     let mut got = Vec::new();
     for k in 1..=12u64 {
         if k == 10 {
@@ -242,9 +242,9 @@ fn triggers_are_those_of_all_faults() {
         [(4, 0, true), (5, 0, false), (7, 1, true), (8, 1, false), (10, 2, true), (11, 2, false)]
     );
     let twice = [bias("x", Trigger::Epoch(1)), bias("x", Trigger::Epoch(2))];
-    assert!(Station::new(&twice, SEED, PERIOD_S).is_err());
+    assert!(ConnectionStation::new(&twice, SEED, PERIOD_S).is_err());
     let core = bias("x", Trigger::Mode { mode: octant_sample::Mode::Navigating, delay: 0 });
-    assert!(Station::new(&[core], SEED, PERIOD_S).is_err());
+    assert!(ConnectionStation::new(&[core], SEED, PERIOD_S).is_err());
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use crate::common::{self, Outcome, bytes, clean, fault, run};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Receipt, Spec, Value};
+use octant_faults::{Receipt, FaultSpec, Value};
 use octant_sample::Epoch;
 use proptest::prelude::*;
 
@@ -15,7 +15,7 @@ const FAULTY: u64 = 300;
 /// Permitted effects of a fault, for the test's own account.
 #[derive(Clone, Debug)]
 struct Part {
-    spec: Spec,
+    spec: FaultSpec,
     loses: bool,
     copies: usize,
     /// True if epochs may overtake others.
@@ -108,7 +108,7 @@ proptest! {
 
     #[test]
     fn nothing_is_invented_lost_or_doubled_but_as_documented(parts in parts()) {
-        let specs: Vec<Spec> = parts.iter().map(|part| part.spec.clone()).collect();
+        let specs: Vec<FaultSpec> = parts.iter().map(|part| part.spec.clone()).collect();
         let outcome = run(&specs, EPOCHS);
         let loses = parts.iter().any(|part| part.loses);
         let most: usize = parts.iter().map(|part| 1 + part.copies).product();
@@ -142,7 +142,7 @@ proptest! {
 
     #[test]
     fn receipts_are_what_went_in_and_what_came_out(parts in parts()) {
-        let specs: Vec<Spec> = parts.iter().map(|part| part.spec.clone()).collect();
+        let specs: Vec<FaultSpec> = parts.iter().map(|part| part.spec.clone()).collect();
         let receipts = run(&specs, EPOCHS).receipts;
         let mut before = by_step(&run(&[], EPOCHS));
         for stage in 0..specs.len() {
@@ -160,7 +160,7 @@ proptest! {
         // The counter jumps once: from some epoch in the order of delivery on, all numbers are
         // wrong, and none is wrong twice.
         parts.retain(|part| !part.loses);
-        let mut specs: Vec<Spec> = parts.iter().map(|part| part.spec.clone()).collect();
+        let mut specs: Vec<FaultSpec> = parts.iter().map(|part| part.spec.clone()).collect();
         let unshifted = run(&specs, EPOCHS).delivered;
         let values = [("skip", Value::Integer(100_000)), ("afterwards", Value::Choice("stays"))];
         specs.push(fault("sequence-gap", &values, at, 1));
@@ -178,7 +178,7 @@ proptest! {
     #[test]
     fn one_damaged_number_is_one(mut parts in parts(), at in 1..FAULTY) {
         parts.retain(|part| !part.loses);
-        let mut specs: Vec<Spec> = parts.iter().map(|part| part.spec.clone()).collect();
+        let mut specs: Vec<FaultSpec> = parts.iter().map(|part| part.spec.clone()).collect();
         let values = [("skip", Value::Integer(100_000)), ("afterwards", Value::Choice("corrected"))];
         specs.push(fault("sequence-gap", &values, at, 1));
         let outcome = run(&specs, EPOCHS);

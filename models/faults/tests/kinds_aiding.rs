@@ -4,7 +4,7 @@ use crate::common::{Log, Outcome, PERIOD_NS, clean, fault, run, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
 use octant_faults::trigger::Repeat;
-use octant_faults::{Spec, Station, Value};
+use octant_faults::{FaultSpec, Station, Value};
 use octant_sample::{Aiding, DeviceTime, Epoch, GimbalCommand, Output, Reference};
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -22,7 +22,7 @@ fn at_position(k: u64) -> Epoch {
 }
 
 /// Runs the bench on another stream.
-fn run_on(specs: &[Spec], epochs: u64, source: impl Fn(u64) -> Epoch) -> Outcome {
+fn run_on(specs: &[FaultSpec], epochs: u64, source: impl Fn(u64) -> Epoch) -> Outcome {
     let mut station = Station::new(specs, &setup()).unwrap();
     let (mut outcome, mut world) = (Outcome::default(), Log::default());
     for k in 1..=epochs {
@@ -92,7 +92,7 @@ fn same_but_reference(mut epoch: Epoch, clean: &Epoch) -> bool {
     epoch.same_bits(clean)
 }
 
-fn wrong(error: [f64; 3], dimension: Dimension, first: u64, epochs: u64) -> Spec {
+fn wrong(error: [f64; 3], dimension: Dimension, first: u64, epochs: u64) -> FaultSpec {
     fault("aiding-wrong", &[("error", Value::Vector(error, dimension))], first, epochs)
 }
 
@@ -211,7 +211,7 @@ fn noise_of_a_position_is_in_metres() {
     }
 }
 
-fn lost(loss: f64, first: u64, epochs: u64) -> Spec {
+fn lost(loss: f64, first: u64, epochs: u64) -> FaultSpec {
     let loss = ("loss", Value::Quantity(loss, Dimension::Ratio));
     fault("aiding-lost", &[loss], first, epochs)
 }
@@ -229,7 +229,7 @@ fn lost_aiding_is_missing_and_nothing_else() {
     assert!((count - 5000.0).abs() < 5.0 * (20_000.0f64 * 0.25 * 0.75).sqrt(), "{count}");
 }
 
-fn late(samples: f64, stamp: &'static str, first: u64, epochs: u64) -> Spec {
+fn late(samples: f64, stamp: &'static str, first: u64, epochs: u64) -> FaultSpec {
     let delay = ("delay", Value::Quantity(samples, Dimension::Samples));
     fault("aiding-late", &[delay, ("stamp", Value::Choice(stamp))], first, epochs)
 }
@@ -276,7 +276,7 @@ fn late_aiding_waits_for_a_sample_without_aiding() {
 
 #[test]
 fn errors_of_nothing_are_refused() {
-    let problem = |spec: Spec| Station::new(&[spec], &setup()).unwrap_err().1.to_string();
+    let problem = |spec: FaultSpec| Station::new(&[spec], &setup()).unwrap_err().1.to_string();
     assert!(problem(wrong([0.0; 3], Dimension::Length, 1, 1)).starts_with("error: 0 on all axes"));
     assert!(problem(lost(1.5, 1, 1)).starts_with("loss: 1.5"));
     assert!(problem(late(5000.0, "old", 1, 1)).contains("1 to 4096"));

@@ -4,7 +4,7 @@ use crate::common::{Outcome, clean, fault, refused, run, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::FLIGHT_MAX;
 use octant_faults::trigger::Repeat;
-use octant_faults::{Spec, Station, Value};
+use octant_faults::{FaultSpec, Station, Value};
 
 fn samples(n: f64) -> Value {
     Value::Quantity(n, Dimension::Samples)
@@ -20,7 +20,7 @@ fn steps(outcome: &Outcome, epochs: u64) -> Vec<Vec<u64>> {
     steps
 }
 
-fn dropout(loss: f64, aiding: &'static str, first: u64, epochs: u64) -> Spec {
+fn dropout(loss: f64, aiding: &'static str, first: u64, epochs: u64) -> FaultSpec {
     let loss = ("loss", Value::Quantity(loss, Dimension::Ratio));
     fault("dropout", &[loss, ("aiding", Value::Choice(aiding))], first, epochs)
 }
@@ -65,7 +65,7 @@ fn samples_are_lost_at_random_with_their_probability() {
     assert_eq!(again.delivered[..], outcome.delivered[..again.delivered.len()]);
 }
 
-fn reorder(window: i64, order: &'static str, first: u64, epochs: u64) -> Spec {
+fn reorder(window: i64, order: &'static str, first: u64, epochs: u64) -> FaultSpec {
     let values = [("window", Value::Integer(window)), ("order", Value::Choice(order))];
     fault("reorder", &values, first, epochs)
 }
@@ -111,7 +111,7 @@ fn a_window_is_shuffled_evenly() {
     assert!(chi2 < 25.0, "{counts:?}");
 }
 
-fn late(delay: Value, catch_up: &'static str, first: u64, epochs: u64) -> Spec {
+fn late(delay: Value, catch_up: &'static str, first: u64, epochs: u64) -> FaultSpec {
     fault(
         "late-delivery",
         &[("delay", delay), ("catch_up", Value::Choice(catch_up))],
@@ -169,7 +169,7 @@ fn an_onset_before_all_have_caught_up_keeps_the_order() {
     assert_eq!(found, (1..=200).collect::<Vec<_>>());
 }
 
-fn duplicate(copies: i64, delay: f64, first: u64, epochs: u64) -> Spec {
+fn duplicate(copies: i64, delay: f64, first: u64, epochs: u64) -> FaultSpec {
     let values = [("copies", Value::Integer(copies)), ("delay", samples(delay))];
     fault("duplicate", &values, first, epochs)
 }
@@ -216,8 +216,8 @@ fn what_can_not_be_held_is_refused() {
     let message = refused(&late(Value::Quantity(3600.0, Dimension::Time), "at once", 1, 1));
     assert_eq!(message, "delay: 720000 samples of 0.005 s, 1 to 4096 are expected");
     assert!(refused(&dropout(0.0, "lost", 1, 1)).starts_with("loss: 0"));
-    let avalanche: Vec<Spec> =
-        (0..6).map(|i| Spec { id: format!("{i}"), ..duplicate(8, 0.0, 1, 1) }).collect();
+    let avalanche: Vec<FaultSpec> =
+        (0..6).map(|i| FaultSpec { id: format!("{i}"), ..duplicate(8, 0.0, 1, 1) }).collect();
     let (id, error) = Station::new(&avalanche, &setup()).unwrap_err();
     assert_eq!(id, "5", "nine to the sixth is above the limit");
     assert!(error.to_string().contains("531441 epochs"), "{error}");

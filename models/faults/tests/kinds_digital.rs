@@ -5,7 +5,7 @@ use crate::common::{self, Outcome, clean, fault, run};
 use octant_faults::catalogue::Dimension::*;
 use octant_faults::station::Delivered;
 use octant_faults::trigger::Trigger;
-use octant_faults::{Channels, Spec, Station, Value};
+use octant_faults::{Channels, FaultSpec, Station, Value};
 use octant_sample::imu::Status;
 use octant_sample::{Aiding, Epoch, GimbalCommand, Output, Reference};
 
@@ -110,7 +110,7 @@ fn dropouts_are_filled_with_zeros_or_the_last_value() {
     becomes(&outcome, 5..25, |_, epoch| epoch.sample.delta_theta[0] = 0);
 }
 
-fn intermittent(fill: &'static str, out: f64, inside: f64, epochs: u64) -> Spec {
+fn intermittent(fill: &'static str, out: f64, inside: f64, epochs: u64) -> FaultSpec {
     let values = [
         channels(Channels::ALL),
         flag("gimbal", true),
@@ -173,7 +173,7 @@ fn a_loose_contact_holds_the_last_sample_that_passed() {
         assert!(epoch.same_bits(&right), "{k}");
     }
     assert!((800..1200).contains(&repeats), "{repeats}");
-    let Spec { values, .. } = intermittent("zero", 0.5, 5.0, 1);
+    let FaultSpec { values, .. } = intermittent("zero", 0.5, 5.0, 1);
     let values: Vec<_> = values.iter().collect();
     assert_eq!(refused("intermittent", &values), "mean_out");
 }
@@ -207,7 +207,7 @@ fn signs_flip_and_axes_swap() {
     assert_eq!(refused("axis-swap", &swap(X, Channels::GYRO)), "second");
 }
 
-fn bit(which: Channels, bit: i64, becomes: &'static str, probability: f64, epochs: u64) -> Spec {
+fn bit(which: Channels, bit: i64, becomes: &'static str, probability: f64, epochs: u64) -> FaultSpec {
     let values = [
         channels(which),
         ("bit", Value::Integer(bit)),

@@ -5,7 +5,7 @@ use octant_faults::catalogue::Acts;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Setup, Spec, Station, Value, Values, kinds};
+use octant_faults::{Setup, FaultSpec, Station, Value, Values, kinds};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
 
@@ -48,7 +48,7 @@ fn setup() -> Setup {
     }
 }
 
-fn spec(kind: &str, values: &[(&'static str, Value)]) -> Spec {
+fn spec(kind: &str, values: &[(&'static str, Value)]) -> FaultSpec {
     let mut all = Values::default();
     values.iter().for_each(|(name, value)| all.set(name, *value));
     let schedule = Schedule {
@@ -57,10 +57,10 @@ fn spec(kind: &str, values: &[(&'static str, Value)]) -> Spec {
         recovery: 0,
         repeat: Repeat::Times { times: 2, every: 4 },
     };
-    Spec { id: kind.into(), kind: kinds::named(kind).unwrap(), values: all, schedule }
+    FaultSpec { id: kind.into(), kind: kinds::named(kind).unwrap(), values: all, schedule }
 }
 
-fn cases() -> [(Spec, HostAction); 3] {
+fn cases() -> [(FaultSpec, HostAction); 3] {
     [
         (
             spec("host-cpu-starved", &[("length", seconds(0.25)), ("threads", Value::Integer(2))]),

@@ -3,10 +3,10 @@
 use crate::common::counts::*;
 use crate::common::{fault, run};
 use octant_faults::catalogue::Dimension::*;
-use octant_faults::{Channels, Spec, Value};
+use octant_faults::{Channels, FaultSpec, Value};
 use std::f64::consts::{PI, TAU};
 
-fn lock_in(threshold_counts: f64, which: Channels, first: u64, epochs: u64) -> Spec {
+fn lock_in(threshold_counts: f64, which: Channels, first: u64, epochs: u64) -> FaultSpec {
     let values = [channels(which), quantity("threshold", rate(threshold_counts), GyroBias)];
     fault("lock-in", &values, first, epochs)
 }

@@ -3,7 +3,7 @@
 use crate::common::{Outcome, PERIOD_NS, clean, fault, refused, run, seconds};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Spec, Value};
+use octant_faults::{FaultSpec, Value};
 use octant_sample::{DeviceTime, Epoch};
 
 const PERIOD: i64 = PERIOD_NS as i64;
@@ -265,7 +265,7 @@ fn an_onset_that_meets_two_epochs_at_once_is_one_onset() {
     // Every epoch arrives twice: the first of the pair repeats the stamp before, the second has its
     // own, as the next sample of the run.
     let copies = [("copies", Value::Integer(1)), ("delay", Value::Quantity(0.0, Dimension::Time))];
-    let doubled = Spec { id: "doubled".into(), ..fault("duplicate", &copies, 1, 20) };
+    let doubled = FaultSpec { id: "doubled".into(), ..fault("duplicate", &copies, 1, 20) };
     let stamp = fault("duplicate-stamp", &[("run", Value::Integer(2))], 10, 2);
     let outcome = run(&[doubled, stamp], 20);
     let found: Vec<i64> = [9, 10, 11, 12]
@@ -280,7 +280,7 @@ fn an_instant_in_which_nothing_arrives_happens_to_the_next_epoch() {
     let loss = ("loss", Value::Quantity(1.0, Dimension::Ratio));
     let lost = fault("dropout", &[loss, ("aiding", Value::Choice("lost"))], 10, 5);
     let step = fault("time-step", &[("step", seconds(1.0)), clock("instrument")], 12, 1);
-    let outcome = run(&[Spec { id: "lost".into(), ..lost }, step], 20);
+    let outcome = run(&[FaultSpec { id: "lost".into(), ..lost }, step], 20);
     let found = errors(&outcome);
     assert_eq!(found[..9], [0; 9]);
     assert_eq!(found[9..], [1_000_000_000; 6]);

@@ -3,7 +3,7 @@
 use crate::common::{Outcome, clean, fault, run_with};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Spec, Value};
+use octant_faults::{FaultSpec, Value};
 use octant_sample::{GimbalAngles, GimbalCommand, Mode, Output};
 
 /// Set points of the stops, azimuth and roll.
@@ -28,7 +28,7 @@ fn core(k: u64) -> Output {
     }
 }
 
-fn run(spec: Spec) -> Outcome {
+fn run(spec: FaultSpec) -> Outcome {
     let outcome = run_with(&[spec], 800, core);
     assert!(outcome.delivered.iter().all(|(at, epoch)| epoch.same_bits(&clean(*at))));
     outcome
@@ -62,7 +62,7 @@ fn moving_to(stop: u16) -> Trigger {
     Trigger::Move { stop, mode: Mode::Calibrating, delay: 0 }
 }
 
-fn positions(kind: &str, positions: i64, first: u64) -> Spec {
+fn positions(kind: &str, positions: i64, first: u64) -> FaultSpec {
     let mut spec = fault(kind, &[("positions", Value::Integer(positions))], first, 1);
     spec.schedule.duration = None;
     spec
@@ -115,7 +115,7 @@ fn without_a_position_before_it_stays() {
     assert_eq!(first, [(101, 200, STOPS[0])]);
 }
 
-fn direction(gimbal: &'static str) -> Spec {
+fn direction(gimbal: &'static str) -> FaultSpec {
     fault("wrong-direction", &[("gimbal", Value::Choice(gimbal))], 250, 200)
 }
 

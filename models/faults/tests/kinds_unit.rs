@@ -4,11 +4,11 @@ use crate::common::{clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::rule::UnitEvent;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Spec, Station, Value};
+use octant_faults::{FaultSpec, Station, Value};
 use octant_sample::{Mode, Output, Parameters};
 
-fn named(id: &str, spec: Spec) -> Spec {
-    Spec { id: id.into(), ..spec }
+fn named(id: &str, spec: FaultSpec) -> FaultSpec {
+    FaultSpec { id: id.into(), ..spec }
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn without_power_nothing_restarts() {
 }
 
 /// A stale table with a value on one axis of each group.
-fn stale(values: [f64; 5], first: u64) -> Spec {
+fn stale(values: [f64; 5], first: u64) -> FaultSpec {
     let [bias, scale, g, accel, accel_scale] = values;
     fault(
         "stale-table",

@@ -3,13 +3,13 @@
 use crate::common::{self, clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
-use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
-use octant_faults::{Channels, Spec, Station, Value};
+use octant_faults::trigger::{ThresholdSide, Repeat, Schedule, Signal, Trigger};
+use octant_faults::{Channels, FaultSpec, Station, Value};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Mode, Output};
 
 /// A spike of a number of counts a sample on the x gyro.
-fn spike(counts: f64, first: u64, epochs: u64) -> Spec {
+fn spike(counts: f64, first: u64, epochs: u64) -> FaultSpec {
     let rate = counts * DELTA_THETA_LSB_RAD / 0.005;
     fault(
         "spike",
@@ -22,7 +22,7 @@ fn spike(counts: f64, first: u64, epochs: u64) -> Spec {
     )
 }
 
-fn triggered(trigger: Trigger, epochs: u64) -> Spec {
+fn triggered(trigger: Trigger, epochs: u64) -> FaultSpec {
     let mut spec = spike(100.0, 1, epochs);
     spec.schedule.trigger = trigger;
     spec
@@ -115,7 +115,7 @@ fn positions_moves_modes_and_conditions_fire() {
         (
             Trigger::Condition {
                 signal: Signal::Nis,
-                comparison: Comparison::Above,
+                comparison: ThresholdSide::Above,
                 value: 25.0,
                 delay: 0,
             },
@@ -185,7 +185,7 @@ fn a_fault_inside_the_plant_counts_its_epochs_unseen() {
         100,
     );
     slip.schedule.repeat = Repeat::Times { times: 2, every: 200 };
-    let spike = Spec { id: "spike".into(), ..spike(100.0, 50, 3) };
+    let spike = FaultSpec { id: "spike".into(), ..spike(100.0, 50, 3) };
     let specs = [slip, spike];
     let mut station = Station::new(&specs, &setup()).unwrap();
     let (mut world, output) = (common::Log::default(), Output::default());

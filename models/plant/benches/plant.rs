@@ -15,14 +15,14 @@ use std::hint::black_box;
 
 const SAMPLES: u64 = 20_000;
 
-fn config(motion: Motion) -> Config {
-    Config {
+fn config(motion: Motion) -> PlantConfig {
+    PlantConfig {
         sample_period_ns: 5_000_000,
         seed: 1,
         calibration_samples: u64::MAX,
-        site: Site { latitude_rad: 30.5 * DEG, longitude_rad: 2.0, height_m: 40.0 },
+        site: PlantSite { latitude_rad: 30.5 * DEG, longitude_rad: 2.0, height_m: 40.0 },
         motion,
-        turntable: Turntable {
+        turntable: TurntableConfig {
             rate_radps: 10.0 * DEG,
             acceleration_radps2: 10.0 * DEG,
             encoder_sigma_rad: 18.0 * DEG / 3600.0,

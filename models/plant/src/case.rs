@@ -1,6 +1,6 @@
 //! Motion of the case: angular rate and specific force in the case frame c.
 
-use crate::config::{self, CaseAttitude, Site};
+use crate::config::{self, CaseAttitude, PlantSite};
 use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::kinematics::{CaseMotion, Node, Whereabouts};
@@ -26,7 +26,7 @@ impl octant_state::State for Case {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         match &mut self.kind {
             Kind::Static { site, attitude, adrift, .. } => {
@@ -46,7 +46,7 @@ impl octant_state::State for Case {
 enum Kind {
     Static {
         motion: CaseMotion,
-        site: Site,
+        site: PlantSite,
         attitude: CaseAttitude,
         /// Moving case that stands in while a fault moves this one.
         adrift: Option<Box<Ship>>,
@@ -67,7 +67,7 @@ impl Case {
     /// otherwise it is zero.
     pub(crate) fn new(
         motion: &config::Motion,
-        site: Site,
+        site: PlantSite,
         period_s: f64,
         nodes: &[(f64, f64)],
         accelerations: bool,
@@ -237,7 +237,7 @@ mod tests {
     fn derivatives_agree_with_differences() {
         let mut ship = crate::motion::dockside_default(9);
         ship.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
-        let site = Site { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
+        let site = PlantSite { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
         let (period_s, h) = (0.1, 1e-3);
         let mut case =
             Case::new(&config::Motion::Dockside(ship), site, period_s, &[(0.05, 0.1)], true);
@@ -277,7 +277,7 @@ mod tests {
         sea.heave = spectrum.components(1, "heave", 30);
         let mut steep = dockside_iso_8728(2);
         steep.roll[0].amplitude = 0.5;
-        let site = Site { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
+        let site = PlantSite { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
         for (ship, period_ns) in [
             (dockside_default(3), 5_000_000),
             (dockside_iso_8728(4), 1_000_000),

@@ -4,7 +4,7 @@ use octant_sample::Parameters;
 
 /// True state of one run.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Config {
+pub struct PlantConfig {
     /// Sample period, ns.
     pub sample_period_ns: u64,
     /// Seed of every random stream.
@@ -13,11 +13,11 @@ pub struct Config {
     /// by phase and count from its first sample.
     pub calibration_samples: u64,
     /// Position of the dock, or of a case fixed to the ground.
-    pub site: Site,
+    pub site: PlantSite,
     /// Motion of the case.
     pub motion: Motion,
     /// The two gimbals.
-    pub turntable: Turntable,
+    pub turntable: TurntableConfig,
     /// The sensors.
     pub imu: Imu,
     /// The reference handed to the core during calibration.
@@ -26,7 +26,7 @@ pub struct Config {
 
 /// Geodetic position.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Site {
+pub struct PlantSite {
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
     /// Longitude, rad.
@@ -107,7 +107,7 @@ pub struct Sinusoid {
 
 /// The two gimbals and their imperfections.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Turntable {
+pub struct TurntableConfig {
     /// Largest rate of a move, rad/s.
     pub rate_radps: f64,
     /// Acceleration of a move, rad/s².

@@ -22,7 +22,7 @@ pub struct Course {
 
 /// Value, rate and acceleration of one degree of freedom at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Point {
+pub struct CoursePoint {
     /// Value, rad or m.
     pub value: f64,
     /// First derivative.
@@ -34,7 +34,7 @@ pub struct Point {
 impl Course {
     /// Makes the piece that starts at the points `from` and ends at the points `to`.
     #[must_use]
-    pub fn between(start_s: f64, duration_s: f64, from: &[Point; 6], to: &[Point; 6]) -> Self {
+    pub fn between(start_s: f64, duration_s: f64, from: &[CoursePoint; 6], to: &[CoursePoint; 6]) -> Self {
         let coefficients = core::array::from_fn(|dof| {
             let (a, b) = (&from[dof], &to[dof]);
             // Derivatives by the elapsed fraction of the piece.
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_piece_has_the_points_at_its_ends() {
-        let point = |k: f64| Point { value: 0.3 * k, rate: -0.2 * k, acceleration: 1.0 - k };
+        let point = |k: f64| CoursePoint { value: 0.3 * k, rate: -0.2 * k, acceleration: 1.0 - k };
         let from = core::array::from_fn(|dof| point(dof as f64));
         let to = core::array::from_fn(|dof| point(2.5 - dof as f64));
         let course = Course::between(7.0, 0.5, &from, &to);

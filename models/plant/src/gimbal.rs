@@ -84,7 +84,7 @@ impl octant_state::State for Profile {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.origin_ns = from.value("origin_ns")?;
         (self.end_s, self.end_angle) = from.value("end")?;

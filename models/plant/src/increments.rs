@@ -6,7 +6,7 @@
 mod state;
 
 use crate::case::Case;
-use crate::config::{Config, Motion, Vibration};
+use crate::config::{PlantConfig, Motion, Vibration};
 use crate::disturbed::{Active, Registry};
 use crate::gimbal::{Arc, Gimbal};
 use crate::kinematics::Node;
@@ -74,7 +74,7 @@ impl octant_state::State for Lag {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.late = from.value("late")?;
         for increments in &mut self.queue {
@@ -130,7 +130,7 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    pub(crate) fn new(config: &Config) -> Self {
+    pub(crate) fn new(config: &PlantConfig) -> Self {
         let period_s = config.sample_period_ns as f64 * 1e-9;
         let extensions = &config.imu.extensions;
         let table = &config.turntable;

@@ -40,5 +40,5 @@ mod vibration;
 mod window;
 
 pub use octant_sample::Truth;
-pub use plant::{Plant, STATE_FORMAT, Step};
-pub use validate::ConfigError;
+pub use plant::{Plant, STATE_FORMAT, PlantStep};
+pub use validate::PlantConfigError;

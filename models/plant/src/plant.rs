@@ -2,14 +2,14 @@
 
 mod state;
 
-use crate::config::{Config, Temperature};
+use crate::config::{PlantConfig, Temperature};
 use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::encoder::ErrorCurve;
 use crate::imu::{Reading, Sensors};
 use crate::increments::{Body, Increments};
 use crate::reference::Aider;
-use crate::validate::{ConfigError, validate};
+use crate::validate::{PlantConfigError, validate};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_sample::disturbance::{Disturbance, Disturbed, Motor};
@@ -20,7 +20,7 @@ pub use state::FORMAT as STATE_FORMAT;
 
 /// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct PlantStep {
     /// The sample of the interval.
     pub sample: Sample,
     /// The reference, when due, with the stamp of the sample.
@@ -32,7 +32,7 @@ pub struct Step {
 /// A clone continues exactly as the original.
 #[derive(Clone, Debug)]
 pub struct Plant {
-    config: Box<Config>,
+    config: Box<PlantConfig>,
     sequence: u64,
     time_ns: u64,
     calibration_samples: u64,
@@ -63,7 +63,7 @@ impl Plant {
     ///
     /// # Errors
     /// If a field of the configuration is out of its range.
-    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+    pub fn new(config: &PlantConfig) -> Result<Self, PlantConfigError> {
         validate(config)?;
         let dt = config.sample_period_ns as f64 * 1e-9;
         let sigma_rad = config.turntable.encoder_sigma_rad;
@@ -93,7 +93,7 @@ impl Plant {
 
     /// Configuration of the plant.
     #[must_use]
-    pub fn config(&self) -> &Config {
+    pub fn config(&self) -> &PlantConfig {
         &self.config
     }
 
@@ -103,10 +103,10 @@ impl Plant {
     /// # Errors
     /// If the motion isn't that of a ship, the instrument lags its stamps (the motion before the
     /// start, which it would need, isn't known), or the course isn't [sound](Course::is_sound).
-    pub fn follow(&mut self, course: &Course) -> Result<(), ConfigError> {
+    pub fn follow(&mut self, course: &Course) -> Result<(), PlantConfigError> {
         let problem = |field: &str, found: String, expected: &str| {
             let (field, expected) = (field.to_owned(), expected.to_owned());
-            Err(ConfigError { field, found, expected })
+            Err(PlantConfigError { field, found, expected })
         };
         if !course.is_sound() {
             return problem("course", format!("{course:?}"), "finite numbers");
@@ -132,8 +132,8 @@ impl Plant {
     /// Equivalent to [`Self::sample_into`], then [`Self::command`]. A caller that gets a command
     /// between two samples calls them in the other order.
     #[inline]
-    pub fn step(&mut self, command: &GimbalCommand) -> Step {
-        let mut step = Step { sample: Sample::default(), aiding: None };
+    pub fn step(&mut self, command: &GimbalCommand) -> PlantStep {
+        let mut step = PlantStep { sample: Sample::default(), aiding: None };
         self.step_into(command, &mut step.sample, &mut step.aiding);
         step
     }

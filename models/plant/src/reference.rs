@@ -1,6 +1,6 @@
 //! Reference of a calibration, which aids the core.
 
-use crate::config::{AidingKind, Config, Site};
+use crate::config::{AidingKind, PlantConfig, PlantSite};
 use crate::kinematics::Whereabouts;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_random::stream::Triad;
@@ -10,14 +10,14 @@ use octant_sample::{Aiding, DeviceTime, Reference};
 pub(crate) struct Aider {
     kind: AidingKind,
     period_samples: u64,
-    site: Site,
+    site: PlantSite,
     north_m: f64,
     east_m: f64,
     noise: Triad,
 }
 
 impl Aider {
-    pub(crate) fn new(config: &Config) -> Self {
+    pub(crate) fn new(config: &PlantConfig) -> Self {
         let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
         Self {
             kind: config.aiding.kind,

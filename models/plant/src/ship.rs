@@ -6,7 +6,7 @@
 //! transport rate, Coriolis and curvature terms:
 //! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
-use crate::config::{CaseAttitude, Dockside, Site};
+use crate::config::{CaseAttitude, Dockside, PlantSite};
 use crate::disturbed::Motion;
 use crate::kinematics::{CaseMotion, Node, Whereabouts};
 use crate::six_dof::SixDof;
@@ -19,7 +19,7 @@ use octant_earth::ellipsoid::{meridian_radius_m, normal_gravity_mps2, transverse
 
 #[derive(Clone, Debug)]
 pub(crate) struct Ship {
-    site: Site,
+    site: PlantSite,
     mean: CaseAttitude,
     heading_sincos: (f64, f64),
     mooring_offset_m: [f64; 3],
@@ -69,14 +69,14 @@ pub(crate) fn with(mut six: SixDof, motion: &Motion) -> SixDof {
 
 impl Ship {
     /// Makes a case at rest that can be moved.
-    pub(crate) fn at_rest(site: Site, mean: CaseAttitude) -> Self {
+    pub(crate) fn at_rest(site: PlantSite, mean: CaseAttitude) -> Self {
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
         Self::new(&Dockside::calm(mean), site, &earth, 1.0, &[], true)
     }
 
     pub(crate) fn new(
         dockside: &Dockside,
-        site: Site,
+        site: PlantSite,
         earth: &Ellipsoid,
         period_s: f64,
         nodes_s: &[f64],

@@ -3,13 +3,13 @@
 //! For a simulated table controller: the same drives, rates and play as in a run, by a clock that
 //! the caller reads.
 
-use crate::config::Turntable;
+use crate::config::TurntableConfig;
 use crate::gimbal::Gimbal;
 use octant_sample::GimbalAngles;
 
 /// Gimbal of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
+pub enum GimbalAxis {
     /// Inner gimbal.
     Azimuth,
     /// Outer gimbal.
@@ -29,18 +29,18 @@ pub struct AxisMotion {
 
 /// Two gimbals at rest at zero, at time 0. Times are nanoseconds that never go back.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct GimbalTable {
     azimuth: Gimbal,
     roll: Gimbal,
     rate_radps: f64,
     now_ns: u64,
 }
 
-impl Table {
+impl GimbalTable {
     /// Makes a table with the rates, accelerations and play of a configuration, and encoders
     /// without error.
     #[must_use]
-    pub fn new(config: &Turntable) -> Self {
+    pub fn new(config: &TurntableConfig) -> Self {
         let gimbal =
             Gimbal::new(config.rate_radps, config.acceleration_radps2, config.backlash_rad);
         Self { azimuth: gimbal, roll: gimbal, rate_radps: config.rate_radps, now_ns: 0 }
@@ -48,7 +48,7 @@ impl Table {
 
     /// Turns to an angle at no more than a rate. An angle that isn't finite, or a rate that isn't
     /// above 0, is ignored; a rate above that of the drive is limited to it.
-    pub fn go_to(&mut self, axis: Axis, angle_rad: f64, rate_radps: f64, now_ns: u64) {
+    pub fn go_to(&mut self, axis: GimbalAxis, angle_rad: f64, rate_radps: f64, now_ns: u64) {
         if !angle_rad.is_finite() || !(rate_radps > 0.0) {
             return;
         }
@@ -59,7 +59,7 @@ impl Table {
     }
 
     /// Turns on with a constant rate; 0 brakes and stops. A rate that isn't finite is ignored.
-    pub fn run_on(&mut self, axis: Axis, rate_radps: f64, now_ns: u64) {
+    pub fn run_on(&mut self, axis: GimbalAxis, rate_radps: f64, now_ns: u64) {
         if !rate_radps.is_finite() {
             return;
         }
@@ -70,10 +70,10 @@ impl Table {
 
     /// Present motion of a gimbal.
     #[must_use]
-    pub fn motion(&self, axis: Axis, now_ns: u64) -> AxisMotion {
+    pub fn motion(&self, axis: GimbalAxis, now_ns: u64) -> AxisMotion {
         let gimbal = match axis {
-            Axis::Azimuth => &self.azimuth,
-            Axis::Roll => &self.roll,
+            GimbalAxis::Azimuth => &self.azimuth,
+            GimbalAxis::Roll => &self.roll,
         };
         let now_ns = now_ns.max(self.now_ns);
         AxisMotion {
@@ -83,10 +83,10 @@ impl Table {
         }
     }
 
-    fn gimbal(&mut self, axis: Axis) -> &mut Gimbal {
+    fn gimbal(&mut self, axis: GimbalAxis) -> &mut Gimbal {
         match axis {
-            Axis::Azimuth => &mut self.azimuth,
-            Axis::Roll => &mut self.roll,
+            GimbalAxis::Azimuth => &mut self.azimuth,
+            GimbalAxis::Roll => &mut self.roll,
         }
     }
 
@@ -103,9 +103,9 @@ mod tests {
 
     const SECOND_NS: u64 = 1_000_000_000;
 
-    fn table() -> Table {
+    fn table() -> GimbalTable {
         let degrees = f64::to_radians;
-        Table::new(&Turntable {
+        GimbalTable::new(&TurntableConfig {
             rate_radps: degrees(10.0),
             acceleration_radps2: degrees(10.0),
             encoder_sigma_rad: 0.0,
@@ -118,22 +118,22 @@ mod tests {
     fn a_move_takes_what_a_trapeze_takes() {
         let mut table = table();
         // 90° at 10 °/s with 10 °/s²: 1 s up, 8 s on, 1 s down.
-        table.go_to(Axis::Roll, 90f64.to_radians(), 1.0, 0);
-        let at = |table: &Table, ms: u64| table.motion(Axis::Roll, ms * SECOND_NS / 1000);
+        table.go_to(GimbalAxis::Roll, 90f64.to_radians(), 1.0, 0);
+        let at = |table: &GimbalTable, ms: u64| table.motion(GimbalAxis::Roll, ms * SECOND_NS / 1000);
         assert!((at(&table, 5000).angle_rad - 45f64.to_radians()).abs() < 1e-8);
         assert!((at(&table, 5000).rate_radps - 10f64.to_radians()).abs() < 1e-12);
         assert!(at(&table, 9999).moves && !at(&table, 10_001).moves);
         // The same set point again is no move; the way back is one.
-        table.go_to(Axis::Roll, 90f64.to_radians(), 1.0, 11 * SECOND_NS);
+        table.go_to(GimbalAxis::Roll, 90f64.to_radians(), 1.0, 11 * SECOND_NS);
         assert!(!at(&table, 11_001).moves);
-        table.go_to(Axis::Roll, 0.0, 5f64.to_radians(), 12 * SECOND_NS);
+        table.go_to(GimbalAxis::Roll, 0.0, 5f64.to_radians(), 12 * SECOND_NS);
         assert!((at(&table, 20_000).rate_radps + 5f64.to_radians()).abs() < 1e-12);
         // Stop from 5 °/s: half a second, 1.25°.
         let before = at(&table, 20_000).angle_rad;
-        table.run_on(Axis::Roll, 0.0, 20 * SECOND_NS);
+        table.run_on(GimbalAxis::Roll, 0.0, 20 * SECOND_NS);
         let after = at(&table, 21_000);
         assert!(!after.moves && after.rate_radps == 0.0);
         assert!((after.angle_rad - before + 1.25f64.to_radians()).abs() < 1e-8);
-        assert_eq!(table.motion(Axis::Azimuth, 0).angle_rad, 0.0);
+        assert_eq!(table.motion(GimbalAxis::Azimuth, 0).angle_rad, 0.0);
     }
 }

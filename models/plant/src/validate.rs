@@ -1,13 +1,13 @@
 //! Checks of a configuration: every configuration that passes can be computed with.
 
-use crate::config::{AidingKind, Config, Dockside, Extensions, GaussMarkov, Motion, Sinusoid};
+use crate::config::{AidingKind, PlantConfig, Dockside, Extensions, GaussMarkov, Motion, Sinusoid};
 use octant_earth::units::DEG;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
 /// Field of a configuration with a value out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{field} is {found}, expected {expected}")]
-pub struct ConfigError {
+pub struct PlantConfigError {
     /// The field, as a path in the configuration.
     pub field: String,
     /// Value found.
@@ -16,14 +16,14 @@ pub struct ConfigError {
     pub expected: String,
 }
 
-type Check = Result<(), ConfigError>;
+type Check = Result<(), PlantConfigError>;
 
 fn require(holds: bool, field: &str, found: impl ToString, expected: &str) -> Check {
     if holds {
         return Ok(());
     }
     let (field, found, expected) = (field.to_owned(), found.to_string(), expected.to_owned());
-    Err(ConfigError { field, found, expected })
+    Err(PlantConfigError { field, found, expected })
 }
 
 fn finite(field: &str, value: f64) -> Check {
@@ -50,7 +50,7 @@ fn within(field: &str, value: f64, limit: f64, expected: &str) -> Check {
 }
 
 /// Checks every field.
-pub(crate) fn validate(config: &Config) -> Check {
+pub(crate) fn validate(config: &PlantConfig) -> Check {
     let period_ns = config.sample_period_ns;
     require(
         (10_000..=1_000_000_000).contains(&period_ns),

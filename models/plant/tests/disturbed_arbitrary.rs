@@ -22,9 +22,9 @@ fn vector() -> impl Strategy<Value = [f64; 3]> {
     [number(), number(), number()]
 }
 
-fn line() -> impl Strategy<Value = Line> {
+fn line() -> impl Strategy<Value = SpectralLine> {
     (number(), vector(), vector(), number(), number()).prop_map(
-        |(frequency_hz, displacement_m, angle_rad, phase_rad, angle_phase_rad)| Line {
+        |(frequency_hz, displacement_m, angle_rad, phase_rad, angle_phase_rad)| SpectralLine {
             frequency_hz,
             displacement_m,
             angle_rad,

@@ -13,7 +13,7 @@ use octant_sample::disturbance::*;
 const FINE_NS: u64 = 500_000;
 const FINE_S: f64 = 5e-4;
 
-fn fine() -> Config {
+fn fine() -> PlantConfig {
     let mut config = perfect();
     config.sample_period_ns = FINE_NS;
     config.motion =
@@ -39,7 +39,7 @@ fn on_roll(action: GimbalAction) -> Disturbance {
 
 /// Runs 12 s with moves at 0 s, 3 s and 8 s; returns the largest errors of position, velocity and
 /// attitude at every tenth sample, and the distance of truth from that of the undisturbed plant.
-fn worst(config: &Config, lives: &[Life]) -> ([f64; 3], f64) {
+fn worst(config: &PlantConfig, lives: &[Life]) -> ([f64; 3], f64) {
     let mut plant = Plant::new(config).unwrap();
     let mut calm = Plant::new(config).unwrap();
     let mut strapdown = Strapdown::start(&plant.truth(), false, FINE_S);
@@ -83,15 +83,15 @@ fn worst(config: &Config, lives: &[Life]) -> ([f64; 3], f64) {
 /// resolution is 1.5e-11 rad and 9e-10 m/s; the rest is the error of the strapdown's parabola
 /// through two samples where an acceleration or, for a gear with play, a rate jumps, and the error
 /// of coning of 17 Hz at 2 kHz.
-fn agrees(name: &str, config: &Config, lives: &[Life]) {
+fn agrees(name: &str, config: &PlantConfig, lives: &[Life]) {
     let ([position, velocity, attitude], apart) = worst(config, lives);
     let found = format!("{name}: {position:.1e} m, {velocity:.1e} m/s, {attitude:.1e} rad");
     assert!(position < 1e-6 && velocity < 1e-7 && attitude < 2e-10, "{found}");
     assert!(apart > 1e-5, "{name}: nothing happened");
 }
 
-fn line(frequency_hz: f64, displacement_m: [f64; 3], angle_rad: [f64; 3], phase: f64) -> Line {
-    Line {
+fn line(frequency_hz: f64, displacement_m: [f64; 3], angle_rad: [f64; 3], phase: f64) -> SpectralLine {
+    SpectralLine {
         frequency_hz,
         displacement_m,
         angle_rad,

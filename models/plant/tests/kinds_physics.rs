@@ -6,7 +6,7 @@ use crate::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G, PPM, STANDARD_GRAVITY_MPS2};
 use octant_faults::catalogue::Dimension::*;
-use octant_faults::{Spec, Value};
+use octant_faults::{FaultSpec, Value};
 use octant_plant::config::*;
 use octant_sample::Reference;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD as RAD, DELTA_VELOCITY_LSB_MPS as MPS};
@@ -16,7 +16,7 @@ fn level(_: u64) -> octant_sample::GimbalCommand {
     command(0.0, 0.0)
 }
 
-fn sine(acceleration: [f64; 3], angle: [f64; 3], phase: f64, first: u64, samples: u64) -> Spec {
+fn sine(acceleration: [f64; 3], angle: [f64; 3], phase: f64, first: u64, samples: u64) -> FaultSpec {
     fault(
         "vibration-sine",
         &[

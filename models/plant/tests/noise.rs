@@ -3,7 +3,7 @@
 use crate::common::*;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G};
 use octant_plant::config::*;
-use octant_plant::{Plant, Step};
+use octant_plant::{Plant, PlantStep};
 use octant_sample::Reference;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
@@ -15,7 +15,7 @@ fn golden(name: &str) -> f64 {
 }
 
 /// Increments of gyro and accelerometer without those of a noiseless plant, in SI.
-fn noise_of(config: &Config, samples: u64) -> Vec<[f64; 6]> {
+fn noise_of(config: &PlantConfig, samples: u64) -> Vec<[f64; 6]> {
     let mut quiet = config.clone();
     quiet.imu.angle_random_walk = 0.0;
     quiet.imu.velocity_random_walk = 0.0;
@@ -168,7 +168,7 @@ fn gauss_markov_starts_in_its_stationary_distribution() {
     assert!((sum / n - expected).abs() < 5.0 * (2.0 / n).sqrt() * expected, "{}", sum / n);
 }
 
-fn steps(config: &Config, samples: u64) -> Vec<Step> {
+fn steps(config: &PlantConfig, samples: u64) -> Vec<PlantStep> {
     run(&mut Plant::new(config).unwrap(), &command(0.0, 0.0), samples)
 }
 

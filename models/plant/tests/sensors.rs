@@ -4,7 +4,7 @@ use crate::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
 use octant_plant::config::*;
-use octant_plant::{Plant, Step};
+use octant_plant::{Plant, PlantStep};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Parameters, Status};
 
@@ -13,9 +13,9 @@ fn gravity() -> f64 {
 }
 
 /// Mean rate (rad/s) and specific force (m/s²) over samples.
-fn mean(steps: &[Step]) -> ([f64; 3], [f64; 3]) {
+fn mean(steps: &[PlantStep]) -> ([f64; 3], [f64; 3]) {
     let time = steps.len() as f64 * DT;
-    let sum = |counts: fn(&Step) -> [i32; 3], axis: usize| -> f64 {
+    let sum = |counts: fn(&PlantStep) -> [i32; 3], axis: usize| -> f64 {
         steps.iter().map(|step| i64::from(counts(step)[axis])).sum::<i64>() as f64
     };
     (
@@ -27,7 +27,7 @@ fn mean(steps: &[Step]) -> ([f64; 3], [f64; 3]) {
 }
 
 /// Means at rest at gimbal angles, in the dwell after the move.
-fn at_rest(config: &Config, azimuth: f64, roll: f64, samples: u64) -> ([f64; 3], [f64; 3]) {
+fn at_rest(config: &PlantConfig, azimuth: f64, roll: f64, samples: u64) -> ([f64; 3], [f64; 3]) {
     let mut plant = Plant::new(config).unwrap();
     let go = command(azimuth, roll);
     while plant.truth().gimbal_rad != [go.target.azimuth_rad(), go.target.roll_rad()] {
@@ -328,9 +328,9 @@ fn time_skew_delays_the_inertial_data() {
     let mut half = perfect();
     half.imu.extensions.time_skew_s = 0.5 * DT;
     let go = command(90.0, 0.0);
-    let all = |config: &Config| run(&mut Plant::new(config).unwrap(), &go, 2200);
+    let all = |config: &PlantConfig| run(&mut Plant::new(config).unwrap(), &go, 2200);
     let (base, late, half) = (all(&perfect()), all(&late), all(&half));
-    let angle = |steps: &[Step], to: usize| -> f64 {
+    let angle = |steps: &[PlantStep], to: usize| -> f64 {
         let sum: i64 = steps[..to].iter().map(|s| i64::from(s.sample.delta_theta[2])).sum();
         sum as f64 * DELTA_THETA_LSB_RAD
     };
@@ -378,7 +378,7 @@ fn a_clone_goes_on_as_the_original() {
 
 #[test]
 fn what_can_not_be_computed_is_refused_by_name() {
-    type Change = fn(&mut Config);
+    type Change = fn(&mut PlantConfig);
     let refused = |change: Change| {
         let mut config = noisy();
         change(&mut config);

@@ -4,7 +4,7 @@
 use crate::common::*;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G, PPM};
 use octant_plant::config::*;
-use octant_plant::course::{Course, Point};
+use octant_plant::course::{Course, CoursePoint};
 use octant_plant::{Plant, STATE_FORMAT, draw, motion};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::*;
@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 /// Configuration with every imperfection of sensors and turntable.
-fn everything(motion: Motion, time_skew_s: f64) -> Config {
+fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
     let mut config = noisy();
     config.calibration_samples = 900;
     config.motion = motion;
@@ -63,8 +63,8 @@ fn ground() -> Motion {
     Motion::Static(CaseAttitude { heading_rad: 0.4, pitch_rad: 0.02, roll_rad: -0.01 })
 }
 
-fn line(frequency_hz: f64) -> Line {
-    Line {
+fn line(frequency_hz: f64) -> SpectralLine {
+    SpectralLine {
         frequency_hz,
         displacement_m: [1e-5, 0.0, -2e-5],
         angle_rad: [0.0, 1e-5, 1e-5],
@@ -135,7 +135,7 @@ fn happen(plant: &mut Plant, these: &[Disturbance], k: u64) {
 }
 
 /// Runs a plant with disturbances, and beside it copies that were saved and loaded at some samples.
-fn goes_on(config: &Config, these: &[Disturbance], points: &[u64]) {
+fn goes_on(config: &PlantConfig, these: &[Disturbance], points: &[u64]) {
     let mut plant = Plant::new(config).unwrap();
     let mut copies: Vec<Plant> = Vec::new();
     for k in 1..=1900 {
@@ -172,7 +172,7 @@ fn a_loaded_plant_goes_on_bit_for_bit_with_each_disturbance_and_with_all() {
     }
     // Plain plants, whose samples are made in one step while they rest.
     for motion in [ground(), ship()] {
-        let config = Config { motion, ..perfect() };
+        let config = PlantConfig { motion, ..perfect() };
         goes_on(&config, &[], &[1, 200, 420, 700]);
         goes_on(&config, &all, &[200, 313, 640, 1111, 1890]);
     }
@@ -208,7 +208,7 @@ fn a_command_before_a_sample_is_the_step_in_the_other_order() {
 fn a_course_is_a_part_of_the_state() {
     let point = |k: u64| {
         let t = k as f64;
-        core::array::from_fn(|dof| Point {
+        core::array::from_fn(|dof| CoursePoint {
             value: 1e-3 * t * (1.0 + dof as f64),
             rate: 0.2 * (1.0 + dof as f64),
             acceleration: 1e-2 * t,

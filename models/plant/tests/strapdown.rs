@@ -7,7 +7,7 @@ use octant_plant::config::*;
 use octant_plant::{Plant, motion};
 
 /// Runs through the commands, each for its seconds; returns the largest errors at whole seconds.
-fn worst(config: &Config, commands: &[(f64, f64, u64)], hold_height: bool) -> (f64, f64, f64) {
+fn worst(config: &PlantConfig, commands: &[(f64, f64, u64)], hold_height: bool) -> (f64, f64, f64) {
     let mut plant = Plant::new(config).unwrap();
     let mut strapdown = Strapdown::start(&plant.truth(), hold_height, DT);
     let mut worst = (0.0f64, 0.0f64, 0.0f64);

@@ -68,7 +68,7 @@ fn a_full_turn_closes() {
     let turn = command(360.0, 0.0);
     let steps = run(&mut plant, &turn, 37 * 200 + 10);
     let after = run(&mut plant, &turn, 200);
-    let sum = |steps: &[octant_plant::Step], axis: usize| -> i64 {
+    let sum = |steps: &[octant_plant::PlantStep], axis: usize| -> i64 {
         steps.iter().map(|step| i64::from(step.sample.delta_theta[axis])).sum()
     };
     for axis in 0..3 {

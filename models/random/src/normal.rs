@@ -2,7 +2,7 @@
 //! floating-point form of Doornik (2005): exact in distribution, one multiplication and one
 //! comparison in 98.8 % of the cases, libm's logarithm and exponential in the rest.
 
-use crate::philox::{Key, block};
+use crate::philox::{StreamKey, block};
 use alloc::boxed::Box;
 use once_cell::race::OnceBox;
 
@@ -29,7 +29,7 @@ pub fn uniform(word: u64) -> f64 {
 
 /// Random words of one counter.
 #[inline(always)]
-pub fn words(key: Key, counter: u64) -> [u64; 4] {
+pub fn words(key: StreamKey, counter: u64) -> [u64; 4] {
     block(key, [counter, 0, 0, 0])
 }
 
@@ -62,7 +62,7 @@ impl Ziggurat {
 
     /// Three independent standard normals of one counter.
     #[inline(always)]
-    pub fn three(&self, key: Key, counter: u64) -> [f64; 3] {
+    pub fn three(&self, key: StreamKey, counter: u64) -> [f64; 3] {
         let words = words(key, counter);
         [
             self.one(key, counter, 0, words[0]),
@@ -81,7 +81,7 @@ impl Ziggurat {
     }
 
     #[inline(always)]
-    fn one(&self, key: Key, counter: u64, lane: u64, word: u64) -> f64 {
+    fn one(&self, key: StreamKey, counter: u64, lane: u64, word: u64) -> f64 {
         let (x, layer) = self.candidate(word);
         if x.abs() < self.x[layer + 1] { x } else { self.rejected(key, counter, lane, word) }
     }
@@ -90,7 +90,7 @@ impl Ziggurat {
     /// lane, so that no other number changes.
     #[cold]
     #[inline(never)]
-    fn rejected(&self, key: Key, counter: u64, lane: u64, word: u64) -> f64 {
+    fn rejected(&self, key: StreamKey, counter: u64, lane: u64, word: u64) -> f64 {
         let (mut x, mut layer) = self.candidate(word);
         let mut attempt = 0;
         loop {

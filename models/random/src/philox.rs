@@ -9,7 +9,7 @@ const MULTIPLIER: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
 const WEYL: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
 
 /// Key of a stream.
-pub type Key = [u64; 2];
+pub type StreamKey = [u64; 2];
 
 #[inline(always)]
 fn multiply(a: u64, b: u64) -> (u64, u64) {
@@ -20,7 +20,7 @@ fn multiply(a: u64, b: u64) -> (u64, u64) {
 /// The 256 random bits of one key and counter.
 #[must_use]
 #[inline(always)]
-pub fn block(key: Key, counter: [u64; 4]) -> [u64; 4] {
+pub fn block(key: StreamKey, counter: [u64; 4]) -> [u64; 4] {
     let (mut k, mut c) = (key, counter);
     for round in 0..10 {
         if round > 0 {

@@ -3,7 +3,7 @@
 //! changes no number of any other.
 
 use crate::normal::Ziggurat;
-use crate::philox::Key;
+use crate::philox::StreamKey;
 
 /// Part of a run in which a stream counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,7 +20,7 @@ pub enum Phase {
 /// Key of a stream: the first 16 bytes, as two little-endian words, of the BLAKE3 hash of
 /// `"octant stream 1\0"`, the seed (u64, little-endian), the phase (u8) and the name (UTF-8).
 #[must_use]
-pub fn key(seed: u64, name: &str, phase: Phase) -> Key {
+pub fn key(seed: u64, name: &str, phase: Phase) -> StreamKey {
     let mut hasher = blake3::Hasher::new();
     hasher.update(b"octant stream 1\0");
     hasher.update(&seed.to_le_bytes());
@@ -38,9 +38,9 @@ pub fn key(seed: u64, name: &str, phase: Phase) -> Key {
 /// Three standard normals per sample: one triad's noise.
 #[derive(Clone, Debug)]
 pub struct Triad {
-    current: Key,
-    navigation: Key,
-    initial: Key,
+    current: StreamKey,
+    navigation: StreamKey,
+    initial: StreamKey,
     ziggurat: &'static Ziggurat,
 }
 

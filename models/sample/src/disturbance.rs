@@ -47,7 +47,7 @@ pub enum Disturbance {
     /// the fault's end, along 10 u³ − 15 u⁴ + 6 u⁵.
     Vibration {
         /// Lines of the motion.
-        lines: Vec<Line>,
+        lines: Vec<SpectralLine>,
         /// Time over which the motion swells and fades, s, above 0.
         edge_s: f64,
     },
@@ -85,7 +85,7 @@ pub enum Disturbance {
     /// angles are added to its roll, pitch and heading, rad. Window as for a vibration.
     Case {
         /// Lines of the motion.
-        lines: Vec<Line>,
+        lines: Vec<SpectralLine>,
         /// Time over which the motion swells and fades, s, above 0.
         edge_s: f64,
     },
@@ -110,7 +110,7 @@ pub enum Disturbance {
 
 /// One line of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct SpectralLine {
     /// Frequency, Hz, above 0.
     pub frequency_hz: f64,
     /// Linear displacement amplitude, m.

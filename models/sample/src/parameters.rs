@@ -36,7 +36,7 @@ pub struct Parameters {
 /// A group of parameters that share a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Group {
+pub enum ParameterGroup {
     /// b_g, shown in deg/h.
     GyroBias,
     /// Diagonal of M_g, shown in ppm.
@@ -53,7 +53,7 @@ pub enum Group {
     AccelMisalignment,
 }
 
-impl Group {
+impl ParameterGroup {
     /// The groups in the order of the parameters.
     pub const ALL: [Self; 7] = [
         Self::GyroBias,
@@ -250,8 +250,8 @@ mod tests {
     #[test]
     fn every_parameter_belongs_to_one_group() {
         for (i, name) in NAMES.iter().enumerate() {
-            let group = Group::of(i);
-            let prefix = if group == Group::GDependent { "g_" } else { group.name() };
+            let group = ParameterGroup::of(i);
+            let prefix = if group == ParameterGroup::GDependent { "g_" } else { group.name() };
             assert!(name.starts_with(prefix), "{name} in {group:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Fields of structures as states.
 
-use crate::{Reader, State, StateError, Writer};
+use crate::{StateReader, State, StateError, Writer};
 
 /// Implements [`State`] for a structure by its fields: `values` that serde writes, `parts` that are
 /// states themselves, and fields that are `kept` because they follow from the configuration. Every
@@ -37,7 +37,7 @@ macro_rules! state {
 
             fn load(
                 &mut self,
-                from: &mut $crate::Reader<'_>,
+                from: &mut $crate::StateReader<'_>,
             ) -> ::core::result::Result<(), $crate::StateError> {
                 let Self { $($value,)* $($part,)* $($kept: _,)* } = self;
                 $(*$value = from.value(stringify!($value))?;)*
@@ -58,7 +58,7 @@ impl<T: State> State for Option<T> {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         let expected = self.is_some();
         let found: bool = from.value("is there")?;
         if found != expected {
@@ -76,7 +76,7 @@ impl<T: State, const N: usize> State for [T; N] {
         self.iter().for_each(|part| part.save(to));
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.iter_mut().try_for_each(|part| part.load(from))
     }
 }
@@ -87,7 +87,7 @@ impl<T: State> State for alloc::vec::Vec<T> {
         self.iter().for_each(|part| part.save(to));
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.iter_mut().try_for_each(|part| part.load(from))
     }
 }
@@ -98,7 +98,7 @@ impl<T: State + ?Sized> State for alloc::boxed::Box<T> {
         T::save(self, to);
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         T::load(self, from)
     }
 }
@@ -106,7 +106,7 @@ impl<T: State + ?Sized> State for alloc::boxed::Box<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Format;
+    use crate::StateFormat;
     use alloc::vec::Vec;
     use std::string::ToString;
 
@@ -133,7 +133,7 @@ mod tests {
     state! { Inner { values: count; parts: ; kept: limit; check: Inner::check } }
     state! { Outer { values: numbers; parts: inner, other; kept: size } }
 
-    const FORMAT: Format = Format { magic: "OCTOUTER", version: 1, what: "an outer" };
+    const FORMAT: StateFormat = StateFormat { magic: "OCTOUTER", version: 1, what: "an outer" };
 
     fn outer(count: u64, other: bool) -> Outer {
         let inner = |count| Inner { count, limit: 9 };

@@ -1,12 +1,12 @@
 //! The frame around a state: magic, version, length, checksum.
 
-use crate::{Reader, StateError, Writer};
+use crate::{StateReader, StateError, Writer};
 use alloc::vec::Vec;
 
 /// Outer form of the states of a model. Layout, little-endian: eight letters of magic, version u16,
 /// length of the values u64, the values, CRC-32 (ISO-HDLC) of all before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Format {
+pub struct StateFormat {
     /// Magic at the start: eight ASCII letters.
     pub magic: &'static str,
     /// Version of the layout; raise it whenever the layout changes.
@@ -24,7 +24,7 @@ fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
     array
 }
 
-impl Format {
+impl StateFormat {
     /// Appends a frame with the values that `fill` writes.
     pub fn write(&self, bytes: &mut Vec<u8>, fill: impl FnOnce(&mut Writer)) {
         let start = bytes.len();
@@ -51,7 +51,7 @@ impl Format {
     ///
     /// # Errors
     /// If the frame is not of this format, not whole, or damaged.
-    pub fn read<'a>(&self, bytes: &'a [u8]) -> Result<Reader<'a>, StateError> {
+    pub fn read<'a>(&self, bytes: &'a [u8]) -> Result<StateReader<'a>, StateError> {
         let what = self.what;
         let magic = self.magic.as_bytes();
         if bytes.len() < magic.len() || !bytes.starts_with(magic) {
@@ -75,7 +75,7 @@ impl Format {
         if found != computed {
             return Err(StateError::Checksum { what, found, computed });
         }
-        Ok(Reader::new(&framed[HEAD..]))
+        Ok(StateReader::new(&framed[HEAD..]))
     }
 }
 
@@ -85,7 +85,7 @@ mod tests {
     use proptest::prelude::*;
     use std::string::ToString;
 
-    const FORMAT: Format = Format { magic: "OCTTESTS", version: 3, what: "the state of a test" };
+    const FORMAT: StateFormat = StateFormat { magic: "OCTTESTS", version: 3, what: "the state of a test" };
 
     fn frame(values: &[u64]) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -1,6 +1,6 @@
 //! States of models as bytes: the data with which a model continues bit for bit.
 //!
-//! A state is a [`Format`]'s frame: magic, version, length, the values, and a CRC-32 over all of it.
+//! A state is a [`StateFormat`]'s frame: magic, version, length, the values, and a CRC-32 over all of it.
 //! Values are written by postcard (f64 as their 64 bits, so that NaN stays the same NaN), in the
 //! order in which [`State::save`] names them; the same state gives the same bytes.
 //!
@@ -25,10 +25,10 @@ mod outline;
 mod reader;
 mod writer;
 
-pub use frame::Format;
+pub use frame::StateFormat;
 #[cfg(feature = "outline")]
 pub use outline::{assert_layout, outline_of};
-pub use reader::Reader;
+pub use reader::StateReader;
 pub use writer::Writer;
 
 use alloc::string::String;
@@ -42,7 +42,7 @@ pub trait State {
     ///
     /// # Errors
     /// If the bytes are not those of such a model. The model is then in no useful state.
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError>;
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError>;
 }
 
 /// Largest count accepted: no run reaches it, and additions to a count below it can't overflow.

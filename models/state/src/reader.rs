@@ -5,11 +5,11 @@ use serde::Deserialize;
 
 /// Returns the values of a state, in the order in which they were written.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub struct StateReader<'a> {
     rest: &'a [u8],
 }
 
-impl<'a> Reader<'a> {
+impl<'a> StateReader<'a> {
     pub(crate) fn new(rest: &'a [u8]) -> Self {
         Self { rest }
     }

@@ -6,7 +6,7 @@ use super::{
     causality, default_experiment, has_start, index_of, initial_knowns, initial_unknowns,
     log_categories, root, start, variability,
 };
-use octant_fmu::table::{Causality, Enumeration, Kind, Model, Variable};
+use octant_fmu::table::{DeclaredCausality, DeclaredEnumeration, ElementType, Model, DeclaredVariable};
 
 /// Builds the description.
 pub(in super::super) fn fmi2(model: &Model, token: &str) -> Element {
@@ -54,9 +54,9 @@ fn variables(model: &Model) -> Element {
     }))
 }
 
-fn scalar(variable: &Variable, element: usize, slot: usize) -> Element {
+fn scalar(variable: &DeclaredVariable, element: usize, slot: usize) -> Element {
     let mut description = variable.description.to_owned();
-    if let Kind::Enumeration(enumeration) = variable.kind {
+    if let ElementType::Enumeration(enumeration) = variable.kind {
         description += &format!(" {}.", meanings(enumeration));
     }
     let mut name = variable.name.to_owned();
@@ -72,7 +72,7 @@ fn scalar(variable: &Variable, element: usize, slot: usize) -> Element {
         .with("causality", causality(variable))
         .with("variability", variability(variable))
         // Inputs must not have `initial`.
-        .with_some("initial", (variable.causality != Causality::Input).then_some(initial))
+        .with_some("initial", (variable.causality != DeclaredCausality::Input).then_some(initial))
         .child(typed(variable, element))
 }
 
@@ -80,11 +80,11 @@ fn scalar(variable: &Variable, element: usize, slot: usize) -> Element {
 ///
 /// An enumeration is an Integer with the same values: both are set and read by the same functions,
 /// and some masters (libcosim, Ecos) can't connect or set enumerations.
-fn typed(variable: &Variable, element: usize) -> Element {
+fn typed(variable: &DeclaredVariable, element: usize) -> Element {
     let start = has_start(variable).then(|| start(variable, element));
     match variable.kind {
-        Kind::Real | Kind::Count => {
-            let smallest = (variable.kind == Kind::Count).then_some(0.0);
+        ElementType::Real | ElementType::Count => {
+            let smallest = (variable.kind == ElementType::Count).then_some(0.0);
             Element::new("Real")
                 .with_some("declaredType", variable.quantity.map(|quantity| quantity.name))
                 .with_some("min", variable.min.or(smallest).map(number))
@@ -92,26 +92,26 @@ fn typed(variable: &Variable, element: usize) -> Element {
                 .with_some("nominal", variable.nominal.map(number))
                 .with_some("start", start.map(number))
         }
-        Kind::Integer => Element::new("Integer")
+        ElementType::Integer => Element::new("Integer")
             .with_some("min", variable.min.map(whole))
             .with_some("max", variable.max.map(whole))
             .with_some("start", start.map(whole)),
-        Kind::Enumeration(enumeration) => {
+        ElementType::Enumeration(enumeration) => {
             let values = || enumeration.items.iter().map(|(value, ..)| *value);
             Element::new("Integer")
                 .with_some("min", values().min().map(|value| value.to_string()))
                 .with_some("max", values().max().map(|value| value.to_string()))
                 .with_some("start", start.map(whole))
         }
-        Kind::Boolean => Element::new("Boolean")
+        ElementType::Boolean => Element::new("Boolean")
             .with_some("start", start.map(|start| if start == 0.0 { "false" } else { "true" })),
         // FMI 2.0 has neither type: a model with such variables is never built for it.
-        Kind::Binary(_) | Kind::Clock(_) => Element::new("String"),
+        ElementType::Binary(_) | ElementType::Clock(_) => Element::new("String"),
     }
 }
 
 /// Lists the values of an enumeration: `0: none, 1: velocity, 2: position`.
-fn meanings(enumeration: &Enumeration) -> String {
+fn meanings(enumeration: &DeclaredEnumeration) -> String {
     let items = enumeration.items.iter().map(|(value, name, _)| format!("{value}: {name}"));
     items.collect::<Vec<_>>().join(", ")
 }
@@ -126,7 +126,7 @@ fn structure(model: &Model, places: &[std::ops::Range<usize>]) -> Element {
     };
     let mut outputs = Element::new("Outputs");
     for (index, variable) in model.variables.iter().enumerate() {
-        if variable.causality == Causality::Output {
+        if variable.causality == DeclaredCausality::Output {
             let mut inputs: Vec<usize> = (variable.depends_on.iter())
                 .filter_map(|name| index_of(model, name))
                 .flat_map(|index| places[index].clone())

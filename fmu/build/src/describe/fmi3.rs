@@ -7,7 +7,7 @@ use super::{
     initial_unknowns, log_categories, root, start, variability,
 };
 use octant_fmu::quantities::TIME;
-use octant_fmu::table::{Binary, Causality, Kind, Model, Ticks, Variable};
+use octant_fmu::table::{ClockedBinary, DeclaredCausality, ElementType, Model, Ticks, DeclaredVariable};
 
 /// Builds the description.
 pub(in super::super) fn fmi3(model: &Model, token: &str) -> Element {
@@ -70,19 +70,19 @@ fn variables(model: &Model, slots: &[usize]) -> Element {
     Element::new("ModelVariables").child(time).children(variables)
 }
 
-fn variable(model: &Model, variable: &Variable, slot: usize) -> Element {
+fn variable(model: &Model, variable: &DeclaredVariable, slot: usize) -> Element {
     let name = match variable.kind {
-        Kind::Binary(binary) => return binary_variable(model, variable, binary, slot),
-        Kind::Clock(ticks) => return clock(variable, ticks, slot),
-        Kind::Real => "Float64",
-        Kind::Integer => "Int32",
-        Kind::Count => "UInt64",
-        Kind::Boolean => "Boolean",
-        Kind::Enumeration(_) => "Enumeration",
+        ElementType::Binary(binary) => return binary_variable(model, variable, binary, slot),
+        ElementType::Clock(ticks) => return clock(variable, ticks, slot),
+        ElementType::Real => "Float64",
+        ElementType::Integer => "Int32",
+        ElementType::Count => "UInt64",
+        ElementType::Boolean => "Boolean",
+        ElementType::Enumeration(_) => "Enumeration",
     };
     let declared = match variable.kind {
-        Kind::Real => variable.quantity.map(|quantity| quantity.name),
-        Kind::Enumeration(enumeration) => Some(enumeration.name),
+        ElementType::Real => variable.quantity.map(|quantity| quantity.name),
+        ElementType::Enumeration(enumeration) => Some(enumeration.name),
         _ => None,
     };
     let mut element = Element::new(name)
@@ -97,16 +97,16 @@ fn variable(model: &Model, variable: &Variable, slot: usize) -> Element {
         element.with_some("min", variable.min.map(write)).with_some("max", variable.max.map(write))
     };
     element = match variable.kind {
-        Kind::Real => limits(element, number).with_some("nominal", variable.nominal.map(number)),
-        Kind::Integer | Kind::Count => limits(element, whole),
-        Kind::Boolean | Kind::Enumeration(_) | Kind::Binary(_) | Kind::Clock(_) => element,
+        ElementType::Real => limits(element, number).with_some("nominal", variable.nominal.map(number)),
+        ElementType::Integer | ElementType::Count => limits(element, whole),
+        ElementType::Boolean | ElementType::Enumeration(_) | ElementType::Binary(_) | ElementType::Clock(_) => element,
     };
     if has_start(variable) {
         let starts = (0..variable.slots()).map(|index| {
             let start = start(variable, index);
             match variable.kind {
-                Kind::Boolean => (start != 0.0).to_string(),
-                Kind::Real => number(start),
+                ElementType::Boolean => (start != 0.0).to_string(),
+                ElementType::Real => number(start),
                 _ => whole(start),
             }
         });
@@ -120,7 +120,7 @@ fn variable(model: &Model, variable: &Variable, slot: usize) -> Element {
 }
 
 /// Starts a variable element with the attributes that every variable has.
-fn named(element: &'static str, variable: &Variable, slot: usize) -> Element {
+fn named(element: &'static str, variable: &DeclaredVariable, slot: usize) -> Element {
     Element::new(element)
         .with("name", variable.name)
         .with("valueReference", slot.to_string())
@@ -129,7 +129,7 @@ fn named(element: &'static str, variable: &Variable, slot: usize) -> Element {
         .with("variability", variability(variable))
 }
 
-fn binary_variable(model: &Model, variable: &Variable, binary: &Binary, slot: usize) -> Element {
+fn binary_variable(model: &Model, variable: &DeclaredVariable, binary: &ClockedBinary, slot: usize) -> Element {
     let clock = model.find(binary.clock).map(|(slot, _)| slot.to_string());
     let element = named("Binary", variable, slot)
         .with("initial", if has_start(variable) { "exact" } else { "calculated" })
@@ -142,7 +142,7 @@ fn binary_variable(model: &Model, variable: &Variable, binary: &Binary, slot: us
     element
 }
 
-fn clock(variable: &Variable, ticks: Ticks, slot: usize) -> Element {
+fn clock(variable: &DeclaredVariable, ticks: Ticks, slot: usize) -> Element {
     named("Clock", variable, slot).with(
         "intervalVariability",
         match ticks {
@@ -160,7 +160,7 @@ fn structure(model: &Model, slots: &[usize]) -> Element {
     };
     let mut structure = Element::new("ModelStructure");
     for (index, variable) in model.variables.iter().enumerate() {
-        if variable.causality == Causality::Output {
+        if variable.causality == DeclaredCausality::Output {
             let mut inputs: Vec<usize> = (variable.depends_on.iter())
                 .filter_map(|name| index_of(model, name))
                 .map(|index| slots[index])

@@ -10,7 +10,7 @@ pub(super) use types::{base_unit, units};
 
 use super::element::Element;
 use octant_fmu::c::CATEGORIES;
-use octant_fmu::table::{Causality, Model, Variability, Variable};
+use octant_fmu::table::{DeclaredCausality, Model, DeclaredVariability, DeclaredVariable};
 
 /// Name and version of the generating program.
 pub(super) const TOOL: &str = concat!("Octant ", env!("CARGO_PKG_VERSION"));
@@ -53,35 +53,35 @@ fn default_experiment() -> Element {
 }
 
 /// Returns the name of the causality in the schema.
-fn causality(variable: &Variable) -> &'static str {
+fn causality(variable: &DeclaredVariable) -> &'static str {
     match variable.causality {
-        Causality::Parameter => "parameter",
-        Causality::CalculatedParameter => "calculatedParameter",
-        Causality::Input => "input",
-        Causality::Output => "output",
-        Causality::Local => "local",
+        DeclaredCausality::Parameter => "parameter",
+        DeclaredCausality::CalculatedParameter => "calculatedParameter",
+        DeclaredCausality::Input => "input",
+        DeclaredCausality::Output => "output",
+        DeclaredCausality::Local => "local",
     }
 }
 
 /// Returns the name of the variability in the schema.
-fn variability(variable: &Variable) -> &'static str {
+fn variability(variable: &DeclaredVariable) -> &'static str {
     match variable.variability {
-        Variability::Fixed => "fixed",
-        Variability::Tunable => "tunable",
-        Variability::Discrete => "discrete",
+        DeclaredVariability::Fixed => "fixed",
+        DeclaredVariability::Tunable => "tunable",
+        DeclaredVariability::Discrete => "discrete",
     }
 }
 
 /// True if a variable's first value is given; false if it is calculated at the end of
 /// initialization. No third case is needed, because there are no iterations.
-pub(super) fn has_start(variable: &Variable) -> bool {
-    matches!(variable.causality, Causality::Parameter | Causality::Input)
+pub(super) fn has_start(variable: &DeclaredVariable) -> bool {
+    matches!(variable.causality, DeclaredCausality::Parameter | DeclaredCausality::Input)
 }
 
 /// Lists the unknowns of the initialization, in the order of the table.
-fn initial_unknowns(model: &Model) -> impl Iterator<Item = (usize, &Variable)> {
+fn initial_unknowns(model: &Model) -> impl Iterator<Item = (usize, &DeclaredVariable)> {
     model.variables.iter().enumerate().filter(|(_, variable)| {
-        matches!(variable.causality, Causality::Output | Causality::CalculatedParameter)
+        matches!(variable.causality, DeclaredCausality::Output | DeclaredCausality::CalculatedParameter)
             // A clocked variable has values at ticks only, and none before the first.
             && !variable.is_clocked()
     })
@@ -89,12 +89,12 @@ fn initial_unknowns(model: &Model) -> impl Iterator<Item = (usize, &Variable)> {
 
 /// Lists the variables on which the unknowns of the initialization depend: parameters, and no
 /// input, because the first outputs exist before a sample has come.
-fn initial_knowns(model: &Model) -> impl Iterator<Item = (usize, &Variable)> {
-    model.variables.iter().enumerate().filter(|(_, v)| v.causality == Causality::Parameter)
+fn initial_knowns(model: &Model) -> impl Iterator<Item = (usize, &DeclaredVariable)> {
+    model.variables.iter().enumerate().filter(|(_, v)| v.causality == DeclaredCausality::Parameter)
 }
 
 /// Returns the start value of an element.
-fn start(variable: &Variable, element: usize) -> f64 {
+fn start(variable: &DeclaredVariable, element: usize) -> f64 {
     variable.start_of(element).unwrap_or(0.0)
 }
 

@@ -2,10 +2,10 @@
 
 use super::super::element::{Element, number};
 use octant_fmu::quantities::TIME;
-use octant_fmu::table::{Enumeration, Kind, Model, Quantity, Unit};
+use octant_fmu::table::{DeclaredEnumeration, ElementType, Model, DeclaredQuantity, DeclaredUnit};
 
 /// Lists the quantities of the variables, each once, in the order of their first use; time first.
-pub(super) fn quantities(model: &Model) -> Vec<&'static Quantity> {
+pub(super) fn quantities(model: &Model) -> Vec<&'static DeclaredQuantity> {
     once(
         std::iter::once(&TIME).chain(model.variables.iter().filter_map(|v| v.quantity)),
         |quantity| quantity.name,
@@ -15,14 +15,14 @@ pub(super) fn quantities(model: &Model) -> Vec<&'static Quantity> {
 /// Lists the units of the models' quantities, each once.
 pub(in super::super) fn units<'a>(
     models: impl IntoIterator<Item = &'a Model>,
-) -> Vec<&'static Unit> {
+) -> Vec<&'static DeclaredUnit> {
     once(models.into_iter().flat_map(quantities).map(|quantity| quantity.unit), |unit| unit.name)
 }
 
 /// Lists the enumerations of the variables, each once.
-pub(in super::super) fn enumerations(model: &Model) -> Vec<&'static Enumeration> {
+pub(in super::super) fn enumerations(model: &Model) -> Vec<&'static DeclaredEnumeration> {
     let all = model.variables.iter().filter_map(|variable| match variable.kind {
-        Kind::Enumeration(enumeration) => Some(enumeration),
+        ElementType::Enumeration(enumeration) => Some(enumeration),
         _ => None,
     });
     once(all, |enumeration| enumeration.name)
@@ -41,7 +41,7 @@ fn once<T: Copy>(all: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str)
 
 /// Builds the element that expresses a unit in SI base units; the same in FMI 2.0, FMI 3.0 and SSP.
 /// Exponents are whole numbers in all three, so the unit of a random walk has no such element.
-pub(in super::super) fn base_unit(element: &'static str, unit: &Unit) -> Option<Element> {
+pub(in super::super) fn base_unit(element: &'static str, unit: &DeclaredUnit) -> Option<Element> {
     let names = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
     let mut base = Element::new(element);
     for (name, exponent) in names.into_iter().zip(unit.exponents?) {
@@ -64,7 +64,7 @@ pub(super) fn unit_definitions(model: &Model) -> Element {
 }
 
 /// Adds the attributes that a quantity gives a type.
-pub(super) fn with_quantity(element: Element, quantity: &Quantity) -> Element {
+pub(super) fn with_quantity(element: Element, quantity: &DeclaredQuantity) -> Element {
     element
         .with("quantity", quantity.name)
         .with("unit", quantity.unit.name)
@@ -72,7 +72,7 @@ pub(super) fn with_quantity(element: Element, quantity: &Quantity) -> Element {
 }
 
 /// Builds the items of an enumeration.
-pub(super) fn items(enumeration: &'static Enumeration) -> impl Iterator<Item = Element> {
+pub(super) fn items(enumeration: &'static DeclaredEnumeration) -> impl Iterator<Item = Element> {
     enumeration.items.iter().map(|(value, name, description)| {
         Element::new("Item")
             .with("name", *name)

@@ -59,7 +59,7 @@ fn a_good_node_has_no_finding() {
 }
 
 /// Rule, file, original text and replacement.
-type Case = (&'static Rule, usize, &'static str, &'static str);
+type Case = (&'static CheckRule, usize, &'static str, &'static str);
 
 #[rustfmt::skip]
 const CASES: &[Case] = &[

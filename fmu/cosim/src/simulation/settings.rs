@@ -1,11 +1,11 @@
 //! Settings of the stepping, and abilities and counts of its FMUs.
 
-use crate::solve::Limits;
+use crate::solve::IterationLimits;
 use octant_fmu_host::description::Interface;
 
 /// Settings of the stepping.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct SteppingSettings {
     /// The FMUs in their order.
     pub order: Vec<usize>,
     /// True if all FMUs step from the same values.
@@ -19,7 +19,7 @@ pub struct Settings {
     /// Relative tolerance that is passed to FMUs.
     pub tolerance: Option<f64>,
     /// Limits at which the solution of a loop is given up.
-    pub loops: Limits,
+    pub loops: IterationLimits,
     /// Maximum number of times that a step is halved.
     pub halvings: u32,
 }
@@ -44,7 +44,7 @@ impl Abilities {
 
 /// Counts of events of an FMU in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct EventCounts {
     /// Steps that the FMU discarded.
     pub discarded: u64,
     /// Values that the FMU refused; each was altered by a fault.

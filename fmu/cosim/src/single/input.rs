@@ -5,15 +5,15 @@
 //! array has a column for each element, or one column with all of them separated by blanks, as in
 //! the inputs that FMI 3.0 FMUs contain.
 
-use octant_fmu_host::description::units::{Conversion, known};
-use octant_fmu_host::description::{Causality, Description, Kind, Variability, Variable};
-use octant_fmu_host::instance::{InstanceError, Plan};
-use octant_mapping::find::{Way, allowed, count, find, unknown};
+use octant_fmu_host::description::units::{UnitConversion, known};
+use octant_fmu_host::description::{Causality, Description, VariableType, Variability, Variable};
+use octant_fmu_host::instance::{InstanceError, AccessPlan};
+use octant_mapping::find::{ValueWay, allowed, count, find, unknown};
 use std::path::Path;
 
 /// Reasons why inputs can't be read.
 #[derive(Debug, thiserror::Error)]
-pub enum InputError {
+pub enum InputFileError {
     /// The file can't be read.
     #[error("read {path}: {source}")]
     Open {
@@ -43,7 +43,7 @@ pub enum InputError {
 #[derive(Clone, Debug)]
 pub struct Inputs {
     /// The groups that are set.
-    pub plan: Plan,
+    pub plan: AccessPlan,
     /// Numbers of the groups.
     pub numbers: Vec<f64>,
     time_s: Vec<f64>,
@@ -64,7 +64,7 @@ struct Column {
 struct Header<'a> {
     /// Elements whose values stand in each field, separated by blanks.
     elements: Vec<(&'a Variable, usize)>,
-    units: Conversion,
+    units: UnitConversion,
 }
 
 impl Inputs {
@@ -73,10 +73,10 @@ impl Inputs {
     /// # Errors
     /// If it can't be read, a column isn't an input of the FMU, or a field isn't a number: with
     /// line and column.
-    pub fn read(path: &Path, description: &Description) -> Result<Self, InputError> {
+    pub fn read(path: &Path, description: &Description) -> Result<Self, InputFileError> {
         let name = path.display().to_string();
         let file = std::fs::File::open(path)
-            .map_err(|source| InputError::Open { path: name.clone(), source })?;
+            .map_err(|source| InputFileError::Open { path: name.clone(), source })?;
         Self::from_reader(std::io::BufReader::new(file), &name, description)
     }
 
@@ -88,8 +88,8 @@ impl Inputs {
         reader: impl std::io::Read,
         name: &str,
         description: &Description,
-    ) -> Result<Self, InputError> {
-        let content = |line: u64, column: usize, reason: String| InputError::Content {
+    ) -> Result<Self, InputFileError> {
+        let content = |line: u64, column: usize, reason: String| InputFileError::Content {
             path: name.to_owned(),
             line,
             column,
@@ -128,7 +128,7 @@ impl Inputs {
                 variables.push(variable);
             }
         }
-        let plan = Plan::new(description, &variables)?;
+        let plan = AccessPlan::new(description, &variables)?;
         let mut numbers = vec![0.0; plan.elements];
         for (variable, place) in variables.iter().zip(&plan.places) {
             octant_mapping::bind::start(variable, &mut numbers[place.clone()]);
@@ -157,7 +157,7 @@ impl Inputs {
                 let reason = format!("found {} columns, expected {}", record.len(), header.len());
                 return Err(content(line, record.len().min(header.len()), reason));
             }
-            let now = number(&record[0], Kind::Float64)
+            let now = number(&record[0], VariableType::Float64)
                 .map_err(|reason| content(line, 1, reason))?
                 * time_factor;
             if let Some(before) = time_s.last().filter(|before| **before > now) {
@@ -248,8 +248,8 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
     let found = find(description, name, 1).filter(|found| !found.negated);
     let Some(found) = found else { return Err(unknown(description, name, is_input).to_string()) };
     for (variable, element) in &found.elements {
-        allowed(variable, Way::In).map_err(|error| error.to_string())?;
-        if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock) {
+        allowed(variable, ValueWay::In).map_err(|error| error.to_string())?;
+        if matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock) {
             return Err(format!(
                 "{name} is a {:?}, and a column of numbers can't be one",
                 variable.kind
@@ -261,38 +261,38 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
         return Err(format!("{name} is an array without elements, expected a number"));
     };
     let units = match unit {
-        None => Conversion::IDENTITY,
+        None => UnitConversion::IDENTITY,
         Some(unit) => units(description, variable, unit)?,
     };
     Ok(Header { elements: found.elements, units })
 }
 
 /// Returns the conversion from a column's unit to the variable's.
-fn units(description: &Description, variable: &Variable, unit: &str) -> Result<Conversion, String> {
+fn units(description: &Description, variable: &Variable, unit: &str) -> Result<UnitConversion, String> {
     let Some(own) = &variable.unit else {
         return Err(format!("found the unit {unit:?}, and {} has none", variable.name));
     };
-    Conversion::between(description, unit, own)
+    UnitConversion::between(description, unit, own)
         .map_err(|error| format!("{}: {error}", variable.name))
 }
 
-fn number(text: &str, kind: Kind) -> Result<f64, String> {
+fn number(text: &str, kind: VariableType) -> Result<f64, String> {
     match (text, kind) {
-        ("true", Kind::Boolean) => return Ok(1.0),
-        ("false", Kind::Boolean) => return Ok(0.0),
+        ("true", VariableType::Boolean) => return Ok(1.0),
+        ("false", VariableType::Boolean) => return Ok(0.0),
         _ => {}
     }
     let value: f64 = text.parse().map_err(|_| format!("found {text:?}, expected a number"))?;
     let fits = match kind {
-        Kind::Boolean => value == 0.0 || value == 1.0,
-        Kind::Float64 | Kind::Float32 => true,
+        VariableType::Boolean => value == 0.0 || value == 1.0,
+        VariableType::Float64 | VariableType::Float32 => true,
         _ => value.fract() == 0.0,
     };
     if fits {
         return Ok(value);
     }
     Err(match kind {
-        Kind::Boolean => format!("found {text:?}, expected 0, 1, true or false"),
+        VariableType::Boolean => format!("found {text:?}, expected 0, 1, true or false"),
         _ => format!("found {text:?}, expected a whole number"),
     })
 }

@@ -8,7 +8,7 @@ pub mod output;
 
 use input::Inputs;
 use octant_base::control::Control;
-use octant_fmu_host::instance::{Instance, InstanceError, Outcome};
+use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
 use octant_mapping::settings::Starts;
 use output::{Outputs, Sink};
 
@@ -174,7 +174,7 @@ pub fn simulate(
         let step_s = if whole { span.step_s } else { end_s - now_s };
         let stepped =
             instance.exchange(set, given, now_s, step_s, &outputs.plan.groups, &mut numbers)?;
-        if stepped.outcome == Outcome::Discarded && !stepped.terminate {
+        if stepped.outcome == StepOutcome::Discarded && !stepped.terminate {
             return Err(SimulateError::Refused {
                 fmu: instance.name().to_owned(),
                 time_s: now_s,
@@ -183,7 +183,7 @@ pub fn simulate(
             });
         }
         finished.steps += 1;
-        finished.time_s = if stepped.outcome == Outcome::Done { end_s } else { stepped.time_s };
+        finished.time_s = if stepped.outcome == StepOutcome::Done { end_s } else { stepped.time_s };
         sink.row(finished.time_s, outputs, &numbers)?;
         if stepped.terminate {
             finished.terminated = true;

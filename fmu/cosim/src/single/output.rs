@@ -1,7 +1,7 @@
 //! Writes rows of an FMU's outputs, as CSV or as an MCAP file of JSON messages.
 
-use octant_fmu_host::description::{Causality, Description, Kind, Variable};
-use octant_fmu_host::instance::{InstanceError, Plan};
+use octant_fmu_host::description::{Causality, Description, VariableType, Variable};
+use octant_fmu_host::instance::{InstanceError, AccessPlan};
 use octant_mapping::find::{UnknownVariable, count, find, unknown};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub struct Outputs {
     /// Groups that are read.
-    pub plan: Plan,
+    pub plan: AccessPlan,
     /// Columns except time.
-    pub columns: Vec<Column>,
+    pub columns: Vec<OutputColumn>,
     /// Outputs that aren't numbers, and are left out.
     pub left_out: Vec<String>,
 }
@@ -31,7 +31,7 @@ pub enum OutputError {
         /// Name of the variable.
         variable: String,
         /// Type found.
-        kind: Kind,
+        kind: VariableType,
     },
     /// The variables can't be read together.
     #[error(transparent)]
@@ -75,11 +75,11 @@ pub enum SinkError {
 
 /// A column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct OutputColumn {
     /// Name of the variable, with the index of the element in an array.
     pub name: String,
     /// Type of its values.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Place among the numbers that are read.
     pub place: usize,
     /// Unit, if there is one.
@@ -93,7 +93,7 @@ impl Outputs {
     /// If there is no such variable, or it isn't a number.
     pub fn choose(description: &Description, names: &[String]) -> Result<Self, OutputError> {
         let number = |variable: &Variable| {
-            !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock)
+            !matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock)
         };
         let mut elements: Vec<(&Variable, usize)> = Vec::new();
         let mut left_out = Vec::new();
@@ -131,10 +131,10 @@ impl Outputs {
                 variables.push(variable);
             }
         }
-        let plan = Plan::new(description, &variables)?;
+        let plan = AccessPlan::new(description, &variables)?;
         let column = |(variable, element): &(&Variable, usize)| {
             let known = variables.iter().position(|known| std::ptr::eq(*known, *variable));
-            Column {
+            OutputColumn {
                 name: element_name(description, variable, *element),
                 kind: variable.kind,
                 place: known.map_or(0, |index| plan.places[index].start) + element,
@@ -163,7 +163,7 @@ fn element_name(description: &Description, variable: &Variable, element: usize) 
     if variable.dimensions.is_empty() {
         return variable.name.clone();
     }
-    let one = |dimension: &octant_fmu_host::description::Dimension| {
+    let one = |dimension: &octant_fmu_host::description::ArrayDimension| {
         let alone = Variable { dimensions: vec![*dimension], ..variable.clone() };
         count(description, &alone).max(1)
     };
@@ -180,10 +180,10 @@ fn element_name(description: &Description, variable: &Variable, element: usize) 
 
 /// Writes a value in the form of its type: whole numbers without a point, all others so that they
 /// read back to the same bits.
-fn write_value(out: &mut impl Write, kind: Kind, value: f64) -> io::Result<()> {
+fn write_value(out: &mut impl Write, kind: VariableType, value: f64) -> io::Result<()> {
     match kind {
-        Kind::Float64 => write!(out, "{value:?}"),
-        Kind::Float32 => write!(out, "{:?}", value as f32),
+        VariableType::Float64 => write!(out, "{value:?}"),
+        VariableType::Float32 => write!(out, "{:?}", value as f32),
         _ if value.fract() == 0.0 && value.abs() < 1e18 => write!(out, "{}", value as i64),
         _ => write!(out, "{value:?}"),
     }
@@ -313,10 +313,10 @@ impl Mcap {
             .compression(Some(mcap::Compression::Zstd))
             .compression_threads(0)
             .create(BufWriter::new(file))?;
-        let property = |column: &Column| {
+        let property = |column: &OutputColumn| {
             let kind = match column.kind {
-                Kind::Boolean => "boolean",
-                Kind::Float64 | Kind::Float32 => "number",
+                VariableType::Boolean => "boolean",
+                VariableType::Float64 | VariableType::Float32 => "number",
                 _ => "integer",
             };
             let mut property = serde_json::json!({ "type": [kind, "null"] });
@@ -346,7 +346,7 @@ impl Mcap {
             text.extend_from_slice(b":");
             let value = numbers[column.place];
             match column.kind {
-                Kind::Boolean => write!(text, "{}", value != 0.0)?,
+                VariableType::Boolean => write!(text, "{}", value != 0.0)?,
                 // JSON can't express infinities and NaN.
                 _ if !value.is_finite() => text.extend_from_slice(b"null"),
                 kind => write_value(text, kind, value)?,

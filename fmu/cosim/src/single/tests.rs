@@ -1,30 +1,30 @@
-use super::input::{InputError, Inputs};
+use super::input::{InputFileError, Inputs};
 use super::output::{Outputs, Sink, TOPIC};
 use super::*;
-use octant_fmu_host::description::{Causality, Description, Kind, Variability};
-use octant_mapping::settings::Settings;
+use octant_fmu_host::description::{Causality, Description, VariableType, Variability};
+use octant_mapping::settings::ValueSettings;
 use octant_mapping::testing::{Scripted, With, description, variable};
 use octant_scenario::Set;
 
 /// y = 2 u + w[2], held: a copy of h; also a whole number and a text.
 fn model() -> Description {
     use Causality::{Input, Output, Parameter};
-    let mut held = variable("h", 2, Kind::Float64, Input).in_unit("rad/s");
+    let mut held = variable("h", 2, VariableType::Float64, Input).in_unit("rad/s");
     held.variability = Variability::Discrete;
     description(
         "gain",
         vec![
-            variable("u", 1, Kind::Float64, Input).in_unit("m"),
+            variable("u", 1, VariableType::Float64, Input).in_unit("m"),
             held,
-            variable("on", 3, Kind::Boolean, Input),
-            variable("w", 4, Kind::Float64, Input).array(2),
-            variable("y", 6, Kind::Float64, Output).in_unit("m"),
-            variable("held", 7, Kind::Float64, Output),
-            variable("n", 8, Kind::Int32, Output),
-            variable("was_on", 9, Kind::Boolean, Output),
-            variable("m", 10, Kind::Float64, Output).array(2),
-            variable("words", 12, Kind::String, Output),
-            variable("k", 13, Kind::Float64, Parameter),
+            variable("on", 3, VariableType::Boolean, Input),
+            variable("w", 4, VariableType::Float64, Input).array(2),
+            variable("y", 6, VariableType::Float64, Output).in_unit("m"),
+            variable("held", 7, VariableType::Float64, Output),
+            variable("n", 8, VariableType::Int32, Output),
+            variable("was_on", 9, VariableType::Boolean, Output),
+            variable("m", 10, VariableType::Float64, Output).array(2),
+            variable("words", 12, VariableType::String, Output),
+            variable("k", 13, VariableType::Float64, Parameter),
         ],
     )
 }
@@ -43,7 +43,7 @@ fn gain() -> Box<dyn Instance> {
     })
 }
 
-fn inputs(text: &str) -> Result<Inputs, InputError> {
+fn inputs(text: &str) -> Result<Inputs, InputFileError> {
     Inputs::from_reader(text.as_bytes(), "in.csv", &model())
 }
 
@@ -55,7 +55,7 @@ fn run(text: &str, names: &[&str], span: Span, file: &str) -> (Finished, Vec<u8>
     let mut sink = Sink::file(&path, &outputs, "gain").unwrap();
     let mut inputs = inputs(text).unwrap();
     let description = model();
-    let mut settings = Settings::new(&description);
+    let mut settings = ValueSettings::new(&description);
     settings.set("k", &[Set::Number(0.5)]).unwrap();
     let starts = settings.finish().unwrap();
     let mut instance = gain();

@@ -12,7 +12,7 @@
 use super::SspError;
 use super::package::Package;
 use super::xml::{Element, SSC, SSD};
-use crate::order::{Order, OrderError};
+use crate::order::{SteppingOrder, OrderError};
 use octant_scenario::quantity;
 
 /// Type of the annotation.
@@ -26,7 +26,7 @@ pub struct CoSimulation {
     /// Communication step, s.
     pub step_s: Option<f64>,
     /// Order of the FMUs.
-    pub order: Option<Order>,
+    pub order: Option<SteppingOrder>,
     /// Seed of the faults' random streams.
     pub seed: Option<u64>,
     /// Faults on connections.
@@ -105,7 +105,7 @@ pub(super) fn osp_step_s(experiment: &Element<'_>) -> Result<Option<f64>, SspErr
 pub(crate) fn step(text: &str) -> Result<f64, String> {
     let expected = "expected a time above 0 such as \"5 ms\"";
     match quantity::parse(text) {
-        Ok(quantity) if quantity.is(quantity::Dimension::TIME) && quantity.si > 0.0 => {
+        Ok(quantity) if quantity.is(quantity::UnitDimension::TIME) && quantity.si > 0.0 => {
             Ok(quantity.si)
         }
         _ => Err(format!("step is {text:?}, {expected}")),

@@ -12,7 +12,7 @@ const TEXT_MAX: u64 = 256 << 20;
 
 /// Reason why a source is no file of a package.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SourceError {
+pub enum PackageSourceError {
     /// It is a part of another file.
     #[error("the source {found:?} was found: parts of other files are not part of this version")]
     Part {
@@ -154,27 +154,27 @@ impl Package {
     ///
     /// # Errors
     /// If it isn't a file within the package.
-    pub fn resolve(&self, source: &str) -> Result<PathBuf, SourceError> {
+    pub fn resolve(&self, source: &str) -> Result<PathBuf, PackageSourceError> {
         let found = || source.to_owned();
         if source.contains('#') {
-            return Err(SourceError::Part { found: found() });
+            return Err(PackageSourceError::Part { found: found() });
         }
         let decoded =
-            percent_decoded(source).ok_or_else(|| SourceError::Percent { found: found() })?;
+            percent_decoded(source).ok_or_else(|| PackageSourceError::Percent { found: found() })?;
         let has_scheme = decoded.split_once(':').is_some_and(|(scheme, _)| !scheme.contains('/'));
         if has_scheme || decoded.starts_with('/') || decoded.contains('\\') {
-            return Err(SourceError::Elsewhere { found: found() });
+            return Err(PackageSourceError::Elsewhere { found: found() });
         }
         let mut path = self.folder.clone();
         // `./resources/x.fmu` and `resources//x.fmu` are the same file.
         for part in decoded.split('/').filter(|part| !part.is_empty() && *part != ".") {
             if part == ".." {
-                return Err(SourceError::Outside { found: found() });
+                return Err(PackageSourceError::Outside { found: found() });
             }
             path.push(part);
         }
         if !path.is_file() {
-            return Err(SourceError::Missing { found: found(), package: self.name.clone() });
+            return Err(PackageSourceError::Missing { found: found(), package: self.name.clone() });
         }
         Ok(path)
     }

@@ -3,7 +3,7 @@
 
 use super::SspError;
 use super::xml::{self, Element, SSC, SSM, SSV};
-use octant_fmu_host::description::{BaseUnit, Kind};
+use octant_fmu_host::description::{BaseUnit, VariableType};
 
 /// Parameter set: an `.ssv` file, or inline content.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,12 +11,12 @@ pub struct ParameterSet {
     /// File that contains it.
     pub file: String,
     /// The parameters in the order of the file.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<SystemParameter>,
 }
 
 /// A parameter with its value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
+pub struct SystemParameter {
     /// Name, without the prefix of a binding.
     pub name: String,
     /// Value.
@@ -29,7 +29,7 @@ pub struct Parameter {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Literal {
     /// Type in the file.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Numbers, Booleans as 0 and 1; empty for texts, enumerations and bytes.
     pub numbers: Vec<f64>,
     /// Text, name of an item, or bytes in hexadecimal digits; empty for numbers.
@@ -40,7 +40,7 @@ pub struct Literal {
 
 /// Parameter mapping: an `.ssm` file, or inline content.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mapping {
+pub struct ParameterMapping {
     /// File that contains it.
     pub file: String,
     /// The entries in the order of the file.
@@ -95,7 +95,7 @@ impl Transformation {
 
 /// An enumeration: its name, and names and values of its items.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Enumeration {
+pub struct SystemEnumeration {
     /// Name.
     pub name: String,
     /// Names and values of its items.
@@ -111,22 +111,22 @@ pub(super) const TRANSFORMATIONS: [(&str, &str); 4] = [
 ];
 
 /// Returns the type of an SSP type name. `Real` and `Integer` are those of SSP 1.0.
-pub(super) fn kind_named(name: &str) -> Option<Kind> {
+pub(super) fn kind_named(name: &str) -> Option<VariableType> {
     Some(match name {
-        "Real" | "Float64" => Kind::Float64,
-        "Float32" => Kind::Float32,
-        "Integer" | "Int32" => Kind::Int32,
-        "Int8" => Kind::Int8,
-        "UInt8" => Kind::UInt8,
-        "Int16" => Kind::Int16,
-        "UInt16" => Kind::UInt16,
-        "UInt32" => Kind::UInt32,
-        "Int64" => Kind::Int64,
-        "UInt64" => Kind::UInt64,
-        "Boolean" => Kind::Boolean,
-        "String" => Kind::String,
-        "Binary" => Kind::Binary,
-        "Enumeration" => Kind::Enumeration,
+        "Real" | "Float64" => VariableType::Float64,
+        "Float32" => VariableType::Float32,
+        "Integer" | "Int32" => VariableType::Int32,
+        "Int8" => VariableType::Int8,
+        "UInt8" => VariableType::UInt8,
+        "Int16" => VariableType::Int16,
+        "UInt16" => VariableType::UInt16,
+        "UInt32" => VariableType::UInt32,
+        "Int64" => VariableType::Int64,
+        "UInt64" => VariableType::UInt64,
+        "Boolean" => VariableType::Boolean,
+        "String" => VariableType::String,
+        "Binary" => VariableType::Binary,
+        "Enumeration" => VariableType::Enumeration,
         _ => return None,
     })
 }
@@ -179,7 +179,7 @@ pub(super) fn parameter_set(root: &Element<'_>) -> Result<ParameterSet, SspError
         if let Some(second) = of_type.next() {
             return Err(second.error("found a second value, expected one"));
         }
-        set.parameters.push(Parameter {
+        set.parameters.push(SystemParameter {
             name: element.required("name")?.to_owned(),
             value: literal(&value, &units)?,
             line: element.line(),
@@ -225,7 +225,7 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
     };
     let mut literal = Literal { kind, numbers: Vec::new(), text: String::new(), unit };
     match kind {
-        Kind::String | Kind::Enumeration | Kind::Binary => literal.text = text.to_owned(),
+        VariableType::String | VariableType::Enumeration | VariableType::Binary => literal.text = text.to_owned(),
         _ => {
             for part in text.split_ascii_whitespace() {
                 literal.numbers.push(number(part, kind).ok_or_else(|| {
@@ -241,10 +241,10 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
 }
 
 /// Parses a number of a type.
-pub(crate) fn number(text: &str, kind: Kind) -> Option<f64> {
+pub(crate) fn number(text: &str, kind: VariableType) -> Option<f64> {
     match kind {
-        Kind::Float64 | Kind::Float32 => xml::double(text),
-        Kind::Boolean => xml::boolean(text).map(|value| f64::from(u8::from(value))),
+        VariableType::Float64 | VariableType::Float32 => xml::double(text),
+        VariableType::Boolean => xml::boolean(text).map(|value| f64::from(u8::from(value))),
         _ => {
             let value: i128 = text.trim().parse().ok()?;
             // Whole numbers are passed as f64.
@@ -255,11 +255,11 @@ pub(crate) fn number(text: &str, kind: Kind) -> Option<f64> {
 }
 
 /// Reads a `ParameterMapping`.
-pub(super) fn mapping(root: &Element<'_>) -> Result<Mapping, SspError> {
+pub(super) fn mapping(root: &Element<'_>) -> Result<ParameterMapping, SspError> {
     root.expect(SSM, "ParameterMapping")?;
     version(root)?;
     root.only(&TOP, &[(SSM, "MappingEntry")])?;
-    let mut mapping = Mapping { file: root.file.to_owned(), entries: Vec::new() };
+    let mut mapping = ParameterMapping { file: root.file.to_owned(), entries: Vec::new() };
     for entry in root.children().filter(|child| child.is(SSM, "MappingEntry")) {
         entry.only(&["source", "target", "suppressUnitConversion"], &TRANSFORMATIONS)?;
         mapping.entries.push(MappingEntry {
@@ -385,9 +385,9 @@ pub(super) fn units(parent: &Element<'_>) -> Result<Vec<(String, BaseUnit)>, Ssp
 }
 
 /// Reads `Enumerations`.
-pub(super) fn enumerations(parent: &Element<'_>) -> Result<Vec<Enumeration>, SspError> {
+pub(super) fn enumerations(parent: &Element<'_>) -> Result<Vec<SystemEnumeration>, SspError> {
     parent.only(&[], &[(SSC, "Enumeration")])?;
-    let mut all: Vec<Enumeration> = Vec::new();
+    let mut all: Vec<SystemEnumeration> = Vec::new();
     for element in parent.children().filter(|child| child.is(SSC, "Enumeration")) {
         element.only(&["name"], &[(SSC, "Item")])?;
         let name = element.required("name")?;
@@ -402,7 +402,7 @@ pub(super) fn enumerations(parent: &Element<'_>) -> Result<Vec<Enumeration>, Ssp
                 .ok_or_else(|| item.error("the attribute \"value\" is missing"))?;
             items.push((item.required("name")?.to_owned(), value));
         }
-        all.push(Enumeration { name: name.to_owned(), items });
+        all.push(SystemEnumeration { name: name.to_owned(), items });
     }
     Ok(all)
 }

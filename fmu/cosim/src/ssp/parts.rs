@@ -1,18 +1,18 @@
 //! Parts of a system structure: systems, components, connectors, connections and bindings.
 
-use super::parameters::{Mapping, ParameterSet, Transformation};
-use octant_fmu_host::description::Kind;
+use super::parameters::{ParameterMapping, ParameterSet, Transformation};
+use octant_fmu_host::description::VariableType;
 use std::path::PathBuf;
 
 /// System: elements and their connections.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct SspSystem {
     /// Name; the outermost system may have any.
     pub name: String,
     /// Interface.
     pub connectors: Vec<Connector>,
     /// Contents.
-    pub elements: Vec<Part>,
+    pub elements: Vec<SystemElement>,
     /// Connections among its elements and with its own interface.
     pub connections: Vec<Connection>,
     /// Parameter bindings of the system.
@@ -23,14 +23,14 @@ pub struct System {
 
 /// An element of a system.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Part {
+pub enum SystemElement {
     /// An FMU.
-    Component(Component),
+    Component(SystemComponent),
     /// Nested system.
-    System(System),
+    System(SspSystem),
 }
 
-impl Part {
+impl SystemElement {
     /// Returns the name.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -52,7 +52,7 @@ impl Part {
 
 /// An FMU of a system.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Component {
+pub struct SystemComponent {
     /// Name.
     pub name: String,
     /// The FMU.
@@ -137,7 +137,7 @@ pub struct ConnectorType {
     /// Name in the file: `Real`.
     pub name: String,
     /// The type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Name of the unit.
     pub unit: Option<String>,
     /// Name of the enumeration.
@@ -146,14 +146,14 @@ pub struct ConnectorType {
 
 /// An end of a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct End {
+pub struct ConnectionEnd {
     /// The element; `None`: the system itself.
     pub element: Option<String>,
     /// The connector.
     pub connector: String,
 }
 
-impl std::fmt::Display for End {
+impl std::fmt::Display for ConnectionEnd {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.element {
             Some(element) => write!(f, "{element}.{}", self.connector),
@@ -166,9 +166,9 @@ impl std::fmt::Display for End {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connection {
     /// One end.
-    pub start: End,
+    pub start: ConnectionEnd,
     /// The other end.
-    pub end: End,
+    pub end: ConnectionEnd,
     /// True if units are not converted.
     pub suppress_unit_conversion: bool,
     /// Transformation of the values.
@@ -183,7 +183,7 @@ pub struct Binding {
     /// The values.
     pub values: ParameterSet,
     /// The mapping.
-    pub mapping: Option<Mapping>,
+    pub mapping: Option<ParameterMapping>,
     /// Prefix of each name.
     pub prefix: String,
     /// Line of the file.

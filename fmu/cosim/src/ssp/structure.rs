@@ -1,33 +1,33 @@
 //! `SystemStructure.ssd`: systems, components, connectors, connections and parameter bindings.
 
 pub use super::parts::{
-    Binding, Component, Connection, Connector, ConnectorKind, ConnectorType, End, Implementation,
-    Part, System,
+    Binding, SystemComponent, Connection, Connector, ConnectorKind, ConnectorType, ConnectionEnd, Implementation,
+    SystemElement, SspSystem,
 };
 
 use super::SspError;
 use super::annotation::{self, CoSimulation};
 use super::package::Package;
-use super::parameters::{self, Enumeration, TRANSFORMATIONS, kind_named};
+use super::parameters::{self, SystemEnumeration, TRANSFORMATIONS, kind_named};
 use super::xml::{self, Element, SSC, SSD};
-use octant_fmu_host::description::{BaseUnit, Kind};
+use octant_fmu_host::description::{BaseUnit, VariableType};
 
 /// Maximum nesting depth of systems: far more than any design has.
 const DEPTH_MAX: usize = 64;
 
 /// A system structure.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Structure {
+pub struct SystemStructure {
     /// The file.
     pub file: String,
     /// Name.
     pub name: String,
     /// The outermost system.
-    pub system: System,
+    pub system: SspSystem,
     /// Units by name.
     pub units: Vec<(String, BaseUnit)>,
     /// Enumerations.
-    pub enumerations: Vec<Enumeration>,
+    pub enumerations: Vec<SystemEnumeration>,
     /// Start of the default experiment, s.
     pub start_s: Option<f64>,
     /// End of the default experiment, s.
@@ -38,7 +38,7 @@ pub struct Structure {
     pub osp_step_s: Option<f64>,
 }
 
-impl Structure {
+impl SystemStructure {
     /// Reads the structure of a package.
     ///
     /// # Errors
@@ -103,7 +103,7 @@ struct Reader<'p> {
 const ELEMENT: [(&str, &str); 2] = [(SSD, "Connectors"), (SSD, "ParameterBindings")];
 
 impl Reader<'_> {
-    fn system(&self, element: &Element<'_>, depth: usize) -> Result<System, SspError> {
+    fn system(&self, element: &Element<'_>, depth: usize) -> Result<SspSystem, SspError> {
         if depth > DEPTH_MAX {
             return Err(element.error(format!("systems are more than {DEPTH_MAX} levels deep")));
         }
@@ -115,7 +115,7 @@ impl Reader<'_> {
                 "signal dictionaries are not part of this version: connect the FMUs directly",
             ));
         }
-        let mut system = System {
+        let mut system = SspSystem {
             name: element.optional("name").unwrap_or_default().to_owned(),
             connectors: connectors(element)?,
             elements: Vec::new(),
@@ -130,10 +130,10 @@ impl Reader<'_> {
             )?;
             for part in parts.children() {
                 let part_read = match part.name() {
-                    "Component" => Part::Component(self.component(&part)?),
+                    "Component" => SystemElement::Component(self.component(&part)?),
                     "System" => {
                         part.required("name")?;
-                        Part::System(self.system(&part, depth + 1)?)
+                        SystemElement::System(self.system(&part, depth + 1)?)
                     }
                     "SignalDictionaryReference" => {
                         return Err(part.error(
@@ -161,7 +161,7 @@ impl Reader<'_> {
         Ok(system)
     }
 
-    fn component(&self, element: &Element<'_>) -> Result<Component, SspError> {
+    fn component(&self, element: &Element<'_>) -> Result<SystemComponent, SspError> {
         element.only(&["name", "type", "source", "implementation"], &ELEMENT)?;
         match element.optional("type").unwrap_or("application/x-fmu-sharedlibrary") {
             "application/x-fmu-sharedlibrary" => {}
@@ -193,7 +193,7 @@ impl Reader<'_> {
                 )));
             }
         };
-        Ok(Component {
+        Ok(SystemComponent {
             name: element.required("name")?.to_owned(),
             source: source.to_owned(),
             implementation,
@@ -354,7 +354,7 @@ fn connector(element: &Element<'_>) -> Result<Connector, SspError> {
             return Err(child.error("found a second type, expected one"));
         }
         let enumeration = child.optional("name").map(str::to_owned);
-        if kind == Kind::Enumeration && enumeration.is_none() {
+        if kind == VariableType::Enumeration && enumeration.is_none() {
             return Err(child.error("the attribute \"name\" is missing"));
         }
         connector.of_type = Some(ConnectorType {
@@ -377,7 +377,7 @@ fn connection(element: &Element<'_>) -> Result<Connection, SspError> {
         &TRANSFORMATIONS,
     )?;
     let end = |of: &str, connector: &str| {
-        Ok(End {
+        Ok(ConnectionEnd {
             element: element.optional(of).map(str::to_owned),
             connector: element.required(connector)?.to_owned(),
         })

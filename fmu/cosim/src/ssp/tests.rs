@@ -2,10 +2,10 @@
 
 use super::package::Package;
 use super::parameters::Transformation;
-use super::structure::{Implementation, Structure};
+use super::structure::{Implementation, SystemStructure};
 use crate::flat::Flat;
-use crate::order::Order;
-use octant_fmu_host::description::Kind;
+use crate::order::SteppingOrder;
+use octant_fmu_host::description::VariableType;
 use std::path::Path;
 
 const HEAD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -32,12 +32,12 @@ fn package(structure: &str, files: &[(&str, &str)]) -> (tempfile::TempDir, Packa
     (folder, package)
 }
 
-fn read(structure: &str, files: &[(&str, &str)]) -> Result<(Structure, Flat), String> {
+fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure, Flat), String> {
     let (folder, package) = package(structure, files);
     let shorter = |error: super::SspError| {
         error.to_string().replace(&format!("{}/", folder.path().display()), "")
     };
-    let structure = Structure::read(&package).map_err(shorter)?;
+    let structure = SystemStructure::read(&package).map_err(shorter)?;
     let flat = Flat::of(&structure).map_err(shorter)?;
     Ok((structure, flat))
 }
@@ -96,7 +96,7 @@ fn a_structure_is_read() {
     assert_eq!(structure.enumerations[0].items, [("on".to_owned(), 1)]);
     let ours = &structure.co_simulation;
     assert_eq!((ours.step_s, ours.seed), (Some(0.005), Some(3)));
-    assert_eq!(ours.order, Some(Order::GaussSeidel(vec!["b".into(), "a".into()])));
+    assert_eq!(ours.order, Some(SteppingOrder::GaussSeidel(vec!["b".into(), "a".into()])));
     // Line numbers of inline content are those of the file.
     let faults = ours.faults.as_ref().unwrap();
     let line = faults.text.lines().position(|line| line == "[[faults]]").unwrap();
@@ -202,12 +202,12 @@ fn systems_within_systems_are_flattened() {
     assert_eq!(
         given,
         [
-            ("gain", Kind::Float64, vec![1.0], ""),
-            ("name", Kind::String, vec![], "low"),
+            ("gain", VariableType::Float64, vec![1.0], ""),
+            ("name", VariableType::String, vec![], "low"),
             // Values of the outer system come later, and win.
-            ("gain", Kind::Float64, vec![f64::INFINITY], ""),
+            ("gain", VariableType::Float64, vec![f64::INFINITY], ""),
             // An unconnected input takes the value given to its connector.
-            ("v", Kind::Float64, vec![7.0], ""),
+            ("v", VariableType::Float64, vec![7.0], ""),
         ]
     );
     assert_eq!(flat.warnings.len(), 2, "{:?}", flat.warnings);
@@ -299,7 +299,7 @@ fn other_versions_and_drafts_are_refused_in_plain_words() {
         let (folder, package) = package("", &[]);
         let text = format!("{head}{}</SystemStructureDescription>", two(""));
         std::fs::write(folder.path().join("SystemStructure.ssd"), text).unwrap();
-        Structure::read(&package).map(|_| ()).map_err(|error| error.to_string())
+        SystemStructure::read(&package).map(|_| ()).map_err(|error| error.to_string())
     };
     assert_eq!(of(&HEAD.replace("version=\"1.0\" name", "version=\"2.0\" name")), Ok(()));
     let newer = of(&HEAD.replace("version=\"1.0\" name", "version=\"3.0\" name")).unwrap_err();

@@ -2,7 +2,7 @@
 
 /// One file in an archive.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct ArchiveEntry {
     /// Path, with forward slashes.
     pub name: String,
     /// Size as stated in the archive: for display only, not to be trusted.

@@ -2,7 +2,7 @@
 
 /// Limits of an archive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
+pub struct ArchiveLimits {
     /// Number of entries.
     pub entries: usize,
     /// Bytes read for the directory of the entries.
@@ -18,7 +18,7 @@ pub struct Limits {
     pub read_bytes: u64,
 }
 
-impl Limits {
+impl ArchiveLimits {
     /// Limits for files from others. The largest FMUs in use hold some thousand files and one or
     /// two gigabytes of tables; descriptions of large Modelica models have some ten megabytes.
     pub const DEFAULT: Self = Self {
@@ -37,7 +37,7 @@ impl Limits {
     };
 }
 
-impl Default for Limits {
+impl Default for ArchiveLimits {
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -11,9 +11,9 @@ mod limits;
 pub mod names;
 mod zipped;
 
-pub use entry::{Entry, Odd, Oddity};
+pub use entry::{ArchiveEntry, Odd, Oddity};
 pub use error::ArchiveError;
-pub use limits::Limits;
+pub use limits::ArchiveLimits;
 
 use names::NameProblem;
 use std::fs;
@@ -25,8 +25,8 @@ use zipped::Zipped;
 #[derive(Debug)]
 pub struct Archive {
     file: String,
-    limits: Limits,
-    entries: Vec<Entry>,
+    limits: ArchiveLimits,
+    entries: Vec<ArchiveEntry>,
     problems: Vec<NameProblem>,
     oddities: Vec<Odd>,
     contents: Contents,
@@ -60,7 +60,7 @@ impl Archive {
     /// # Errors
     /// If the path is neither, is damaged, or contains an entry that must not be unpacked.
     pub fn open(path: &Path) -> Result<Self, ArchiveError> {
-        Self::survey(path, Limits::DEFAULT)?.without_problems()
+        Self::survey(path, ArchiveLimits::DEFAULT)?.without_problems()
     }
 
     /// Opens an archive in memory, such as an FMU in an SSP file; `file` is its name in messages.
@@ -68,7 +68,7 @@ impl Archive {
     /// # Errors
     /// As [`Self::open`].
     pub fn from_bytes(file: &str, bytes: Vec<u8>) -> Result<Self, ArchiveError> {
-        Self::survey_bytes(file, bytes, Limits::DEFAULT)?.without_problems()
+        Self::survey_bytes(file, bytes, ArchiveLimits::DEFAULT)?.without_problems()
     }
 
     /// Opens as [`Self::open`], but accepts entries that must not be unpacked: [`Self::problems`].
@@ -76,7 +76,7 @@ impl Archive {
     ///
     /// # Errors
     /// If it is no archive, is damaged or too large.
-    pub fn survey(path: &Path, limits: Limits) -> Result<Self, ArchiveError> {
+    pub fn survey(path: &Path, limits: ArchiveLimits) -> Result<Self, ArchiveError> {
         let file = path.display().to_string();
         let open = |error| ArchiveError::Open { file: file.clone(), error };
         if fs::metadata(path).map_err(open)?.is_dir() {
@@ -90,14 +90,14 @@ impl Archive {
     ///
     /// # Errors
     /// As [`Self::survey`].
-    pub fn survey_bytes(file: &str, bytes: Vec<u8>, limits: Limits) -> Result<Self, ArchiveError> {
+    pub fn survey_bytes(file: &str, bytes: Vec<u8>, limits: ArchiveLimits) -> Result<Self, ArchiveError> {
         Self::survey_zip(file.to_owned(), Box::new(io::Cursor::new(bytes)), limits)
     }
 
     fn survey_zip(
         file: String,
         source: Box<dyn zipped::Source>,
-        limits: Limits,
+        limits: ArchiveLimits,
     ) -> Result<Self, ArchiveError> {
         let zipped::Opened { zip, entries, problems, oddities } =
             Zipped::open(&file, source, &limits)?;
@@ -105,7 +105,7 @@ impl Archive {
     }
 
     /// Lists the files below a folder. Links aren't followed.
-    fn survey_folder(path: &Path, file: String, limits: Limits) -> Result<Self, ArchiveError> {
+    fn survey_folder(path: &Path, file: String, limits: ArchiveLimits) -> Result<Self, ArchiveError> {
         let mut entries = Vec::new();
         let mut problems = Vec::new();
         let mut folders = vec![(path.to_owned(), String::new())];
@@ -120,7 +120,7 @@ impl Archive {
                 } else if metadata.is_dir() {
                     folders.push((item.path(), name + "/"));
                 } else if metadata.is_file() {
-                    entries.push(Entry { name, stated_bytes: metadata.len() });
+                    entries.push(ArchiveEntry { name, stated_bytes: metadata.len() });
                 } else {
                     problems.push(NameProblem {
                         name,
@@ -163,7 +163,7 @@ impl Archive {
 
     /// Files, without those that have a problem.
     #[must_use]
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[ArchiveEntry] {
         &self.entries
     }
 
@@ -209,7 +209,7 @@ impl Archive {
         let mut bytes = Vec::new();
         match &mut self.contents {
             Contents::Zip(zip) => {
-                let limits = Limits { unpacked_bytes: limit, ..self.limits };
+                let limits = ArchiveLimits { unpacked_bytes: limit, ..self.limits };
                 zip.copy(&self.file, name, &limits, &mut 0, &mut bytes, |error| {
                     ArchiveError::Unreadable {
                         file: self.file.clone(),

@@ -120,7 +120,7 @@ fn hostile_names_are_refused() {
         );
         // The survey lists the entry, but reads and unpacks nothing of it.
         let mut archive =
-            Archive::survey_bytes("h.fmu", bytes, Limits::DEFAULT).expect("is surveyed");
+            Archive::survey_bytes("h.fmu", bytes, ArchiveLimits::DEFAULT).expect("is surveyed");
         assert_eq!(archive.problems().len(), 1);
         assert!(archive.entries().is_empty());
         assert!(archive.read(name).is_err() && archive.unpack().is_err());
@@ -170,21 +170,21 @@ fn links_devices_and_ciphers_are_refused() {
 fn bombs_are_stopped_while_unpacking() {
     let zeros = vec![0u8; 1 << 20];
     let bytes = zip(&[("a", &zeros), ("b", &zeros)]);
-    let limits = |limits: Limits| Archive::survey_bytes("h.fmu", bytes.clone(), limits);
-    let small = Limits { ratio_free_bytes: 1 << 16, ..Limits::DEFAULT };
+    let limits = |limits: ArchiveLimits| Archive::survey_bytes("h.fmu", bytes.clone(), limits);
+    let small = ArchiveLimits { ratio_free_bytes: 1 << 16, ..ArchiveLimits::DEFAULT };
     let error = limits(small).expect("opens").unpack().expect_err("a bomb").to_string();
     assert_eq!(
         error,
         "h.fmu: entry \"a\" unpacks to more than 100 times its size, \
          expected at most 65536 bytes for such an entry"
     );
-    let small = Limits { unpacked_bytes: 3 << 19, ..Limits::DEFAULT };
+    let small = ArchiveLimits { unpacked_bytes: 3 << 19, ..ArchiveLimits::DEFAULT };
     let error = limits(small).expect("opens").unpack().expect_err("a bomb").to_string();
     assert_eq!(
         error,
         "h.fmu: with entry \"b\" more is unpacked than from any FMU, expected at most 1572864 bytes"
     );
-    let small = Limits { read_bytes: 1000, ..Limits::DEFAULT };
+    let small = ArchiveLimits { read_bytes: 1000, ..ArchiveLimits::DEFAULT };
     let error = limits(small).expect("opens").read("a").expect_err("too large").to_string();
     assert_eq!(
         error,
@@ -194,7 +194,7 @@ fn bombs_are_stopped_while_unpacking() {
     let mut lying = bytes.clone();
     let size = (1u32 << 20).to_le_bytes();
     lying = patched(lying, &size, &1u32.to_le_bytes());
-    let small = Limits { unpacked_bytes: 1 << 19, ..Limits::DEFAULT };
+    let small = ArchiveLimits { unpacked_bytes: 1 << 19, ..ArchiveLimits::DEFAULT };
     let mut archive = Archive::survey_bytes("h.fmu", lying, small).expect("opens");
     archive.unpack().expect_err("a bomb or damaged");
 }
@@ -214,10 +214,10 @@ fn too_many_entries_are_refused() {
     let names: Vec<String> = (0..20).map(|i| format!("file{i}")).collect();
     let files: Vec<(&str, &[u8])> = names.iter().map(|name| (&name[..], &b""[..])).collect();
     let bytes = zip(&files);
-    let few = Limits { entries: 19, ..Limits::DEFAULT };
+    let few = ArchiveLimits { entries: 19, ..ArchiveLimits::DEFAULT };
     let error = Archive::survey_bytes("h.fmu", bytes.clone(), few).expect_err("too many");
     assert_eq!(error.to_string(), "h.fmu: it has 20 entries, expected at most 19");
-    let few = Limits { directory_bytes: 500, ..Limits::DEFAULT };
+    let few = ArchiveLimits { directory_bytes: 500, ..ArchiveLimits::DEFAULT };
     let error = Archive::survey_bytes("h.fmu", bytes, few).expect_err("too many");
     assert_eq!(error.to_string(), "h.fmu: its directory is too large, expected at most 500 bytes");
 }

@@ -1,8 +1,8 @@
 //! A zip archive: its entries are examined, and read with every byte counted.
 
-use super::entry::{Entry, Odd, Oddity};
+use super::entry::{ArchiveEntry, Odd, Oddity};
 use super::error::ArchiveError;
-use super::limits::Limits;
+use super::limits::ArchiveLimits;
 use super::names::{self, NameProblem, Names};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -54,7 +54,7 @@ pub(super) struct Zipped {
 /// An opened archive.
 pub(super) struct Opened {
     pub(super) zip: Zipped,
-    pub(super) entries: Vec<Entry>,
+    pub(super) entries: Vec<ArchiveEntry>,
     pub(super) problems: Vec<NameProblem>,
     pub(super) oddities: Vec<Odd>,
 }
@@ -64,7 +64,7 @@ impl Zipped {
     pub(super) fn open(
         file: &str,
         mut source: Box<dyn Source>,
-        limits: &Limits,
+        limits: &ArchiveLimits,
     ) -> Result<Opened, ArchiveError> {
         let mut start = [0; 4];
         let length = read_start(&mut source, &mut start)
@@ -155,7 +155,7 @@ impl Zipped {
         &mut self,
         file: &str,
         name: &str,
-        limits: &Limits,
+        limits: &ArchiveLimits,
         written: &mut u64,
         target: &mut impl Write,
         failed_to_write: impl Fn(io::Error) -> ArchiveError,
@@ -222,7 +222,7 @@ fn look(
     archive: &mut ZipArchive<Metered>,
     index: usize,
     seen: &mut Names,
-) -> Result<Result<Option<(Entry, bool)>, NameProblem>, ZipError> {
+) -> Result<Result<Option<(ArchiveEntry, bool)>, NameProblem>, ZipError> {
     let entry = archive.by_index_raw(index)?;
     let raw = entry.name_raw();
     let problem = |found: String, expected| {
@@ -257,7 +257,7 @@ fn look(
         return Ok(Ok(None));
     }
     let is_program = entry.unix_mode().is_some_and(|mode| mode & 0o100 != 0);
-    Ok(Ok(Some((Entry { name: name.into(), stated_bytes: entry.size() }, is_program))))
+    Ok(Ok(Some((ArchiveEntry { name: name.into(), stated_bytes: entry.size() }, is_program))))
 }
 
 /// Examines the directory's headers for facts that the library doesn't keep: names that occur

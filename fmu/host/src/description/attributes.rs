@@ -1,7 +1,7 @@
 //! Attributes that both standards share: of interfaces and of variables.
 
 use super::xml::Element;
-use super::{Causality, DescriptionError, Initial, Interface, Kind, Standard, Variability};
+use super::{Causality, DescriptionError, Initial, Interface, VariableType, Standard, Variability};
 
 /// Reads an attribute, empty if missing.
 pub(super) fn optional(element: Element<'_, '_>, attribute: &str) -> String {
@@ -73,7 +73,7 @@ pub(super) fn initial(element: Element<'_, '_>) -> Result<Option<Initial>, Descr
 
 /// Default of `variability`: that of FMI 3.0 by the type, also used for FMI 2.0 where its default,
 /// continuous, makes no sense.
-pub(super) fn default_variability(kind: Kind, causality: Causality) -> Variability {
+pub(super) fn default_variability(kind: VariableType, causality: Causality) -> Variability {
     match causality {
         Causality::Parameter | Causality::CalculatedParameter | Causality::StructuralParameter => {
             Variability::Fixed

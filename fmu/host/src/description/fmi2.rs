@@ -5,17 +5,17 @@ use super::attributes::{
 };
 use super::xml::Element;
 use super::{
-    Causality, Description, DescriptionError, Kind, Standard, Unknown, Variability, Variable,
+    Causality, Description, DescriptionError, VariableType, Standard, ModelUnknown, Variability, Variable,
 };
 use std::collections::BTreeMap;
 
 /// Types of a variable, by their element.
-const TYPES: [(&str, Kind); 5] = [
-    ("Real", Kind::Float64),
-    ("Integer", Kind::Int32),
-    ("Boolean", Kind::Boolean),
-    ("String", Kind::String),
-    ("Enumeration", Kind::Enumeration),
+const TYPES: [(&str, VariableType); 5] = [
+    ("Real", VariableType::Float64),
+    ("Integer", VariableType::Int32),
+    ("Boolean", VariableType::Boolean),
+    ("String", VariableType::String),
+    ("Enumeration", VariableType::Enumeration),
 ];
 
 /// A simple type: its element `Real`, `Integer`, … with the attributes.
@@ -177,7 +177,7 @@ fn read_variable<'a, 't: 'a>(
         reference,
         description: optional(element, "description"),
         kind,
-        enumeration: declared.filter(|_| kind == Kind::Enumeration).map(str::to_owned),
+        enumeration: declared.filter(|_| kind == VariableType::Enumeration).map(str::to_owned),
         causality,
         variability,
         initial: initial(element)?
@@ -249,7 +249,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
                     references
                 }
             };
-            unknowns.push(Unknown { reference, depends_on });
+            unknowns.push(ModelUnknown { reference, depends_on });
         }
         match part.name() {
             "Outputs" => description.structure.outputs = unknowns,

@@ -6,8 +6,8 @@ use super::attributes::{
 use super::fmi2::items;
 use super::xml::Element;
 use super::{
-    Alias, Causality, Clock, Description, DescriptionError, Dimension, IntervalVariability, Kind,
-    Standard, Unknown, Variable,
+    Alias, Causality, ClockProperties, Description, DescriptionError, ArrayDimension, IntervalVariability, VariableType,
+    Standard, ModelUnknown, Variable,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -48,7 +48,7 @@ pub(super) fn read<'a, 't: 'a>(
         return Err(root.error(None, "no ModelVariables", "the variables, at least time"));
     };
     for element in list.children() {
-        let kind = Kind::ALL.into_iter().find(|kind| kind.name() == element.name());
+        let kind = VariableType::ALL.into_iter().find(|kind| kind.name() == element.name());
         let Some(kind) = kind else {
             // Minor versions of the standard may add types.
             continue;
@@ -79,7 +79,7 @@ fn types<'a, 't: 'a>(
         let known = element
             .name()
             .strip_suffix("Type")
-            .is_some_and(|name| Kind::ALL.iter().any(|kind| kind.name() == name));
+            .is_some_and(|name| VariableType::ALL.iter().any(|kind| kind.name() == name));
         if !known {
             continue;
         }
@@ -114,7 +114,7 @@ impl<'a, 't: 'a> Typed<'a, 't> {
 
 fn read_variable<'a, 't: 'a>(
     element: Element<'a, 't>,
-    kind: Kind,
+    kind: VariableType,
     types: &Types<'a, 't>,
 ) -> Result<Variable, DescriptionError> {
     let name = element.required("name")?.to_owned();
@@ -151,7 +151,7 @@ fn read_variable<'a, 't: 'a>(
         })
         .collect::<Result<_, DescriptionError>>()?;
     let initial = match kind {
-        Kind::Clock => None,
+        VariableType::Clock => None,
         _ => initial(element)?.or_else(|| default_initial(Standard::Fmi3, causality, variability)),
     };
     Ok(Variable {
@@ -159,7 +159,7 @@ fn read_variable<'a, 't: 'a>(
         reference,
         description: optional(element, "description"),
         kind,
-        enumeration: declared.filter(|_| kind == Kind::Enumeration).map(str::to_owned),
+        enumeration: declared.filter(|_| kind == VariableType::Enumeration).map(str::to_owned),
         causality,
         variability,
         initial,
@@ -176,20 +176,20 @@ fn read_variable<'a, 't: 'a>(
         derivative_of: element.whole("derivative")?,
         clocks: element.list("clocks")?.unwrap_or_default(),
         previous: element.whole("previous")?,
-        clock: (kind == Kind::Clock).then(|| clock(typed)).transpose()?,
-        mime_type: (kind == Kind::Binary)
+        clock: (kind == VariableType::Clock).then(|| clock(typed)).transpose()?,
+        mime_type: (kind == VariableType::Binary)
             .then(|| typed.word("mimeType").unwrap_or_else(|| "application/octet-stream".into())),
         line: element.line(),
     })
 }
 
-fn dimensions(element: Element<'_, '_>) -> Result<Vec<Dimension>, DescriptionError> {
+fn dimensions(element: Element<'_, '_>) -> Result<Vec<ArrayDimension>, DescriptionError> {
     element
         .children()
         .filter(|child| child.name() == "Dimension")
         .map(|child| match (child.whole("start")?, child.whole("valueReference")?) {
-            (Some(size), None) => Ok(Dimension::Fixed(size)),
-            (None, Some(reference)) => Ok(Dimension::Of(reference)),
+            (Some(size), None) => Ok(ArrayDimension::Fixed(size)),
+            (None, Some(reference)) => Ok(ArrayDimension::Of(reference)),
             (None, None) => Err(child.error(None, "no size", "start or valueReference")),
             (Some(_), Some(_)) => {
                 Err(child.error(None, "both start and valueReference", "one of both"))
@@ -199,16 +199,16 @@ fn dimensions(element: Element<'_, '_>) -> Result<Vec<Dimension>, DescriptionErr
 }
 
 /// Start values as written: lists in an attribute, or one element each for String and Binary.
-fn start(element: Element<'_, '_>, kind: Kind, scalar: bool) -> Vec<String> {
+fn start(element: Element<'_, '_>, kind: VariableType, scalar: bool) -> Vec<String> {
     let elements = element.children().filter(|child| child.name() == "Start");
     let mut values: Vec<String> =
         elements.filter_map(|child| child.text("value")).map(str::to_owned).collect();
     let Some(attribute) = element.text("start") else { return values };
-    if matches!(kind, Kind::String | Kind::Binary) {
+    if matches!(kind, VariableType::String | VariableType::Binary) {
         element.tolerate("start as attribute", || {
             "start is an attribute, expected an element Start".into()
         });
-        if scalar || kind == Kind::String {
+        if scalar || kind == VariableType::String {
             values.push(attribute.to_owned());
             return values;
         }
@@ -216,7 +216,7 @@ fn start(element: Element<'_, '_>, kind: Kind, scalar: bool) -> Vec<String> {
     attribute.split_ascii_whitespace().map(str::to_owned).collect()
 }
 
-fn clock(typed: Typed<'_, '_>) -> Result<Clock, DescriptionError> {
+fn clock(typed: Typed<'_, '_>) -> Result<ClockProperties, DescriptionError> {
     let attribute = "intervalVariability";
     let interval_variability = typed
         .of(attribute)
@@ -232,7 +232,7 @@ fn clock(typed: Typed<'_, '_>) -> Result<Clock, DescriptionError> {
             ],
         )?
         .ok_or_else(|| typed.own.error(Some(attribute), "the attribute is missing", "a word"))?;
-    Ok(Clock {
+    Ok(ClockProperties {
         interval_variability,
         interval_s: typed.of("intervalDecimal").real("intervalDecimal")?,
         shift_s: typed.of("shiftDecimal").real("shiftDecimal")?.unwrap_or(0.0),
@@ -284,7 +284,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             });
             depends_on = None;
         }
-        into.push(Unknown { reference, depends_on });
+        into.push(ModelUnknown { reference, depends_on });
     }
     Ok(())
 }

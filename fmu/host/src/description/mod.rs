@@ -27,7 +27,7 @@ pub mod xml;
 pub use read::{read, read_bytes};
 pub use text::decode;
 pub use variable::{
-    Alias, Causality, Clock, Dimension, Initial, IntervalVariability, Kind, Variability, Variable,
+    Alias, Causality, ClockProperties, ArrayDimension, Initial, IntervalVariability, VariableType, Variability, Variable,
 };
 
 /// Reason why a model description can't be used.
@@ -101,15 +101,15 @@ pub struct Description {
     /// Names of the log categories.
     pub log_categories: Vec<String>,
     /// Start, stop, tolerance and step, as far as given.
-    pub default_experiment: Experiment,
+    pub default_experiment: DefaultExperiment,
     /// Units by name.
-    pub units: Vec<Unit>,
+    pub units: Vec<UnitDefinition>,
     /// Enumeration types by name: the items' values and names.
     pub enumerations: Vec<(String, Vec<(i64, String)>)>,
     /// The variables in the order of the file.
     pub variables: Vec<Variable>,
     /// Outputs, derivatives, initial unknowns and event indicators.
-    pub structure: Structure,
+    pub structure: ModelStructure,
     /// Number of event indicators (FMI 2.0: the attribute; FMI 3.0: those in the structure, of one
     /// element each unless their variables are arrays).
     pub event_indicators: usize,
@@ -161,7 +161,7 @@ pub struct Interface {
 
 /// The default experiment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Experiment {
+pub struct DefaultExperiment {
     /// Start, s.
     pub start_s: Option<f64>,
     /// Stop, s.
@@ -174,7 +174,7 @@ pub struct Experiment {
 
 /// A unit: value in SI base units = factor · value + offset.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unit {
+pub struct UnitDefinition {
     /// Name of the unit.
     pub name: String,
     /// Exponents of kg, m, s, A, K, mol, cd, rad; `None`: not in the file.
@@ -210,22 +210,22 @@ pub struct BaseUnit {
 
 /// The structure of a model, as value references.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Structure {
+pub struct ModelStructure {
     /// Outputs with their dependencies.
-    pub outputs: Vec<Unknown>,
+    pub outputs: Vec<ModelUnknown>,
     /// Continuous-state derivatives with their dependencies.
-    pub derivatives: Vec<Unknown>,
+    pub derivatives: Vec<ModelUnknown>,
     /// Clocked states (FMI 3.0).
-    pub clocked_states: Vec<Unknown>,
+    pub clocked_states: Vec<ModelUnknown>,
     /// Initial unknowns with their dependencies.
-    pub initial_unknowns: Vec<Unknown>,
+    pub initial_unknowns: Vec<ModelUnknown>,
     /// Event indicators (FMI 3.0).
-    pub event_indicators: Vec<Unknown>,
+    pub event_indicators: Vec<ModelUnknown>,
 }
 
 /// An unknown and its dependencies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unknown {
+pub struct ModelUnknown {
     /// Value reference.
     pub reference: u32,
     /// Value references on which it depends; `None`: not in the file, so that it depends on
@@ -251,7 +251,7 @@ impl Description {
 
     /// Finds the unit with this name.
     #[must_use]
-    pub fn unit(&self, name: &str) -> Option<&Unit> {
+    pub fn unit(&self, name: &str) -> Option<&UnitDefinition> {
         self.units.iter().find(|unit| unit.name == name)
     }
 
@@ -277,8 +277,8 @@ impl Description {
         let mut elements = 1u64;
         for dimension in &variable.dimensions {
             let size = match *dimension {
-                Dimension::Fixed(size) => size,
-                Dimension::Of(reference) => self
+                ArrayDimension::Fixed(size) => size,
+                ArrayDimension::Of(reference) => self
                     .by_reference(reference)
                     .filter(|parameter| parameter.causality == Causality::StructuralParameter)
                     .and_then(|parameter| parameter.start.first()?.trim().parse().ok())

@@ -4,8 +4,8 @@ use super::attributes::optional;
 use super::schema::{self, Breaks};
 use super::xml::{Element, File};
 use super::{
-    BaseUnit, Causality, Description, DescriptionError, DisplayUnit, Experiment, Initial, Kind,
-    Standard, Structure, Unit, fmi2, fmi3, text,
+    BaseUnit, Causality, Description, DescriptionError, DisplayUnit, DefaultExperiment, Initial, VariableType,
+    Standard, ModelStructure, UnitDefinition, fmi2, fmi3, text,
 };
 use std::collections::BTreeSet;
 
@@ -63,11 +63,11 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
         model_exchange: None,
         scheduled_execution: false,
         log_categories: Vec::new(),
-        default_experiment: Experiment::default(),
+        default_experiment: DefaultExperiment::default(),
         units: Vec::new(),
         enumerations: Vec::new(),
         variables: Vec::new(),
-        structure: Structure::default(),
+        structure: ModelStructure::default(),
         event_indicators: 0,
         tolerated: Vec::new(),
     };
@@ -85,7 +85,7 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
                     .collect();
             }
             "DefaultExperiment" => {
-                description.default_experiment = Experiment {
+                description.default_experiment = DefaultExperiment {
                     start_s: element.real("startTime")?,
                     stop_s: element.real("stopTime")?,
                     tolerance: element.real("tolerance")?,
@@ -143,8 +143,8 @@ fn standard(root: Element<'_, '_>) -> Result<Standard, DescriptionError> {
 }
 
 /// Reads units with their factors.
-fn units(list: Element<'_, '_>) -> Result<Vec<Unit>, DescriptionError> {
-    let mut units: Vec<Unit> = Vec::new();
+fn units(list: Element<'_, '_>) -> Result<Vec<UnitDefinition>, DescriptionError> {
+    let mut units: Vec<UnitDefinition> = Vec::new();
     for element in list.children().filter(|child| child.name() == "Unit") {
         let name = element.required("name")?.to_owned();
         if units.iter().any(|unit| unit.name == name) {
@@ -167,7 +167,7 @@ fn units(list: Element<'_, '_>) -> Result<Vec<Unit>, DescriptionError> {
                 });
             }
         }
-        units.push(Unit { name, base, display });
+        units.push(UnitDefinition { name, base, display });
     }
     Ok(units)
 }
@@ -245,7 +245,7 @@ fn names_and_units(root: Element<'_, '_>, description: &Description) {
         }
         let needs_start = matches!(variable.initial, Some(Initial::Exact | Initial::Approx))
             || variable.causality == Causality::Input;
-        if !start && needs_start && variable.kind != Kind::Clock {
+        if !start && needs_start && variable.kind != VariableType::Clock {
             file.tolerate("missing start", variable.line, || {
                 format!("{:?} has no start value", variable.name)
             });

@@ -114,7 +114,7 @@ fn a_description_of_fmi_2_is_read_in_full() {
     assert_eq!(found.log_categories, ["logAll", "events"]);
     assert_eq!(
         found.default_experiment,
-        Experiment {
+        DefaultExperiment {
             start_s: Some(0.0),
             stop_s: Some(10.5),
             tolerance: Some(1e-4),
@@ -126,7 +126,7 @@ fn a_description_of_fmi_2_is_read_in_full() {
     assert_eq!(found.unit("furlong").expect("furlong").base, None);
     assert_eq!(found.enumeration("Mode"), Some(&[(1, "off".into()), (5, "on".into())][..]));
     let roll = found.variable("roll").expect("roll");
-    assert_eq!((roll.reference, roll.kind, roll.line), (10, Kind::Float64, 25));
+    assert_eq!((roll.reference, roll.kind, roll.line), (10, VariableType::Float64, 25));
     assert_eq!((roll.min, roll.max, roll.nominal), (Some(-4.0), Some(3.0), Some(0.1)));
     assert_eq!((roll.unit.as_deref(), roll.display_unit.as_deref()), (Some("rad"), Some("deg")));
     assert_eq!((roll.initial, &roll.start[..]), (Some(Initial::Exact), &["0.5".to_owned()][..]));
@@ -138,11 +138,11 @@ fn a_description_of_fmi_2_is_read_in_full() {
         (Variability::Continuous, Some(Initial::Calculated))
     );
     let mode = found.variable("mode").expect("mode");
-    assert_eq!((mode.kind, mode.enumeration.as_deref()), (Kind::Enumeration, Some("Mode")));
+    assert_eq!((mode.kind, mode.enumeration.as_deref()), (VariableType::Enumeration, Some("Mode")));
     assert_eq!(mode.initial, None);
     assert_eq!(found.variable("name").expect("name").start, [" two words "]);
     assert!(found.variable("dT").expect("dT").relative_quantity);
-    let unknown = |reference, depends_on: Option<&[u32]>| Unknown {
+    let unknown = |reference, depends_on: Option<&[u32]>| ModelUnknown {
         reference,
         depends_on: depends_on.map(<[u32]>::to_vec),
     };
@@ -217,7 +217,7 @@ fn a_description_of_fmi_3_is_read_in_full() {
     assert!(found.model_exchange.as_ref().expect("model exchange").completed_step_needed);
     assert!(found.scheduled_execution);
     let m = found.variable("m").expect("m");
-    assert_eq!(m.dimensions, [Dimension::Fixed(2), Dimension::Of(1)]);
+    assert_eq!(m.dimensions, [ArrayDimension::Fixed(2), ArrayDimension::Of(1)]);
     assert_eq!((found.elements(m), m.start.len()), (Ok(6), 6));
     assert_eq!((m.unit.as_deref(), m.min), (Some("rad"), Some(-4.0)));
     assert!(std::ptr::eq(found.variable("n.m").expect("its alias"), m));
@@ -229,7 +229,7 @@ fn a_description_of_fmi_3_is_read_in_full() {
     let clock = |name| found.variable(name).expect("a clock").clock.expect("a clock");
     assert_eq!(
         clock("c"),
-        Clock {
+        ClockProperties {
             interval_variability: IntervalVariability::Constant,
             interval_s: Some(0.5),
             shift_s: 0.25,
@@ -243,7 +243,7 @@ fn a_description_of_fmi_3_is_read_in_full() {
     );
     assert_eq!(
         clock("d"),
-        Clock {
+        ClockProperties {
             interval_variability: IntervalVariability::Countdown,
             interval_s: None,
             shift_s: 0.0,

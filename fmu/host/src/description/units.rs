@@ -17,7 +17,7 @@ const GRAVITY: f64 = 9.806_65;
 
 /// Conversion of a number in one unit to a number in another: factor · number + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conversion {
+pub struct UnitConversion {
     /// Factor; exactly 1 between equal units.
     pub factor: f64,
     /// Offset; exactly 0 between units with the same zero.
@@ -90,7 +90,7 @@ pub fn dimension(exponents: [i8; 8]) -> String {
     Dimension(exponents).to_string()
 }
 
-impl Conversion {
+impl UnitConversion {
     /// Identity: no bit is changed.
     pub const IDENTITY: Self = Self { factor: 1.0, offset: 0.0 };
 

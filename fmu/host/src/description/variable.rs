@@ -3,7 +3,7 @@
 /// Type of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
-pub enum Kind {
+pub enum VariableType {
     Float64,
     Float32,
     Int8,
@@ -21,7 +21,7 @@ pub enum Kind {
     Clock,
 }
 
-impl Kind {
+impl VariableType {
     /// Name in FMI 3.0.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -105,7 +105,7 @@ pub enum Initial {
 
 /// One dimension of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
+pub enum ArrayDimension {
     /// A fixed size.
     Fixed(u64),
     /// The value of the structural parameter with this value reference.
@@ -122,7 +122,7 @@ pub struct Variable {
     /// `description`, empty if missing.
     pub description: String,
     /// Type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Name of the enumeration type, if it has one.
     pub enumeration: Option<String>,
     /// Causality; the default of the standard if missing in the file.
@@ -132,7 +132,7 @@ pub struct Variable {
     /// `initial` as written, or by the standard's table.
     pub initial: Option<Initial>,
     /// Dimensions; none: a scalar.
-    pub dimensions: Vec<Dimension>,
+    pub dimensions: Vec<ArrayDimension>,
     /// Start values as written, one for each element (only one: the same for all).
     pub start: Vec<String>,
     /// Smallest value.
@@ -159,7 +159,7 @@ pub struct Variable {
     /// 3.0).
     pub previous: Option<u32>,
     /// Further properties of a clock (FMI 3.0).
-    pub clock: Option<Clock>,
+    pub clock: Option<ClockProperties>,
     /// `mimeType` of a Binary.
     pub mime_type: Option<String>,
     /// Line of the file.
@@ -187,7 +187,7 @@ pub struct Alias {
 
 /// Properties of a clock (FMI 3.0).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
+pub struct ClockProperties {
     /// `intervalVariability`.
     pub interval_variability: IntervalVariability,
     /// `intervalDecimal`, s.

@@ -2,7 +2,7 @@
 
 use super::super::instance::co_simulation::Phase;
 use super::super::instance::unit::Continuous;
-use super::super::instance::{Instance, InstanceError, Outcome, REPEATS_MAX, Stepped};
+use super::super::instance::{Instance, InstanceError, StepOutcome, REPEATS_MAX, Stepped};
 use super::{Exchange, ended};
 
 /// Largest number of the solver's attempts at a step within one communication step.
@@ -46,7 +46,7 @@ impl<U: Continuous> Exchange<U> {
             } else if self.own.time_s >= end_s {
                 return Ok(Stepped {
                     time_s: end_s,
-                    outcome: Outcome::Done,
+                    outcome: StepOutcome::Done,
                     event: false,
                     terminate: false,
                 });

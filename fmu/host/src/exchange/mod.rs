@@ -23,7 +23,7 @@ use super::instance::call::Condition;
 use super::instance::co_simulation::Phase;
 use super::instance::states::States;
 use super::instance::unit::Continuous;
-use super::instance::{Access, Group, Instance, InstanceError, Message, Outcome, Stepped, Update};
+use super::instance::{Access, VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update};
 use crossing::Indicators;
 use serde::{Deserialize, Serialize};
 use solver::Solver;
@@ -116,7 +116,7 @@ impl<U: Continuous> Exchange<U> {
     /// again.
     fn with_access(
         &mut self,
-        group: &Group,
+        group: &VariableGroup,
         set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
     ) -> Result<(), InstanceError> {
         if group.access == Access::Configuration {
@@ -166,27 +166,27 @@ impl<U: Continuous> Instance for Exchange<U> {
         Ok(terminate)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set(group, values))
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         self.unit.get(group, values)
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_strings(group, values))
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         self.unit.get_strings(group)
     }
 
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_binaries(group, values))
     }
 
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         self.unit.get_binaries(group)
     }
 
@@ -269,7 +269,7 @@ impl<U: Continuous> Instance for Exchange<U> {
         Ok(())
     }
 
-    fn messages(&mut self) -> Vec<Message> {
+    fn messages(&mut self) -> Vec<FmuMessage> {
         self.unit.base().messages()
     }
 }
@@ -287,5 +287,5 @@ impl<U: Continuous> Drop for Exchange<U> {
 
 /// Result of a step at which the FMU requests the end before the step's end.
 fn ended(time_s: f64) -> Stepped {
-    Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true }
+    Stepped { time_s, outcome: StepOutcome::Early, event: false, terminate: true }
 }

@@ -2,7 +2,7 @@
 
 use super::super::description::Description;
 use super::message::{Log, status_name};
-use super::{InstanceError, Message};
+use super::{InstanceError, FmuMessage};
 use octant_fmi::{fmi2, fmi3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -183,7 +183,7 @@ impl Base {
     }
 
     /// Messages that the FMU logged.
-    pub(crate) fn messages(&self) -> Vec<Message> {
+    pub(crate) fn messages(&self) -> Vec<FmuMessage> {
         self.log.drain(&self.description)
     }
 }

@@ -1,7 +1,7 @@
 //! Time-based clocks (FMI 3.0): the times of their ticks. The FMU doesn't stop at a tick by itself;
 //! the importer ends its step there, and activates the clock.
 
-use super::super::description::{Causality, Description, IntervalVariability, Kind};
+use super::super::description::{Causality, Description, IntervalVariability, VariableType};
 use super::InstanceError;
 use super::unit::{Interval, Steps};
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ impl Clocks {
     /// Finds the clocks of a description.
     pub(crate) fn of(description: &Description) -> Self {
         let clocks = description.variables.iter().filter(|variable| {
-            variable.kind == Kind::Clock && variable.causality == Causality::Input
+            variable.kind == VariableType::Clock && variable.causality == Causality::Input
         });
         Self(
             clocks

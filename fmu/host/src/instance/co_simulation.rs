@@ -7,7 +7,7 @@ use super::held::Held;
 use super::states::States;
 use super::unit::Steps;
 use super::{
-    Access, Group, Instance, InstanceError, Message, Outcome, REPEATS_MAX, Stepped, Update,
+    Access, VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, REPEATS_MAX, Stepped, Update,
 };
 use serde::{Deserialize, Serialize};
 
@@ -100,7 +100,7 @@ impl<U: Steps> CoSimulation<U> {
         let end_s = time_s + step_s;
         let close_s = 1e-9 * step_s;
         let mut stepped =
-            Stepped { time_s, outcome: Outcome::Done, event: false, terminate: false };
+            Stepped { time_s, outcome: StepOutcome::Done, event: false, terminate: false };
         let mut ticks = 0;
         loop {
             self.own.time_s = stepped.time_s;
@@ -116,7 +116,7 @@ impl<U: Steps> CoSimulation<U> {
                 self.enter_event_mode()?;
                 self.own.clocks.tick(&mut self.unit, stepped.time_s + close_s)?;
                 if self.settle()? {
-                    return Ok(Stepped { outcome: Outcome::Early, terminate: true, ..stepped });
+                    return Ok(Stepped { outcome: StepOutcome::Early, terminate: true, ..stepped });
                 }
                 continue;
             }
@@ -126,15 +126,15 @@ impl<U: Steps> CoSimulation<U> {
             ticks = 0;
             let target_s = if next_s < end_s - close_s { next_s } else { end_s };
             stepped = self.unit.do_step(stepped.time_s, target_s - stepped.time_s)?;
-            if stepped.outcome == Outcome::Done {
+            if stepped.outcome == StepOutcome::Done {
                 stepped.time_s = target_s;
             }
             // Events and ends of the FMU are handled by the caller; before the end of the step this
             // is an early return.
-            if stepped.outcome != Outcome::Done || stepped.event || stepped.terminate {
+            if stepped.outcome != StepOutcome::Done || stepped.event || stepped.terminate {
                 self.own.time_s = stepped.time_s;
-                if stepped.outcome == Outcome::Done && target_s < end_s {
-                    stepped.outcome = Outcome::Early;
+                if stepped.outcome == StepOutcome::Done && target_s < end_s {
+                    stepped.outcome = StepOutcome::Early;
                 }
                 return Ok(stepped);
             }
@@ -145,7 +145,7 @@ impl<U: Steps> CoSimulation<U> {
     /// again.
     fn with_access(
         &mut self,
-        group: &Group,
+        group: &VariableGroup,
         set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
     ) -> Result<(), InstanceError> {
         match group.access {
@@ -201,7 +201,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         Ok(false)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         self.held.forget();
         self.with_access(group, |unit| unit.set(group, values))
     }
@@ -209,7 +209,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     fn set_in_exchange(
         &mut self,
         place: usize,
-        group: &Group,
+        group: &VariableGroup,
         values: &[f64],
     ) -> Result<(), InstanceError> {
         let can_be_held = Held::can_be(group, self.unit.has_event_mode());
@@ -226,23 +226,23 @@ impl<U: Steps> Instance for CoSimulation<U> {
         done
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         self.unit.get(group, values)
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_strings(group, values))
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         self.unit.get_strings(group)
     }
 
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_binaries(group, values))
     }
 
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         self.unit.get_binaries(group)
     }
 
@@ -259,7 +259,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         let ended = self.own.phase == Phase::Event && self.settle()?;
         self.expect("a step", &[Phase::Step])?;
         if ended {
-            return Ok(Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true });
+            return Ok(Stepped { time_s, outcome: StepOutcome::Early, event: false, terminate: true });
         }
         if self.own.clocks.is_empty() {
             return self.unit.do_step(time_s, step_s);
@@ -342,7 +342,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         Ok(())
     }
 
-    fn messages(&mut self) -> Vec<Message> {
+    fn messages(&mut self) -> Vec<FmuMessage> {
         self.unit.base().messages()
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of a running FMU.
 
-use super::Group;
+use super::VariableGroup;
 use serde::{Deserialize, Serialize};
 
 /// Reason why an FMU could not continue. The error crosses processes, so that it holds text and no
@@ -111,7 +111,7 @@ impl InstanceError {
     }
 
     /// Error for a number of values that doesn't fit the groups.
-    pub(crate) fn numbers(fmu: &str, groups: &[Group], found: usize) -> Self {
+    pub(crate) fn numbers(fmu: &str, groups: &[VariableGroup], found: usize) -> Self {
         let expected: usize = groups.iter().map(|group| group.elements).sum();
         let kinds: Vec<String> = groups.iter().map(|group| format!("{:?}", group.kind)).collect();
         Self::unsupported(

@@ -1,14 +1,14 @@
 //! The functions of FMI 2.0.
 #![allow(unsafe_code, reason = "functions of a library are called")]
 
-use super::super::description::Kind;
+use super::super::description::VariableType;
 use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, NOWHERE, call, function_number};
 use super::message::{Log, callbacks, text};
 use super::number::Truth;
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{Group, InstanceError, Outcome, Stepped, Update, group};
+use super::{VariableGroup, InstanceError, StepOutcome, Stepped, Update, group};
 use octant_fmi::fmi2;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
@@ -99,7 +99,7 @@ impl Component {
     }
 
     /// Error for a type that is no number type in FMI 2.0.
-    fn unsupported_kind(&self, group: &Group, what: &str) -> InstanceError {
+    fn unsupported_kind(&self, group: &VariableGroup, what: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.base.name,
             format!("{what} {}", group::element_name(&self.base.description, group, 0)),
@@ -153,7 +153,7 @@ impl Component {
         }
         Ok(Stepped {
             time_s: reached_s,
-            outcome: Outcome::Discarded,
+            outcome: StepOutcome::Discarded,
             event: false,
             terminate: terminated != fmi2::FALSE,
         })
@@ -234,44 +234,44 @@ impl Unit for Component {
         Ok(())
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 let status = call!(self.set_real "fmi2SetReal"(references, count, values.as_ptr()));
                 self.base.check("fmi2SetReal", status)
             }
-            Kind::Int32 | Kind::Enumeration => {
+            VariableType::Int32 | VariableType::Enumeration => {
                 set_through!(self, group, values, integers, set_integer "fmi2SetInteger")
             }
-            Kind::Boolean => {
+            VariableType::Boolean => {
                 set_through!(self, group, values, truths, set_boolean "fmi2SetBoolean")
             }
             _ => Err(self.unsupported_kind(group, "set")),
         }
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 let status =
                     call!(self.get_real "fmi2GetReal"(references, count, values.as_mut_ptr()));
                 self.base.check("fmi2GetReal", status)
             }
-            Kind::Int32 | Kind::Enumeration => {
+            VariableType::Int32 | VariableType::Enumeration => {
                 get_through!(self, group, values, integers, get_integer "fmi2GetInteger")
             }
-            Kind::Boolean => {
+            VariableType::Boolean => {
                 get_through!(self, group, values, truths, get_boolean "fmi2GetBoolean")
             }
             _ => Err(self.unsupported_kind(group, "get")),
         }
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()
@@ -283,7 +283,7 @@ impl Unit for Component {
         self.base.check("fmi2SetString", status)
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         group::expect_scalars(&self.base, group, group.elements)?;
         let mut pointers = vec![ptr::null(); group.elements];
         let status = call!(self.get_string "fmi2GetString"(
@@ -293,11 +293,11 @@ impl Unit for Component {
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, STRING_MAX) }).collect())
     }
 
-    fn set_binaries(&mut self, _: &Group, _: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, _: &VariableGroup, _: &[Vec<u8>]) -> Result<(), InstanceError> {
         Err(InstanceError::unsupported(&self.base.name, "set bytes", "FMI 2.0 has no Binary"))
     }
 
-    fn get_binaries(&mut self, _: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, _: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         Err(InstanceError::unsupported(&self.base.name, "get bytes", "FMI 2.0 has no Binary"))
     }
 
@@ -391,7 +391,7 @@ impl Steps for Component {
         }
         Ok(Stepped {
             time_s: time_s + step_s,
-            outcome: Outcome::Done,
+            outcome: StepOutcome::Done,
             event: false,
             terminate: false,
         })

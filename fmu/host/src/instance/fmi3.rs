@@ -1,14 +1,14 @@
 //! The functions of FMI 3.0.
 #![allow(unsafe_code, reason = "functions of a library are called")]
 
-use super::super::description::Kind;
+use super::super::description::VariableType;
 use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_number};
 use super::message::{Log, log_message, text};
 use super::scratch::Scratch;
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{Group, InstanceError, Outcome, Stepped, Update, group};
+use super::{VariableGroup, InstanceError, StepOutcome, Stepped, Update, group};
 use octant_fmi::fmi3;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
@@ -120,7 +120,7 @@ impl Component {
         })
     }
 
-    fn unsupported_kind(&self, group: &Group, what: &str) -> InstanceError {
+    fn unsupported_kind(&self, group: &VariableGroup, what: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.base.name,
             format!("{what} {}", group::element_name(&self.base.description, group, 0)),
@@ -221,32 +221,32 @@ impl Unit for Component {
         Ok(())
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 let status = call!(self.set_float64 "fmi3SetFloat64"(
                     references, count, values.as_ptr(), values.len()));
                 self.base.check("fmi3SetFloat64", status)
             }
-            Kind::Float32 => {
+            VariableType::Float32 => {
                 set_through!(self, group, values, float32, set_float32 "fmi3SetFloat32")
             }
-            Kind::Int8 => set_through!(self, group, values, int8, set_int8 "fmi3SetInt8"),
-            Kind::UInt8 => set_through!(self, group, values, uint8, set_uint8 "fmi3SetUInt8"),
-            Kind::Int16 => set_through!(self, group, values, int16, set_int16 "fmi3SetInt16"),
-            Kind::UInt16 => set_through!(self, group, values, uint16, set_uint16 "fmi3SetUInt16"),
-            Kind::Int32 => set_through!(self, group, values, int32, set_int32 "fmi3SetInt32"),
-            Kind::UInt32 => set_through!(self, group, values, uint32, set_uint32 "fmi3SetUInt32"),
-            Kind::Int64 | Kind::Enumeration => {
+            VariableType::Int8 => set_through!(self, group, values, int8, set_int8 "fmi3SetInt8"),
+            VariableType::UInt8 => set_through!(self, group, values, uint8, set_uint8 "fmi3SetUInt8"),
+            VariableType::Int16 => set_through!(self, group, values, int16, set_int16 "fmi3SetInt16"),
+            VariableType::UInt16 => set_through!(self, group, values, uint16, set_uint16 "fmi3SetUInt16"),
+            VariableType::Int32 => set_through!(self, group, values, int32, set_int32 "fmi3SetInt32"),
+            VariableType::UInt32 => set_through!(self, group, values, uint32, set_uint32 "fmi3SetUInt32"),
+            VariableType::Int64 | VariableType::Enumeration => {
                 set_through!(self, group, values, int64, set_int64 "fmi3SetInt64")
             }
-            Kind::UInt64 => set_through!(self, group, values, uint64, set_uint64 "fmi3SetUInt64"),
-            Kind::Boolean => {
+            VariableType::UInt64 => set_through!(self, group, values, uint64, set_uint64 "fmi3SetUInt64"),
+            VariableType::Boolean => {
                 set_through!(self, group, values, truths, set_boolean "fmi3SetBoolean")
             }
-            Kind::Clock => {
+            VariableType::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
                 let mut clocks = std::mem::take(&mut self.scratch.truths);
                 group::numbers_from_f64(&self.base, group, values, &mut clocks)?;
@@ -255,36 +255,36 @@ impl Unit for Component {
                 self.scratch.truths = clocks;
                 self.base.check("fmi3SetClock", status)
             }
-            Kind::String | Kind::Binary => Err(self.unsupported_kind(group, "set")),
+            VariableType::String | VariableType::Binary => Err(self.unsupported_kind(group, "set")),
         }
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 let status = call!(self.get_float64 "fmi3GetFloat64"(
                     references, count, values.as_mut_ptr(), values.len()));
                 self.base.check("fmi3GetFloat64", status)
             }
-            Kind::Float32 => {
+            VariableType::Float32 => {
                 get_through!(self, group, values, float32, get_float32 "fmi3GetFloat32")
             }
-            Kind::Int8 => get_through!(self, group, values, int8, get_int8 "fmi3GetInt8"),
-            Kind::UInt8 => get_through!(self, group, values, uint8, get_uint8 "fmi3GetUInt8"),
-            Kind::Int16 => get_through!(self, group, values, int16, get_int16 "fmi3GetInt16"),
-            Kind::UInt16 => get_through!(self, group, values, uint16, get_uint16 "fmi3GetUInt16"),
-            Kind::Int32 => get_through!(self, group, values, int32, get_int32 "fmi3GetInt32"),
-            Kind::UInt32 => get_through!(self, group, values, uint32, get_uint32 "fmi3GetUInt32"),
-            Kind::Int64 | Kind::Enumeration => {
+            VariableType::Int8 => get_through!(self, group, values, int8, get_int8 "fmi3GetInt8"),
+            VariableType::UInt8 => get_through!(self, group, values, uint8, get_uint8 "fmi3GetUInt8"),
+            VariableType::Int16 => get_through!(self, group, values, int16, get_int16 "fmi3GetInt16"),
+            VariableType::UInt16 => get_through!(self, group, values, uint16, get_uint16 "fmi3GetUInt16"),
+            VariableType::Int32 => get_through!(self, group, values, int32, get_int32 "fmi3GetInt32"),
+            VariableType::UInt32 => get_through!(self, group, values, uint32, get_uint32 "fmi3GetUInt32"),
+            VariableType::Int64 | VariableType::Enumeration => {
                 get_through!(self, group, values, int64, get_int64 "fmi3GetInt64")
             }
-            Kind::UInt64 => get_through!(self, group, values, uint64, get_uint64 "fmi3GetUInt64"),
-            Kind::Boolean => {
+            VariableType::UInt64 => get_through!(self, group, values, uint64, get_uint64 "fmi3GetUInt64"),
+            VariableType::Boolean => {
                 get_through!(self, group, values, truths, get_boolean "fmi3GetBoolean")
             }
-            Kind::Clock => {
+            VariableType::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
                 let mut clocks = std::mem::take(&mut self.scratch.truths);
                 clocks.clear();
@@ -299,11 +299,11 @@ impl Unit for Component {
                 self.scratch.truths = clocks;
                 done
             }
-            Kind::String | Kind::Binary => Err(self.unsupported_kind(group, "get")),
+            VariableType::String | VariableType::Binary => Err(self.unsupported_kind(group, "get")),
         }
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()
@@ -315,7 +315,7 @@ impl Unit for Component {
         self.base.check("fmi3SetString", status)
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         let mut pointers = vec![ptr::null(); group.elements];
         let status = call!(self.get_string "fmi3GetString"(
             group.references.as_ptr(), group.references.len(),
@@ -325,7 +325,7 @@ impl Unit for Component {
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, VALUE_MAX) }).collect())
     }
 
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let sizes: Vec<usize> = values.iter().map(Vec::len).collect();
         let pointers: Vec<*const u8> = values.iter().map(|bytes| bytes.as_ptr()).collect();
@@ -335,7 +335,7 @@ impl Unit for Component {
         self.base.check("fmi3SetBinary", status)
     }
 
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         let mut sizes = vec![0; group.elements];
         let mut pointers = vec![ptr::null(); group.elements];
         let status = call!(self.get_binary "fmi3GetBinary"(
@@ -443,13 +443,13 @@ impl Steps for Component {
             time_s, step_s, u8::from(!self.restorable), event, terminate, early, &mut reached_s));
         let [event, terminate, early] = flags.map(|flag| flag != 0);
         let outcome = match self.base.answer("fmi3DoStep", status)? {
-            Answer::Fine if early => Outcome::Early,
-            Answer::Fine => Outcome::Done,
-            Answer::Discard => Outcome::Discarded,
+            Answer::Fine if early => StepOutcome::Early,
+            Answer::Fine => StepOutcome::Done,
+            Answer::Discard => StepOutcome::Discarded,
             Answer::Pending => return Err(self.base.failed("fmi3DoStep", "pending")),
         };
         let time_s = match outcome {
-            Outcome::Done => time_s + step_s,
+            StepOutcome::Done => time_s + step_s,
             // A reported time outside of the step means that no part of it was made.
             _ if reached_s >= time_s && reached_s <= time_s + step_s => reached_s,
             _ => time_s,

@@ -1,6 +1,6 @@
 //! Variables that are set or got together, and the positions of their numbers.
 
-use super::super::description::{Causality, Description, Kind, Standard, Variability, Variable};
+use super::super::description::{Causality, Description, VariableType, Standard, Variability, Variable};
 use super::InstanceError;
 use super::call::Base;
 use super::number::Number;
@@ -24,9 +24,9 @@ pub enum Access {
 /// Numbers of every type, Booleans, enumerations and clocks are exchanged as f64 (whole numbers
 /// exact up to 2⁵³); text and bytes by separate functions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Group {
+pub struct VariableGroup {
     /// Type of the variables.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Time at which they can be set.
     pub access: Access,
     /// Value references.
@@ -35,7 +35,7 @@ pub struct Group {
     pub elements: usize,
 }
 
-impl Group {
+impl VariableGroup {
     /// Makes a group of one variable.
     ///
     /// # Errors
@@ -53,37 +53,37 @@ impl Group {
 /// Smallest set of groups for a list of variables, and the position of each variable in the
 /// concatenated numbers of all groups.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Plan {
+pub struct AccessPlan {
     /// Groups, for [`super::Instance::exchange`].
-    pub groups: Vec<Group>,
+    pub groups: Vec<VariableGroup>,
     /// Positions of the elements of each variable, in the order of the list.
     pub places: Vec<Range<usize>>,
     /// Number of elements of all groups together.
     pub elements: usize,
 }
 
-impl Plan {
+impl AccessPlan {
     /// Groups variables that are numbers.
     ///
     /// # Errors
     /// If a variable is a String or a Binary, or the number of its elements is unknown.
     pub fn new(description: &Description, variables: &[&Variable]) -> Result<Self, InstanceError> {
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<VariableGroup> = Vec::new();
         let mut within = Vec::with_capacity(variables.len());
         for variable in variables {
-            if matches!(variable.kind, Kind::String | Kind::Binary) {
+            if matches!(variable.kind, VariableType::String | VariableType::Binary) {
                 return Err(InstanceError::unsupported(
                     &description.model_name,
                     format!("exchange {} as a number", variable.name),
                     format!("it is a {:?}", variable.kind),
                 ));
             }
-            let one = Group::of(description, variable)?;
+            let one = VariableGroup::of(description, variable)?;
             let place = groups
                 .iter()
                 .position(|group| group.kind == one.kind && group.access == one.access)
                 .unwrap_or_else(|| {
-                    groups.push(Group { references: Vec::new(), elements: 0, ..one.clone() });
+                    groups.push(VariableGroup { references: Vec::new(), elements: 0, ..one.clone() });
                     groups.len() - 1
                 });
             let group = &mut groups[place];
@@ -113,7 +113,7 @@ fn access(description: &Description, variable: &Variable) -> Access {
         Causality::Parameter => variable.variability == Variability::Tunable,
         _ => false,
     };
-    let clocked = !variable.clocks.is_empty() || variable.kind == Kind::Clock;
+    let clocked = !variable.clocks.is_empty() || variable.kind == VariableType::Clock;
     if description.standard == Standard::Fmi3 && (discrete || clocked) {
         Access::Event
     } else {
@@ -134,7 +134,7 @@ fn elements(description: &Description, variable: &Variable) -> Result<usize, Ins
 
 /// Name of the variable to which an element of a group belongs, with the element's number if the
 /// group has arrays.
-pub(super) fn element_name(description: &Description, group: &Group, element: usize) -> String {
+pub(super) fn element_name(description: &Description, group: &VariableGroup, element: usize) -> String {
     let mut first = 0;
     for reference in &group.references {
         let Some(variable) = description
@@ -160,7 +160,7 @@ pub(super) fn element_name(description: &Description, group: &Group, element: us
 /// Checks that the number of values fits the group.
 pub(super) fn expect_elements(
     base: &Base,
-    group: &Group,
+    group: &VariableGroup,
     values: usize,
 ) -> Result<(), InstanceError> {
     if values == group.elements {
@@ -173,7 +173,7 @@ pub(super) fn expect_elements(
 /// Checks that the number of values fits the group, which has no arrays.
 pub(super) fn expect_scalars(
     base: &Base,
-    group: &Group,
+    group: &VariableGroup,
     values: usize,
 ) -> Result<(), InstanceError> {
     if group.references.len() == group.elements {
@@ -190,7 +190,7 @@ pub(super) fn expect_scalars(
 /// Converts numbers of the FMU to f64.
 pub(super) fn numbers_to_f64<T: Number>(
     base: &Base,
-    group: &Group,
+    group: &VariableGroup,
     numbers: &[T],
     values: &mut [f64],
 ) -> Result<(), InstanceError> {
@@ -203,7 +203,7 @@ pub(super) fn numbers_to_f64<T: Number>(
 /// Converts f64 to numbers for the FMU.
 pub(super) fn numbers_from_f64<T: Number>(
     base: &Base,
-    group: &Group,
+    group: &VariableGroup,
     values: &[f64],
     numbers: &mut Vec<T>,
 ) -> Result<(), InstanceError> {
@@ -215,7 +215,7 @@ pub(super) fn numbers_from_f64<T: Number>(
 }
 
 #[cold]
-fn misfit(base: &Base, group: &Group, element: usize, value: String) -> InstanceError {
+fn misfit(base: &Base, group: &VariableGroup, element: usize, value: String) -> InstanceError {
     InstanceError::Value {
         fmu: base.name.clone(),
         variable: element_name(&base.description, group, element),

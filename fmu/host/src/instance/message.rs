@@ -16,7 +16,7 @@ const TEXT_MAX: usize = 65536;
 
 /// One message of an FMU.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Message {
+pub struct FmuMessage {
     /// Severity: `ok`, `warning`, `discard`, `error`, `fatal`.
     pub status: String,
     /// Category, normally one of the description's.
@@ -25,7 +25,7 @@ pub struct Message {
     pub text: String,
 }
 
-impl fmt::Display for Message {
+impl fmt::Display for FmuMessage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "[{}] {}: {}", self.status, self.category, self.text)
     }
@@ -54,7 +54,7 @@ pub(super) struct Log {
 
 #[derive(Default)]
 struct Said {
-    messages: Vec<Message>,
+    messages: Vec<FmuMessage>,
     dropped: u64,
 }
 
@@ -64,7 +64,7 @@ impl Log {
     }
 
     /// Removes and returns all messages.
-    pub(super) fn drain(&self, description: &Description) -> Vec<Message> {
+    pub(super) fn drain(&self, description: &Description) -> Vec<FmuMessage> {
         let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let mut messages = std::mem::take(&mut said.messages);
         let dropped = std::mem::take(&mut said.dropped);
@@ -73,7 +73,7 @@ impl Log {
             message.text = with_names(&message.text, description);
         }
         if dropped > 0 {
-            messages.push(Message {
+            messages.push(FmuMessage {
                 status: "warning".into(),
                 category: "octant".into(),
                 text: format!("{dropped} more messages were dropped"),
@@ -94,7 +94,7 @@ impl Log {
     fn push(&self, status: i32, category: String, text: String) {
         let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         if said.messages.len() < MESSAGES_MAX {
-            said.messages.push(Message { status: status_name(status).into(), category, text });
+            said.messages.push(FmuMessage { status: status_name(status).into(), category, text });
         } else {
             said.dropped += 1;
         }
@@ -196,14 +196,14 @@ fn with_names(text: &str, description: &Description) -> String {
 
 /// Finds the variable for a reference in a message.
 fn name_of(reference: &str, description: &Description) -> Option<String> {
-    use super::super::description::Kind;
-    let (kinds, number): (&[Kind], &str) = match description.standard {
+    use super::super::description::VariableType;
+    let (kinds, number): (&[VariableType], &str) = match description.standard {
         Standard::Fmi3 => (&[], reference),
         Standard::Fmi2 => match reference.split_at_checked(1)? {
-            ("r", number) => (&[Kind::Float64], number),
-            ("i", number) => (&[Kind::Int32, Kind::Enumeration], number),
-            ("b", number) => (&[Kind::Boolean], number),
-            ("s", number) => (&[Kind::String], number),
+            ("r", number) => (&[VariableType::Float64], number),
+            ("i", number) => (&[VariableType::Int32, VariableType::Enumeration], number),
+            ("b", number) => (&[VariableType::Boolean], number),
+            ("s", number) => (&[VariableType::String], number),
             _ => return None,
         },
     };

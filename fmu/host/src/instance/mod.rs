@@ -37,10 +37,10 @@ pub(super) mod states;
 pub(super) mod unit;
 
 pub use error::InstanceError;
-pub use group::{Access, Group, Plan};
-pub use message::Message;
-pub use open::OpenError;
-pub use options::{InterfaceKind, Options, Place};
+pub use group::{Access, VariableGroup, AccessPlan};
+pub use message::FmuMessage;
+pub use open::FmuOpenError;
+pub use options::{InterfaceKind, OpenOptions, ProcessPlace};
 
 use super::description::Description;
 use serde::{Deserialize, Serialize};
@@ -51,7 +51,7 @@ pub struct Stepped {
     /// Time reached, s: the end of the step, or earlier.
     pub time_s: f64,
     /// Outcome.
-    pub outcome: Outcome,
+    pub outcome: StepOutcome,
     /// True if events have to be handled: [`Instance::handle_events`].
     pub event: bool,
     /// True if the FMU requests the end of the simulation.
@@ -60,7 +60,7 @@ pub struct Stepped {
 
 /// Outcome of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Outcome {
+pub enum StepOutcome {
     /// The step was completed.
     Done,
     /// The FMU returned before the end of the step, at an event.
@@ -120,7 +120,7 @@ pub trait Instance: Send {
     ///
     /// # Errors
     /// If the FMU fails or refuses a value, or a number doesn't fit the type.
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError>;
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError>;
 
     /// Sets as [`Self::set`] the group at `place` in an [`Self::exchange`]: an implementation that
     /// knows the FMU's present values can skip unchanged ones.
@@ -130,7 +130,7 @@ pub trait Instance: Send {
     fn set_in_exchange(
         &mut self,
         _place: usize,
-        group: &Group,
+        group: &VariableGroup,
         values: &[f64],
     ) -> Result<(), InstanceError> {
         self.set(group, values)
@@ -140,31 +140,31 @@ pub trait Instance: Send {
     ///
     /// # Errors
     /// If the FMU fails.
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError>;
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError>;
 
     /// Sets texts.
     ///
     /// # Errors
     /// If the FMU fails or refuses a value.
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError>;
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError>;
 
     /// Gets texts.
     ///
     /// # Errors
     /// If the FMU fails.
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError>;
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError>;
 
     /// Sets bytes (FMI 3.0).
     ///
     /// # Errors
     /// If the FMU fails or refuses a value.
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError>;
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError>;
 
     /// Gets bytes (FMI 3.0).
     ///
     /// # Errors
     /// If the FMU fails.
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError>;
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError>;
 
     /// Makes one communication step. Model exchange is integrated over it, with its events; clocks
     /// of co-simulation that are due tick during it and at its end.
@@ -177,17 +177,17 @@ pub trait Instance: Send {
     /// are groups whose numbers follow one another in `inputs` and `outputs`.
     ///
     /// At an early return the FMU's events are handled and it continues, so that the outcome is
-    /// [`Outcome::Done`], [`Outcome::Discarded`], or an early end because the FMU requests it.
+    /// [`StepOutcome::Done`], [`StepOutcome::Discarded`], or an early end because the FMU requests it.
     ///
     /// # Errors
     /// If the FMU fails.
     fn exchange(
         &mut self,
-        set: &[Group],
+        set: &[VariableGroup],
         inputs: &[f64],
         time_s: f64,
         step_s: f64,
-        get: &[Group],
+        get: &[VariableGroup],
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
         for (groups, count) in [(set, inputs.len()), (get, outputs.len())] {
@@ -223,13 +223,13 @@ pub trait Instance: Send {
                 stepped.terminate |= self.handle_events()?;
                 stepped.event = false;
             }
-            if stepped.outcome != Outcome::Early || stepped.terminate {
+            if stepped.outcome != StepOutcome::Early || stepped.terminate {
                 return Ok(stepped);
             }
             // The rest may be rounding alone: then the end is reached.
             let left_s = end_s - stepped.time_s;
             if left_s <= 1e-9 * step_s {
-                return Ok(Stepped { time_s: end_s, outcome: Outcome::Done, ..stepped });
+                return Ok(Stepped { time_s: end_s, outcome: StepOutcome::Done, ..stepped });
             }
             stepped = self.step(stepped.time_s, left_s)?;
         }
@@ -307,7 +307,7 @@ pub trait Instance: Send {
     fn terminate(&mut self) -> Result<(), InstanceError>;
 
     /// Messages that the FMU logged since the last call.
-    fn messages(&mut self) -> Vec<Message>;
+    fn messages(&mut self) -> Vec<FmuMessage>;
 }
 
 /// Last message of an FMU, after a colon; empty where it sent none.

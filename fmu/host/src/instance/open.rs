@@ -1,7 +1,7 @@
 //! Opening an FMU: its archive, its description, its library, an instance.
 
 use super::super::archive::{Archive, ArchiveError, Unpacked};
-use super::super::description::{self, Description, DescriptionError, Interface, Kind, Standard};
+use super::super::description::{self, Description, DescriptionError, Interface, VariableType, Standard};
 use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
 use super::super::process;
@@ -9,7 +9,7 @@ use super::call::{LOADING, Mark, NOWHERE};
 use super::clocks::Clocks;
 use super::co_simulation::CoSimulation;
 use super::once::Once;
-use super::options::{InterfaceKind, Options, Place};
+use super::options::{InterfaceKind, OpenOptions, ProcessPlace};
 use super::setup::Setup;
 use super::{Instance, InstanceError, fmi2, fmi3};
 use std::path::Path;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Reason why an FMU can't be opened.
 #[derive(Debug, thiserror::Error)]
-pub enum OpenError {
+pub enum FmuOpenError {
     /// Error of the archive.
     #[error(transparent)]
     Archive(#[from] ArchiveError),
@@ -34,7 +34,7 @@ pub enum OpenError {
 /// # Errors
 /// If its archive or description can't be used, it lacks the interface, its library can't be
 /// loaded, or it makes no instance.
-pub fn open(path: &Path, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
+pub fn open(path: &Path, options: &OpenOptions) -> Result<Box<dyn Instance>, FmuOpenError> {
     let mut archive = Archive::open(path)?;
     open_archive(&mut archive, options)
 }
@@ -45,8 +45,8 @@ pub fn open(path: &Path, options: &Options) -> Result<Box<dyn Instance>, OpenErr
 /// As [`open`].
 pub fn open_archive(
     archive: &mut Archive,
-    options: &Options,
-) -> Result<Box<dyn Instance>, OpenError> {
+    options: &OpenOptions,
+) -> Result<Box<dyn Instance>, FmuOpenError> {
     // The description comes first, so that an FMU of FMI 1.0 is refused before gigabytes are
     // unpacked.
     let description = read_description(archive)?;
@@ -60,16 +60,16 @@ pub fn open_archive(
 pub(crate) fn open_folder(
     name: &str,
     path: &Path,
-    options: &Options,
+    options: &OpenOptions,
     mark: Mark,
-) -> Result<Box<dyn Instance>, OpenError> {
+) -> Result<Box<dyn Instance>, FmuOpenError> {
     let mut archive = Archive::open(path)?;
     let description = read_description(&mut archive)?;
     let folder = archive.unpack()?;
     Ok(open_here(name, folder, Arc::new(description), options, mark)?)
 }
 
-fn read_description(archive: &mut Archive) -> Result<Description, OpenError> {
+fn read_description(archive: &mut Archive) -> Result<Description, FmuOpenError> {
     const NAME: &str = "modelDescription.xml";
     let bytes = archive.read(NAME)?;
     Ok(description::read_bytes(&bytes, &format!("{}/{NAME}", archive.file()))?)
@@ -89,11 +89,11 @@ pub fn open_unpacked(
     name: &str,
     folder: Unpacked,
     description: Description,
-    options: &Options,
+    options: &OpenOptions,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     match options.place {
-        Place::OwnProcess => process::open(name, folder, description, options),
-        Place::ThisProcess => {
+        ProcessPlace::OwnProcess => process::open(name, folder, description, options),
+        ProcessPlace::ThisProcess => {
             open_here(name, folder, Arc::new(description), options, Mark::default())
         }
     }
@@ -104,7 +104,7 @@ pub(crate) fn open_here(
     name: &str,
     folder: Unpacked,
     description: Arc<Description>,
-    options: &Options,
+    options: &OpenOptions,
     mark: Mark,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     let (exchange, interface) = interface(name, &description, options.interface)?;
@@ -115,7 +115,7 @@ pub(crate) fn open_here(
             format!("it needs the tool that made it, {}", description.generation_tool),
         ));
     }
-    let clocks = description.variables.iter().any(|variable| variable.kind == Kind::Clock);
+    let clocks = description.variables.iter().any(|variable| variable.kind == VariableType::Clock);
     if !exchange && clocks && !(options.event_mode && interface.event_mode) {
         return Err(InstanceError::unsupported(
             name,

@@ -18,7 +18,7 @@ pub enum InterfaceKind {
 
 /// Process in which the code of an FMU runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Place {
+pub enum ProcessPlace {
     /// In a process of its own, in which it can crash, hang and print without harm. On Linux only.
     #[default]
     OwnProcess,
@@ -28,11 +28,11 @@ pub enum Place {
 
 /// Options for opening an FMU.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Options {
+pub struct OpenOptions {
     /// Interface to be used.
     pub interface: InterfaceKind,
     /// Process of the code.
-    pub place: Place,
+    pub place: ProcessPlace,
     /// Name of the instance; `None`: the model's name.
     pub instance_name: Option<String>,
     /// True to switch on logging.
@@ -51,11 +51,11 @@ pub struct Options {
     pub program: Option<PathBuf>,
 }
 
-impl Default for Options {
+impl Default for OpenOptions {
     fn default() -> Self {
         Self {
             interface: InterfaceKind::Any,
-            place: Place::OwnProcess,
+            place: ProcessPlace::OwnProcess,
             instance_name: None,
             log: true,
             event_mode: true,

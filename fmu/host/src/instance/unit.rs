@@ -2,7 +2,7 @@
 //! where the other needs one; the user of the trait is responsible for the order of calls.
 
 use super::call::Base;
-use super::{Group, InstanceError, Stepped, Update};
+use super::{VariableGroup, InstanceError, Stepped, Update};
 use std::ffi::c_void;
 
 /// A state as returned by the FMU.
@@ -22,12 +22,12 @@ pub(crate) trait Unit: Send {
     fn terminate(&mut self) -> Result<(), InstanceError>;
     fn reset(&mut self) -> Result<(), InstanceError>;
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError>;
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError>;
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError>;
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError>;
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError>;
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError>;
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError>;
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError>;
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError>;
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError>;
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError>;
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError>;
 
     fn enter_configuration_mode(&mut self) -> Result<(), InstanceError>;
     fn exit_configuration_mode(&mut self) -> Result<(), InstanceError>;

@@ -1,8 +1,8 @@
 //! The other process: it hosts one FMU and executes requests.
 
 use super::super::instance::call::Mark;
-use super::super::instance::open::{OpenError, open_folder};
-use super::super::instance::{Group, Instance, InstanceError, Message, Outcome, Stepped};
+use super::super::instance::open::{FmuOpenError, open_folder};
+use super::super::instance::{VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped};
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -20,7 +20,7 @@ const MESSAGES_MAX: usize = 10_000;
 
 /// Reason why the process of an FMU ends early.
 #[derive(Debug, thiserror::Error)]
-pub enum ServeError {
+pub enum FmuServeError {
     /// No process that provides its input and output started this one.
     #[error("octant fmu host is started by octant itself, for an FMU that runs apart ({error})")]
     NotStarted {
@@ -51,7 +51,7 @@ pub enum ServeError {
 ///
 /// # Errors
 /// If no such process started this one: standard input and output are not those that it provides.
-pub fn serve() -> Result<(), ServeError> {
+pub fn serve() -> Result<(), FmuServeError> {
     let connect = || -> io::Result<(UnixStream, Shared)> {
         let socket: OwnedFd = rustix::io::fcntl_dupfd_cloexec(io::stdin(), 3)?;
         rustix::net::sockopt::socket_type(&socket)?;
@@ -63,18 +63,18 @@ pub fn serve() -> Result<(), ServeError> {
         rustix::stdio::dup2_stdout(io::stderr())?;
         Ok((socket.into(), shared))
     };
-    let (socket, shared) = connect().map_err(|error| ServeError::NotStarted { error })?;
+    let (socket, shared) = connect().map_err(|error| FmuServeError::NotStarted { error })?;
     // The mapping stays to the end of the process: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
     watch_parent(&socket)?;
     Host { socket, shared, spin: Spin::new(), plans: Vec::new(), messages: Vec::new() }
         .run()
-        .map_err(|error| ServeError::Lost { error })
+        .map_err(|error| FmuServeError::Lost { error })
 }
 
 /// Ends this process when the other has ended, whatever the FMU is doing.
-fn watch_parent(socket: &UnixStream) -> Result<(), ServeError> {
-    let socket = socket.try_clone().map_err(|error| ServeError::Watch { error })?;
+fn watch_parent(socket: &UnixStream) -> Result<(), FmuServeError> {
+    let socket = socket.try_clone().map_err(|error| FmuServeError::Watch { error })?;
     let watch = move || {
         loop {
             // No event is requested: the only one reported is that the other end is closed.
@@ -89,13 +89,13 @@ fn watch_parent(socket: &UnixStream) -> Result<(), ServeError> {
         }
     };
     let thread = std::thread::Builder::new().name("parent".into()).stack_size(64 * 1024);
-    thread.spawn(watch).map(|_| ()).map_err(|error| ServeError::Thread { error })
+    thread.spawn(watch).map(|_| ()).map_err(|error| FmuServeError::Thread { error })
 }
 
 /// An exchange: its groups, and buffers for its numbers.
 struct Plan {
-    set: Vec<Group>,
-    get: Vec<Group>,
+    set: Vec<VariableGroup>,
+    get: Vec<VariableGroup>,
     inputs: Vec<f64>,
     outputs: Vec<f64>,
 }
@@ -106,7 +106,7 @@ struct Host {
     spin: Spin,
     plans: Vec<Plan>,
     /// Messages taken from the FMU, but not requested yet.
-    messages: Vec<Message>,
+    messages: Vec<FmuMessage>,
 }
 
 impl Host {
@@ -143,7 +143,7 @@ impl Host {
                     let folder = Path::new(OsStr::from_bytes(&folder));
                     let mark = Mark(Some(self.shared.word(Word::Function)));
                     return Ok(open_folder(&name, folder, &options, mark).map_err(|e| match e {
-                        OpenError::Instance(error) => error,
+                        FmuOpenError::Instance(error) => error,
                         other => InstanceError::load(&name, other.to_string()),
                     }));
                 }
@@ -262,7 +262,7 @@ impl Host {
             Request::GetBinaries { group } => Answer::Binaries(instance.get_binaries(&group)?),
             Request::Step { time_s, step_s } => Answer::Stepped(instance.step(time_s, step_s)?),
             Request::Plan { set, get } => {
-                let room = |groups: &[Group]| {
+                let room = |groups: &[VariableGroup]| {
                     vec![0.0; groups.iter().map(|group| group.elements).sum::<usize>()]
                 };
                 let (inputs, outputs) = (room(&set), room(&get));
@@ -311,9 +311,9 @@ impl Host {
 /// Encodes the result of a step in the bits of a word.
 fn bits(stepped: &Stepped) -> u64 {
     let outcome = match stepped.outcome {
-        Outcome::Done => 0,
-        Outcome::Early => EARLY,
-        Outcome::Discarded => DISCARDED,
+        StepOutcome::Done => 0,
+        StepOutcome::Early => EARLY,
+        StepOutcome::Discarded => DISCARDED,
     };
     let event = if stepped.event { EVENT } else { 0 };
     outcome | event | if stepped.terminate { TERMINATE } else { 0 }

@@ -1,7 +1,7 @@
 //! Messages between the two processes: postcard, each message after its length. A message of length
 //! zero only wakes the other process.
 
-use super::super::instance::{Group, InstanceError, Message, Options, Stepped, Update};
+use super::super::instance::{VariableGroup, InstanceError, FmuMessage, OpenOptions, Stepped, Update};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
@@ -20,7 +20,7 @@ pub(super) enum Request {
         version: String,
         name: String,
         folder: Vec<u8>,
-        options: Box<Options>,
+        options: Box<OpenOptions>,
     },
     EnterInitialization {
         start_s: f64,
@@ -29,25 +29,25 @@ pub(super) enum Request {
     },
     ExitInitialization,
     Set {
-        group: Group,
+        group: VariableGroup,
         values: Vec<f64>,
     },
     Get {
-        group: Group,
+        group: VariableGroup,
     },
     SetStrings {
-        group: Group,
+        group: VariableGroup,
         values: Vec<String>,
     },
     GetStrings {
-        group: Group,
+        group: VariableGroup,
     },
     SetBinaries {
-        group: Group,
+        group: VariableGroup,
         values: Vec<Vec<u8>>,
     },
     GetBinaries {
-        group: Group,
+        group: VariableGroup,
     },
     Step {
         time_s: f64,
@@ -56,8 +56,8 @@ pub(super) enum Request {
     /// Registers an exchange with these groups; it gets a number for exchanges through shared
     /// memory.
     Plan {
-        set: Vec<Group>,
-        get: Vec<Group>,
+        set: Vec<VariableGroup>,
+        get: Vec<VariableGroup>,
     },
     HandleEvents,
     EnterEventMode,
@@ -87,7 +87,7 @@ pub(super) enum Answer {
     Bytes(Vec<u8>),
     Stepped(Stepped),
     Update(Update),
-    Messages(Vec<Message>),
+    Messages(Vec<FmuMessage>),
 }
 
 /// An answer, or the FMU's error.

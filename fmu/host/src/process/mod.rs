@@ -35,7 +35,7 @@ pub(super) fn open(
     name: &str,
     _: super::archive::Unpacked,
     _: super::description::Description,
-    _: &super::instance::Options,
+    _: &super::instance::OpenOptions,
 ) -> Result<Box<dyn super::instance::Instance>, super::instance::InstanceError> {
     Err(super::instance::InstanceError::unsupported(
         name,

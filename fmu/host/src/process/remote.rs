@@ -3,7 +3,7 @@
 use super::super::archive::Unpacked;
 use super::super::description::Description;
 use super::super::instance::{
-    Group, Instance, InstanceError, Message, Options, Outcome, Stepped, Update,
+    VariableGroup, Instance, InstanceError, FmuMessage, OpenOptions, StepOutcome, Stepped, Update,
 };
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -25,7 +25,7 @@ struct Remote {
     socket: UnixStream,
     shared: Shared,
     spin: Spin,
-    plans: Vec<(Vec<Group>, Vec<Group>)>,
+    plans: Vec<(Vec<VariableGroup>, Vec<VariableGroup>)>,
     start_limit: Duration,
     time_limit: Duration,
     /// Dropped after the process.
@@ -37,7 +37,7 @@ pub(crate) fn open(
     name: &str,
     folder: Unpacked,
     description: Description,
-    options: &Options,
+    options: &OpenOptions,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     let cannot = |e: io::Error| InstanceError::Process {
         fmu: name.into(),
@@ -177,11 +177,11 @@ impl Remote {
     }
 
     /// Number of an exchange with these groups; `None`: it doesn't go through shared memory.
-    fn plan(&mut self, set: &[Group], get: &[Group]) -> Result<Option<usize>, InstanceError> {
+    fn plan(&mut self, set: &[VariableGroup], get: &[VariableGroup]) -> Result<Option<usize>, InstanceError> {
         if let Some(plan) = self.plans.iter().position(|(a, b)| a == set && b == get) {
             return Ok(Some(plan));
         }
-        let elements = |groups: &[Group]| -> usize {
+        let elements = |groups: &[VariableGroup]| -> usize {
             groups.iter().map(|group| group.elements).fold(0, usize::saturating_add)
         };
         if self.plans.len() == PLANS_MAX
@@ -232,15 +232,15 @@ impl Instance for Remote {
 
     fn exchange(
         &mut self,
-        set: &[Group],
+        set: &[VariableGroup],
         inputs: &[f64],
         time_s: f64,
         step_s: f64,
-        get: &[Group],
+        get: &[VariableGroup],
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
         self.watch.gone()?;
-        let count = |groups: &[Group]| groups.iter().map(|group| group.elements).sum::<usize>();
+        let count = |groups: &[VariableGroup]| groups.iter().map(|group| group.elements).sum::<usize>();
         if inputs.len() != count(set) {
             return Err(InstanceError::numbers(&self.name, set, inputs.len()));
         }
@@ -276,11 +276,11 @@ impl Instance for Remote {
         Ok(Stepped {
             time_s: f64::from_bits(self.shared.word(Word::Reached).load(Ordering::Relaxed)),
             outcome: if bits & DISCARDED != 0 {
-                Outcome::Discarded
+                StepOutcome::Discarded
             } else if bits & EARLY != 0 {
-                Outcome::Early
+                StepOutcome::Early
             } else {
-                Outcome::Done
+                StepOutcome::Done
             },
             event: bits & EVENT != 0,
             terminate: bits & TERMINATE != 0,
@@ -300,11 +300,11 @@ impl Instance for Remote {
         self.truth(&Request::ExitInitialization)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         self.done(&Request::Set { group: group.clone(), values: values.to_vec() })
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         if values.len() != group.elements {
             let groups = std::slice::from_ref(group);
             return Err(InstanceError::numbers(&self.name, groups, values.len()));
@@ -318,22 +318,22 @@ impl Instance for Remote {
         }
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         self.done(&Request::SetStrings { group: group.clone(), values: values.to_vec() })
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         match self.ask(&Request::GetStrings { group: group.clone() })? {
             Answer::Strings(strings) => Ok(strings),
             _ => self.confused(),
         }
     }
 
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
         self.done(&Request::SetBinaries { group: group.clone(), values: values.to_vec() })
     }
 
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         match self.ask(&Request::GetBinaries { group: group.clone() })? {
             Answer::Binaries(binaries) => Ok(binaries),
             _ => self.confused(),
@@ -398,7 +398,7 @@ impl Instance for Remote {
     }
 
     /// Returns no messages from a process that has ended.
-    fn messages(&mut self) -> Vec<Message> {
+    fn messages(&mut self) -> Vec<FmuMessage> {
         if self.watch.gone().is_err()
             || self.shared.word(Word::MessagesWait).load(Ordering::Relaxed) == 0
         {
@@ -414,11 +414,11 @@ impl Instance for Remote {
 /// Makes an exchange whose numbers don't go through shared memory.
 fn by_parts(
     remote: &mut Remote,
-    set: &[Group],
+    set: &[VariableGroup],
     mut inputs: &[f64],
     time_s: f64,
     step_s: f64,
-    get: &[Group],
+    get: &[VariableGroup],
     mut outputs: &mut [f64],
 ) -> Result<Stepped, InstanceError> {
     for group in set {

@@ -1,7 +1,7 @@
 //! The child process: its start, its time limit, and its end.
 
 use super::super::instance::call::{NOWHERE, function_name};
-use super::super::instance::{InstanceError, Options};
+use super::super::instance::{InstanceError, OpenOptions};
 use super::shared::{Shared, Word};
 use rustix::process::{Pid, Signal, kill_process_group};
 use std::io;
@@ -28,7 +28,7 @@ impl Watch {
     /// Starts the program that hosts the FMU.
     pub(super) fn start(
         name: &str,
-        options: &Options,
+        options: &OpenOptions,
         socket: UnixStream,
         memory: OwnedFd,
     ) -> Result<Self, InstanceError> {

@@ -4,7 +4,7 @@
 
 use super::instance::{Instance, Options};
 use super::log::{Message, Outlet};
-use super::mode::{Mode, Refusal, Standard};
+use super::mode::{Mode, Refusal, ServedStandard};
 use super::models::{self, Maker};
 use super::registry::{INSTANCES_MAX, NoInstance, Registry};
 use core::ffi::c_void;
@@ -21,7 +21,7 @@ static REGISTRY: Registry<Instance> = Registry::new();
 #[inline]
 pub(super) fn call(
     handle: *mut c_void,
-    standard: Standard,
+    standard: ServedStandard,
     function: &'static str,
     work: impl FnOnce(&mut Instance) -> Result<Status, Refusal>,
 ) -> Status {
@@ -99,7 +99,7 @@ fn died(
 
 /// Makes an instance; null: the reason has been logged.
 pub(super) fn instantiate(
-    standard: Standard,
+    standard: ServedStandard,
     function: &'static str,
     name: Option<String>,
     token: Option<String>,
@@ -122,7 +122,7 @@ pub(super) fn instantiate(
     unwound.unwrap_or(core::ptr::null_mut())
 }
 
-fn model(standard: Standard, name: &str, token: Option<String>) -> Result<&'static Maker, String> {
+fn model(standard: ServedStandard, name: &str, token: Option<String>) -> Result<&'static Maker, String> {
     if name.trim().is_empty() {
         return Err("the instance has no name".to_owned());
     }
@@ -147,7 +147,7 @@ pub(super) fn no_instance(function: &'static str, mut outlet: Outlet, reason: &s
 }
 
 /// Ends an instance; a null or foreign handle, or an instance in use, is ignored.
-pub(super) fn free(handle: *mut c_void, standard: Standard) {
+pub(super) fn free(handle: *mut c_void, standard: ServedStandard) {
     // A handle of the other standard is treated as foreign.
     let own = REGISTRY.with(handle, |instance| instance.standard() == standard);
     if own == Ok(true) {

@@ -7,7 +7,7 @@ use super::access::Arrays;
 use super::call::{call, free, instantiate, no_instance, ok, put};
 use super::instance::{Instance, Options};
 use super::log::{self, Callback, Outlet};
-use super::mode::{self, Modes, Refusal, Standard};
+use super::mode::{self, Modes, Refusal, ServedStandard};
 use super::types::{Boolean as BooleanOf, Integer2, Real2, Type};
 use core::ffi::{CStr, c_void};
 use octant_fmi::fmi2::{
@@ -25,7 +25,7 @@ fn enter(
     function: &'static str,
     work: impl FnOnce(&mut Instance) -> Result<Status, Refusal>,
 ) -> Status {
-    call(handle, Standard::Fmi2, function, work)
+    call(handle, ServedStandard::Fmi2, function, work)
 }
 
 /// Answers a function that is exported but that no model supports.
@@ -116,12 +116,12 @@ export! {
         // SAFETY: null, or strings.
         let (name, guid) = unsafe { (log::string(name), log::string(guid)) };
         let options = Options::default();
-        instantiate(Standard::Fmi2, function, name, guid, options, outlet, logging != FALSE)
+        instantiate(ServedStandard::Fmi2, function, name, guid, options, outlet, logging != FALSE)
     }
 
     /// Ends an instance.
     FreeInstance: fn fmi2FreeInstance(c: Component) {
-        free(c, Standard::Fmi2);
+        free(c, ServedStandard::Fmi2);
     }
 
     /// Switches categories of messages.
@@ -196,7 +196,7 @@ export! {
     GetString: fn fmi2GetString(
         c: Component, references: *const ValueReference, count: usize, _values: *mut String,
     ) -> Status {
-        no_variables(c, "fmi2GetString", mode::get(Standard::Fmi2), references, count)
+        no_variables(c, "fmi2GetString", mode::get(ServedStandard::Fmi2), references, count)
     }
 
     /// Sets Reals; counts are whole numbers.

@@ -16,7 +16,7 @@ pub use unsupported::*;
 use super::call::{free, instantiate, no_instance, ok, put};
 use super::instance::Options;
 use super::log::{self, Callback, Outlet};
-use super::mode::{self, Mode, Refusal, Standard};
+use super::mode::{self, Mode, Refusal, ServedStandard};
 use core::ffi::CStr;
 use entry::{FALSE, TRUE, enter};
 use octant_fmi::fmi3::{
@@ -82,7 +82,7 @@ export! {
             early_return_allowed: early_return_allowed != FALSE,
             intermediate_update,
         };
-        instantiate(Standard::Fmi3, function, name, token, options, outlet, logging != FALSE)
+        instantiate(ServedStandard::Fmi3, function, name, token, options, outlet, logging != FALSE)
     }
 
     /// Fails: there is no scheduled execution.
@@ -104,7 +104,7 @@ export! {
 
     /// Ends an instance.
     FreeInstance: fn fmi3FreeInstance(i: Handle) {
-        free(i, Standard::Fmi3);
+        free(i, ServedStandard::Fmi3);
     }
 
     /// Switches categories of messages.

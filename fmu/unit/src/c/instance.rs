@@ -2,7 +2,7 @@
 
 use super::layout::{Layout, Slot};
 use super::log::{Log, Outlet};
-use super::mode::{self, Mode, Modes, Refusal, Standard};
+use super::mode::{self, Mode, Modes, Refusal, ServedStandard};
 use super::models::Maker;
 use super::run::{Experiment, Run};
 use super::snapshots::Snapshots;
@@ -24,7 +24,7 @@ pub(super) struct Options {
 /// One instance.
 #[derive(Debug)]
 pub(super) struct Instance {
-    standard: Standard,
+    standard: ServedStandard,
     maker: &'static Maker,
     layout: &'static Layout,
     pub(super) options: Options,
@@ -38,7 +38,7 @@ pub(super) struct Instance {
 
 impl Instance {
     pub(super) fn new(
-        standard: Standard,
+        standard: ServedStandard,
         maker: &'static Maker,
         options: Options,
         outlet: Outlet,
@@ -52,7 +52,7 @@ impl Instance {
     }
 
     #[inline]
-    pub(super) fn standard(&self) -> Standard {
+    pub(super) fn standard(&self) -> ServedStandard {
         self.standard
     }
 

@@ -1,6 +1,6 @@
 //! Data of the slots for getting and setting, made from a model's table once.
 
-use crate::table::{Causality, Enumeration, Kind, Model, Ticks, Variability};
+use crate::table::{DeclaredCausality, DeclaredEnumeration, ElementType, Model, Ticks, DeclaredVariability};
 
 /// Largest number up to which all whole numbers are exact as f64.
 pub(super) const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
@@ -45,7 +45,7 @@ pub(super) struct Slot {
     /// Range; for Reals without one in the table, the largest numbers of f64.
     pub min: f64,
     pub max: f64,
-    pub enumeration: Option<&'static Enumeration>,
+    pub enumeration: Option<&'static DeclaredEnumeration>,
 }
 
 /// All slots of a model.
@@ -92,59 +92,59 @@ impl Layout {
         let (mut slots, mut outputs) = (vec![time], Vec::new());
         for (first, variable) in model.with_slots() {
             let cell = match variable.kind {
-                Kind::Real => Cell::Real,
-                Kind::Count => Cell::Count,
-                Kind::Integer => Cell::Integer,
-                Kind::Enumeration(_) => Cell::Enumeration,
-                Kind::Boolean => Cell::Boolean,
-                Kind::Binary(_) => Cell::Binary,
-                Kind::Clock(_) => Cell::Clock,
+                ElementType::Real => Cell::Real,
+                ElementType::Count => Cell::Count,
+                ElementType::Integer => Cell::Integer,
+                ElementType::Enumeration(_) => Cell::Enumeration,
+                ElementType::Boolean => Cell::Boolean,
+                ElementType::Binary(_) => Cell::Binary,
+                ElementType::Clock(_) => Cell::Clock,
             };
             let slot = Slot {
                 cell,
                 settable: match (variable.causality, variable.variability) {
-                    (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => {
+                    (DeclaredCausality::Input, _) | (DeclaredCausality::Parameter, DeclaredVariability::Tunable) => {
                         Settable::Always
                     }
-                    (Causality::Parameter, _) => Settable::Fixed,
+                    (DeclaredCausality::Parameter, _) => Settable::Fixed,
                     _ => Settable::Never,
                 },
                 any: variable.non_finite,
                 computed: matches!(
                     variable.causality,
-                    Causality::Output | Causality::Local | Causality::CalculatedParameter
+                    DeclaredCausality::Output | DeclaredCausality::Local | DeclaredCausality::CalculatedParameter
                 ),
                 elements: 0,
                 min: variable.min.unwrap_or(-f64::MAX),
                 max: variable.max.unwrap_or(f64::MAX),
                 enumeration: match variable.kind {
-                    Kind::Enumeration(of) => Some(of),
+                    ElementType::Enumeration(of) => Some(of),
                     _ => None,
                 },
             };
             slots.extend(core::iter::repeat_n(slot, variable.slots()));
             slots[first].elements = variable.slots() as u16;
-            if variable.causality == Causality::Output && !variable.is_clocked() {
+            if variable.causality == DeclaredCausality::Output && !variable.is_clocked() {
                 outputs.extend(first as u32..(first + variable.slots()) as u32);
             }
         }
         let clocks: Box<[(&str, Clock)]> = model
             .with_slots()
             .filter_map(|(slot, variable)| match variable.kind {
-                Kind::Clock(ticks) => Some((variable.name, Clock { slot: slot as u32, ticks })),
+                ElementType::Clock(ticks) => Some((variable.name, Clock { slot: slot as u32, ticks })),
                 _ => None,
             })
             .collect();
         let binaries = model
             .with_slots()
             .filter_map(|(slot, variable)| {
-                let Kind::Binary(binary) = variable.kind else { return None };
+                let ElementType::Binary(binary) = variable.kind else { return None };
                 let clock = clocks.iter().position(|(name, _)| *name == binary.clock)?;
                 Some(ClockedBinary {
                     slot: slot as u32,
                     max_bytes: binary.max_bytes,
                     clock,
-                    is_input: variable.causality == Causality::Input,
+                    is_input: variable.causality == DeclaredCausality::Input,
                 })
             })
             .collect();
@@ -188,8 +188,8 @@ mod tests {
         let outputs: usize = MODEL
             .variables
             .iter()
-            .filter(|variable| variable.causality == Causality::Output)
-            .map(crate::table::Variable::slots)
+            .filter(|variable| variable.causality == DeclaredCausality::Output)
+            .map(crate::table::DeclaredVariable::slots)
             .sum();
         assert_eq!(layout.outputs.len(), outputs);
     }

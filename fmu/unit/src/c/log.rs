@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code, reason = "callbacks of the importer are called")]
 
-use super::mode::Standard;
+use super::mode::ServedStandard;
 use core::ffi::{CStr, c_void};
 use octant_fmi::fmi2::{self, DISCARD, ERROR, OK, Status, WARNING};
 use octant_fmi::fmi3;
@@ -63,14 +63,14 @@ pub(super) struct Message {
 /// Messages of an instance, and the categories wanted.
 #[derive(Debug)]
 pub(super) struct Log {
-    standard: Standard,
+    standard: ServedStandard,
     wanted: [bool; CATEGORIES.len()],
     heard: bool,
     waiting: Vec<Message>,
 }
 
 impl Log {
-    pub(super) fn new(standard: Standard, on: bool, heard: bool) -> Self {
+    pub(super) fn new(standard: ServedStandard, on: bool, heard: bool) -> Self {
         Self { standard, wanted: [on; CATEGORIES.len()], heard, waiting: Vec::new() }
     }
 
@@ -78,7 +78,7 @@ impl Log {
     #[inline]
     pub(super) fn wants(&self, status: Status) -> bool {
         // FMI 2.0 switches debugging on and off, and gets warnings and errors in any case.
-        let always = self.standard == Standard::Fmi2 && status != OK && status != DISCARD;
+        let always = self.standard == ServedStandard::Fmi2 && status != OK && status != DISCARD;
         self.heard && (always || self.wanted[category(status)])
     }
 
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn categories_are_switched_by_name() {
-        let mut log = Log::new(Standard::Fmi3, false, true);
+        let mut log = Log::new(ServedStandard::Fmi3, false, true);
         assert!(CATEGORIES.iter().all(|_| !log.wants(ERROR)));
         let names = ["logStatusError".to_owned(), "logNonsense".to_owned()];
         assert_eq!(log.switch(true, Some(&names)), ["logNonsense"]);
@@ -192,10 +192,10 @@ mod tests {
 
     #[test]
     fn fmi_2_tells_errors_in_any_case_and_nobody_hears_without_a_callback() {
-        let log = Log::new(Standard::Fmi2, false, true);
+        let log = Log::new(ServedStandard::Fmi2, false, true);
         assert!(log.wants(ERROR) && log.wants(WARNING) && log.wants(FATAL));
         assert!(!log.wants(OK) && !log.wants(DISCARD));
-        let mut deaf = Log::new(Standard::Fmi2, true, false);
+        let mut deaf = Log::new(ServedStandard::Fmi2, true, false);
         deaf.say(ERROR, "unheard".to_owned());
         assert!(deaf.is_silent());
     }

@@ -59,5 +59,5 @@ mod token;
 mod types;
 
 pub use log::CATEGORIES;
-pub use mode::Standard;
+pub use mode::ServedStandard;
 pub use token::token;

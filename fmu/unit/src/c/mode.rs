@@ -7,7 +7,7 @@ use octant_fmi::fmi2::Status;
 
 /// A standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standard {
+pub enum ServedStandard {
     /// FMI 2.0.
     Fmi2,
     /// FMI 3.0.
@@ -111,10 +111,10 @@ pub(super) const LOGGING: Modes = Modes::of(&[
 ]);
 
 /// Modes for reading: FMI 3.0 allows reading start values before initialization, FMI 2.0 doesn't.
-pub(super) const fn get(standard: Standard) -> Modes {
+pub(super) const fn get(standard: ServedStandard) -> Modes {
     match standard {
-        Standard::Fmi2 => Modes::of(&[Initialization, Step, StepFailed, Terminated, Error]),
-        Standard::Fmi3 => ALIVE,
+        ServedStandard::Fmi2 => Modes::of(&[Initialization, Step, StepFailed, Terminated, Error]),
+        ServedStandard::Fmi3 => ALIVE,
     }
 }
 

@@ -1,21 +1,21 @@
 //! The models in this library.
 
 use super::layout::Layout;
-use super::mode::Standard;
+use super::mode::ServedStandard;
 use super::token::token;
 use crate::calibrator::Calibrator;
 use crate::calibrator_can::CalibratorCan;
-use crate::component::{Component, Network};
+use crate::component::{ModelComponent, Network};
 use crate::plant::Plant;
 use crate::table::Model;
-use crate::values::Values;
+use crate::values::CellValues;
 use std::sync::OnceLock;
 
 /// A component of unknown type.
 pub(super) trait AnyComponent: Send + core::fmt::Debug {
-    fn step(&mut self, values: &mut Values) -> Result<(), String>;
+    fn step(&mut self, values: &mut CellValues) -> Result<(), String>;
     fn period_ns(&self) -> u64;
-    fn terminate(&mut self, values: &mut Values);
+    fn terminate(&mut self, values: &mut CellValues);
     fn remark(&mut self) -> Option<String>;
     fn network(&mut self) -> Option<&mut dyn Network>;
     fn save(&self, bytes: &mut Vec<u8>);
@@ -25,14 +25,14 @@ pub(super) trait AnyComponent: Send + core::fmt::Debug {
 /// Adapter that adds the optional parts of a component.
 struct Boxed<C>(C);
 
-impl<C: Component> core::fmt::Debug for Boxed<C> {
+impl<C: ModelComponent> core::fmt::Debug for Boxed<C> {
     fn fmt(&self, to: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         to.write_str(C::MODEL.name)
     }
 }
 
-impl<C: Component> AnyComponent for Boxed<C> {
-    fn step(&mut self, values: &mut Values) -> Result<(), String> {
+impl<C: ModelComponent> AnyComponent for Boxed<C> {
+    fn step(&mut self, values: &mut CellValues) -> Result<(), String> {
         self.0.step(values).map_err(|error| error.to_string())
     }
 
@@ -40,7 +40,7 @@ impl<C: Component> AnyComponent for Boxed<C> {
         self.0.period_ns()
     }
 
-    fn terminate(&mut self, values: &mut Values) {
+    fn terminate(&mut self, values: &mut CellValues) {
         self.0.terminate(values);
     }
 
@@ -63,7 +63,7 @@ impl<C: Component> AnyComponent for Boxed<C> {
 
 type Made = Result<Box<dyn AnyComponent>, String>;
 
-fn boxed<C: Component>(made: Result<C, C::Error>) -> Made {
+fn boxed<C: ModelComponent>(made: Result<C, C::Error>) -> Made {
     let component = made.map_err(|error| error.to_string())?;
     Ok(Box::new(Boxed(component)))
 }
@@ -72,14 +72,14 @@ fn boxed<C: Component>(made: Result<C, C::Error>) -> Made {
 #[derive(Debug)]
 pub(super) struct Maker {
     pub model: &'static Model,
-    pub initialize: fn(&mut Values) -> Made,
-    pub load: fn(&[u8], &Values) -> Made,
+    pub initialize: fn(&mut CellValues) -> Made,
+    pub load: fn(&[u8], &CellValues) -> Made,
     layout: OnceLock<Layout>,
     tokens: OnceLock<[String; 2]>,
 }
 
 impl Maker {
-    pub(super) const fn of<C: Component>() -> Self {
+    pub(super) const fn of<C: ModelComponent>() -> Self {
         Self {
             model: C::MODEL,
             initialize: |values| boxed(C::initialize(values)),
@@ -93,9 +93,9 @@ impl Maker {
         self.layout.get_or_init(|| Layout::of(self.model))
     }
 
-    pub(super) fn token(&self, standard: Standard) -> &str {
+    pub(super) fn token(&self, standard: ServedStandard) -> &str {
         let tokens = self.tokens.get_or_init(|| {
-            [Standard::Fmi2, Standard::Fmi3].map(|standard| token(self.model, standard))
+            [ServedStandard::Fmi2, ServedStandard::Fmi3].map(|standard| token(self.model, standard))
         });
         &tokens[standard as usize]
     }
@@ -106,7 +106,7 @@ static MAKERS: [Maker; 3] =
     [Maker::of::<Calibrator>(), Maker::of::<Plant>(), Maker::of::<CalibratorCan>()];
 
 /// Finds the model with this token.
-pub(super) fn find(standard: Standard, token: &str) -> Option<&'static Maker> {
+pub(super) fn find(standard: ServedStandard, token: &str) -> Option<&'static Maker> {
     let found = MAKERS.iter().find(|maker| maker.token(standard) == token)?;
-    (standard == Standard::Fmi3 || !found.model.needs_clocks()).then_some(found)
+    (standard == ServedStandard::Fmi3 || !found.model.needs_clocks()).then_some(found)
 }

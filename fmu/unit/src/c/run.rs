@@ -5,7 +5,7 @@ use super::mode::Mode;
 use super::models::AnyComponent;
 use super::ticks::Clocked;
 use crate::table::Model;
-use crate::values::Values;
+use crate::values::CellValues;
 
 /// Simulation as announced by the importer.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,7 +21,7 @@ pub(super) struct Experiment {
 pub(super) struct Run {
     pub mode: Mode,
     pub experiment: Experiment,
-    pub values: Values,
+    pub values: CellValues,
     /// Exists from the end of initialization on, and during it once outputs were requested.
     pub component: Option<Box<dyn AnyComponent>>,
     /// True if values have changed since the component was made.
@@ -38,7 +38,7 @@ impl Run {
             clocked: Clocked::new(layout),
             mode: Mode::Instantiated,
             experiment: Experiment::default(),
-            values: Values::new(model),
+            values: CellValues::new(model),
             component: None,
             stale: true,
             tick: 0,

@@ -7,13 +7,13 @@ use super::instance::Instance;
 use super::mode::{self, Mode, Refusal};
 use super::run::{Experiment, Run};
 use super::ticks::Clocked;
-use crate::values::Values;
+use crate::values::CellValues;
 use core::ffi::c_void;
-use octant_state::{Format, StateError, check_count};
+use octant_state::{StateFormat, StateError, check_count};
 
 /// Format of an FMU state as bytes: token, mode, experiment, time, the cells of all variables, and
 /// the bytes of the component if there is one.
-const FORMAT: Format = Format { magic: "OCTFMUST", version: 1, what: "the state of an FMU" };
+const FORMAT: StateFormat = StateFormat { magic: "OCTFMUST", version: 1, what: "the state of an FMU" };
 
 impl Instance {
     /// Stores the present state: as a new one if `name` points to a null pointer, else in place of
@@ -167,7 +167,7 @@ impl Instance {
         }
         from.end().map_err(said)?;
 
-        let mut values = Values::new(self.model());
+        let mut values = CellValues::new(self.model());
         if cells.len() != values.cells().len() {
             let (found, expected) = (cells.len(), values.cells().len());
             return Err(format!("they have {found} values, the model has {expected}"));

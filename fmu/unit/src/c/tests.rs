@@ -7,7 +7,7 @@ use super::fmi2::*;
 use super::fmi3::*;
 use super::instance::{Instance, Options};
 use super::log::{Callback, Outlet};
-use super::mode::Standard;
+use super::mode::ServedStandard;
 use core::ffi::{CStr, c_char, c_void};
 use core::ptr::{from_mut, null, null_mut};
 use counter::*;
@@ -32,7 +32,7 @@ unsafe extern "C" fn hear(
     heard.lock().unwrap().push((status, owned(category), owned(text)));
 }
 
-fn new(standard: Standard, options: Options, environment: *mut c_void) -> *mut c_void {
+fn new(standard: ServedStandard, options: Options, environment: *mut c_void) -> *mut c_void {
     let callback = Some(Callback::Fmi3(hear)).filter(|_| !environment.is_null());
     let outlet = Outlet { name: CString::default(), callback, environment };
     insert(Instance::new(standard, &MAKER, options, outlet, true)).unwrap()
@@ -43,7 +43,7 @@ fn environment(heard: &Heard) -> *mut c_void {
 }
 
 fn stepping2() -> *mut c_void {
-    let c = new(Standard::Fmi2, Options::default(), null_mut());
+    let c = new(ServedStandard::Fmi2, Options::default(), null_mut());
     // SAFETY: a handle and no pointers.
     unsafe {
         assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), OK);
@@ -54,7 +54,7 @@ fn stepping2() -> *mut c_void {
 }
 
 fn stepping3(options: Options, environment: *mut c_void) -> *mut c_void {
-    let i = new(Standard::Fmi3, options, environment);
+    let i = new(ServedStandard::Fmi3, options, environment);
     // SAFETY: a handle and no pointers.
     unsafe {
         assert_eq!(fmi3EnterInitializationMode(i, 0, 0.0, 0.0, 0, 0.0), OK);
@@ -261,7 +261,7 @@ fn with_callback(between_periods: &mut Between) -> *mut c_void {
         callback: None,
         environment: from_mut(between_periods).cast(),
     };
-    let i = insert(Instance::new(Standard::Fmi3, &MAKER, options, outlet, false)).unwrap();
+    let i = insert(Instance::new(ServedStandard::Fmi3, &MAKER, options, outlet, false)).unwrap();
     between_periods.instance = i;
     // SAFETY: a handle.
     unsafe {
@@ -382,7 +382,7 @@ fn what_can_be_set_depends_on_the_variable_and_on_the_time() {
 
 #[test]
 fn outputs_of_the_initialization_follow_from_the_parameters() {
-    let c = new(Standard::Fmi2, Options::default(), null_mut());
+    let c = new(ServedStandard::Fmi2, Options::default(), null_mut());
     let mut value = f64::NAN;
     // SAFETY: one reference, one value each.
     unsafe {
@@ -406,7 +406,7 @@ fn outputs_of_the_initialization_follow_from_the_parameters() {
 
 #[test]
 fn dependencies_are_those_of_the_table() {
-    let i = new(Standard::Fmi3, Options::default(), null_mut());
+    let i = new(ServedStandard::Fmi3, Options::default(), null_mut());
     let count = |slot: usize| {
         let mut count = 99;
         // SAFETY: a place.
@@ -433,7 +433,7 @@ fn dependencies_are_those_of_the_table() {
 
 #[test]
 fn states_as_bytes_go_on_in_another_instance() {
-    let (c, other) = (stepping2(), new(Standard::Fmi2, Options::default(), null_mut()));
+    let (c, other) = (stepping2(), new(ServedStandard::Fmi2, Options::default(), null_mut()));
     let (mut state, mut copy, mut size) = (null_mut(), null_mut(), 0);
     // SAFETY: handles, places and bytes.
     unsafe {
@@ -460,7 +460,7 @@ fn states_as_bytes_go_on_in_another_instance() {
             bytes[i] ^= 1;
         }
         assert_eq!(fmi2DeSerializeFMUstate(c, bytes.as_ptr(), size - 1, &mut copy), ERROR);
-        let three = new(Standard::Fmi3, Options::default(), null_mut());
+        let three = new(ServedStandard::Fmi3, Options::default(), null_mut());
         assert_eq!(fmi3DeserializeFMUState(three, bytes.as_ptr().cast(), size, &mut copy), ERROR);
         for c in [c, other] {
             fmi2FreeInstance(c);

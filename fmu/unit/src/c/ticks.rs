@@ -1,7 +1,7 @@
 //! Clocks that tick, and the values of binary variables.
 
 use super::layout::Layout;
-use octant_state::{Reader, State, StateError, Writer};
+use octant_state::{StateReader, State, StateError, Writer};
 
 /// Clocks and binary variables of a run.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,7 @@ impl State for Clocked {
         to.value("announced", &self.announced_s);
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.ticking = from.value("ticking")?;
         self.binaries = from.value("binaries")?;
         self.taken = from.value("taken")?;

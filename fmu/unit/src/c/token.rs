@@ -1,6 +1,6 @@
 //! Token of a model, which links a description to the library.
 
-use super::mode::Standard;
+use super::mode::ServedStandard;
 use crate::table::Model;
 use core::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use core::fmt::Write as _;
 /// follows from the text of the model's table, so that a library refuses descriptions of other
 /// variables.
 #[must_use]
-pub fn token(model: &Model, standard: Standard) -> String {
+pub fn token(model: &Model, standard: ServedStandard) -> String {
     let version = env!("CARGO_PKG_VERSION");
     let mut text = String::new();
     // Writing to a String can't fail. Debug prints every field, and floats with all their digits.
@@ -45,10 +45,10 @@ mod tests {
 
     #[test]
     fn each_standard_and_each_table_has_its_own() {
-        let [two, three] = [Standard::Fmi2, Standard::Fmi3].map(|of| token(&MODEL, of));
+        let [two, three] = [ServedStandard::Fmi2, ServedStandard::Fmi3].map(|of| token(&MODEL, of));
         assert_ne!(two, three);
         assert_eq!(two.len(), 38);
         let other = Model { variables: &MODEL.variables[1..], ..MODEL };
-        assert_ne!(token(&other, Standard::Fmi2), two);
+        assert_ne!(token(&other, ServedStandard::Fmi2), two);
     }
 }

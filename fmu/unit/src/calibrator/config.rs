@@ -4,12 +4,12 @@ mod field;
 mod screening;
 mod sequence;
 
-use super::error::ValueError;
+use super::error::CalibratorValueError;
 use super::table::{MODEL, slot};
-use crate::values::Values;
+use crate::values::CellValues;
 use field::{label, no_item, optional, put_optional};
 use nalgebra::{Quaternion, Unit};
-use octant_calibration::Config;
+use octant_calibration::CoreConfig;
 use octant_calibration::config::*;
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_sample::Parameters;
@@ -23,15 +23,15 @@ const NORM_TOLERANCE: f64 = 1e-6;
 /// each element. Numbers unchanged, counts as whole numbers (exact up to 2⁵³), enumerations by
 /// their values, Booleans as 0 and 1.
 #[must_use]
-pub fn start_values(config: &Config) -> Vec<(&'static str, Vec<f64>)> {
-    let mut values = Values::new(&MODEL);
+pub fn start_values(config: &CoreConfig) -> Vec<(&'static str, Vec<f64>)> {
+    let mut values = CellValues::new(&MODEL);
     put(config, &mut values);
     values.parameters(&MODEL)
 }
 
 /// Sets the parameters to a configuration. Parameters that it doesn't use keep their values.
-pub fn put(config: &Config, values: &mut Values) {
-    let Config {
+pub fn put(config: &CoreConfig, values: &mut CellValues) {
+    let CoreConfig {
         sample_period_ns,
         site,
         alignment,
@@ -79,8 +79,8 @@ pub fn put(config: &Config, values: &mut Values) {
 /// # Errors
 /// If a sequence or a quaternion is invalid: the variable, the value found and the values expected.
 /// The core reports other contradictions.
-pub fn config(values: &Values) -> Result<Config, ValueError> {
-    Ok(Config {
+pub fn config(values: &CellValues) -> Result<CoreConfig, CalibratorValueError> {
+    Ok(CoreConfig {
         sample_period_ns: values.count(slot::PERIOD),
         site: Site {
             latitude_rad: values.real(slot::SITE_LATITUDE),
@@ -112,7 +112,7 @@ pub fn config(values: &Values) -> Result<Config, ValueError> {
     })
 }
 
-fn put_calibration(calibration: &Calibration, values: &mut Values) {
+fn put_calibration(calibration: &Calibration, values: &mut CellValues) {
     let Calibration { sequence, duration_s, estimator } = calibration;
     sequence::CALIBRATION.put(sequence, values);
     values.set_real(slot::CALIBRATION_DURATION, *duration_s);
@@ -134,7 +134,7 @@ fn put_calibration(calibration: &Calibration, values: &mut Values) {
     values.set_integer(slot::ESTIMATOR, choice);
 }
 
-fn calibration(values: &Values) -> Result<Calibration, ValueError> {
+fn calibration(values: &CellValues) -> Result<Calibration, CalibratorValueError> {
     Ok(Calibration {
         sequence: sequence::CALIBRATION.get(values)?,
         duration_s: values.real(slot::CALIBRATION_DURATION),
@@ -150,7 +150,7 @@ fn calibration(values: &Values) -> Result<Calibration, ValueError> {
     })
 }
 
-fn put_kalman(kalman: &Kalman, values: &mut Values) {
+fn put_kalman(kalman: &Kalman, values: &mut CellValues) {
     let Kalman {
         error_model,
         estimated,
@@ -186,7 +186,7 @@ fn put_kalman(kalman: &Kalman, values: &mut Values) {
     values.set_real(slot::REFUSE_ABOVE, *refuse_above_mean_nis);
 }
 
-fn kalman(values: &Values) -> Result<Kalman, ValueError> {
+fn kalman(values: &CellValues) -> Result<Kalman, CalibratorValueError> {
     Ok(Kalman {
         error_model: match values.integer(slot::ERROR_MODEL) {
             0 => ErrorModel::Phi,
@@ -210,7 +210,7 @@ fn kalman(values: &Values) -> Result<Kalman, ValueError> {
     })
 }
 
-fn put_least_squares(settings: &LeastSquares, values: &mut Values) {
+fn put_least_squares(settings: &LeastSquares, values: &mut CellValues) {
     let LeastSquares { gravity_mps2, gyro, intervals } = settings;
     put_optional(*gravity_mps2, slot::GRAVITY_GIVEN, slot::GRAVITY, values);
     let choice = match gyro {
@@ -231,7 +231,7 @@ fn put_least_squares(settings: &LeastSquares, values: &mut Values) {
     values.set_integer(slot::INTERVALS, choice);
 }
 
-fn least_squares(values: &Values) -> Result<LeastSquares, ValueError> {
+fn least_squares(values: &CellValues) -> Result<LeastSquares, CalibratorValueError> {
     Ok(LeastSquares {
         gravity_mps2: optional(slot::GRAVITY_GIVEN, slot::GRAVITY, values),
         gyro: match values.integer(slot::GYRO_REFERENCE) {
@@ -252,7 +252,7 @@ fn least_squares(values: &Values) -> Result<LeastSquares, ValueError> {
     })
 }
 
-fn put_navigation(plan: &NavigationPlan, values: &mut Values) {
+fn put_navigation(plan: &NavigationPlan, values: &mut CellValues) {
     let NavigationPlan { duration_s, rotation, dwell_s } = plan;
     values.set_boolean(slot::NAVIGATION_ENDLESS, duration_s.is_none());
     if let Some(duration_s) = duration_s {
@@ -262,7 +262,7 @@ fn put_navigation(plan: &NavigationPlan, values: &mut Values) {
     values.set_real(slot::NAVIGATION_DWELL, *dwell_s);
 }
 
-fn navigation(values: &Values) -> Result<NavigationPlan, ValueError> {
+fn navigation(values: &CellValues) -> Result<NavigationPlan, CalibratorValueError> {
     Ok(NavigationPlan {
         duration_s: (!values.boolean(slot::NAVIGATION_ENDLESS))
             .then(|| values.real(slot::NAVIGATION_DURATION)),
@@ -271,18 +271,18 @@ fn navigation(values: &Values) -> Result<NavigationPlan, ValueError> {
     })
 }
 
-fn put_quaternion(q: &UnitQuaternion<f64>, slot: usize, values: &mut Values) {
+fn put_quaternion(q: &UnitQuaternion<f64>, slot: usize, values: &mut CellValues) {
     values.set_reals(slot, &[q.w, q.i, q.j, q.k]);
 }
 
 /// Without normalization, which would change its last bits.
-fn quaternion(slot: usize, values: &Values) -> Result<UnitQuaternion<f64>, ValueError> {
+fn quaternion(slot: usize, values: &CellValues) -> Result<UnitQuaternion<f64>, CalibratorValueError> {
     let [w, i, j, k] = values.reals(slot);
     let q = Quaternion::new(w, i, j, k);
     let norm = q.norm();
     if (norm - 1.0).abs() <= NORM_TOLERANCE {
         Ok(Unit::new_unchecked(q))
     } else {
-        Err(ValueError::Norm { label: label(slot), norm })
+        Err(CalibratorValueError::Norm { label: label(slot), norm })
     }
 }

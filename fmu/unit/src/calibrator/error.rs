@@ -1,12 +1,12 @@
 //! Errors in the values of a Calibrator.
 
 use octant_calibration::sequence::{STOPS_MAX, SequenceError};
-use octant_calibration::state_machine::ConfigError;
+use octant_calibration::state_machine::CoreConfigError;
 use octant_state::StateError;
 
 /// A value of the parameters that no configuration can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
+pub enum CalibratorValueError {
     /// An enumeration has no such item.
     #[error("{label} is {found}, which is none of its items")]
     NoItem {
@@ -51,13 +51,13 @@ pub enum ValueError {
 
 /// Reason why there is no Calibrator.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
+pub enum CalibratorFailure {
     /// The values make no configuration.
     #[error(transparent)]
-    Value(#[from] ValueError),
+    Value(#[from] CalibratorValueError),
     /// The core can't be made from the configuration.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] CoreConfigError),
     /// The bytes are no state.
     #[error(transparent)]
     State(#[from] StateError),

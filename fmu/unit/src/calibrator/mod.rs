@@ -6,19 +6,19 @@ mod outputs;
 pub mod table;
 
 pub use config::{config, put, start_values};
-pub use error::{Failure, ValueError};
+pub use error::{CalibratorFailure, CalibratorValueError};
 
-use crate::component::Component;
+use crate::component::ModelComponent;
 use crate::table::Model;
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_calibration::Core;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Mode, Output, Reference, Sample, Status};
-use octant_state::{Format, StateError, check_count};
+use octant_state::{StateFormat, StateError, check_count};
 use table::slot;
 
 /// Writes the state of the core into the Calibrator's outputs.
-pub(crate) fn put_outputs(output: &Output, core: &Core, values: &mut Values) {
+pub(crate) fn put_outputs(output: &Output, core: &Core, values: &mut CellValues) {
     outputs::put(output, values);
     outputs::put_parameters(core, values);
 }
@@ -58,7 +58,7 @@ fn count(accumulator: &mut Accumulator, counts: f64, saturated: &mut bool) -> i3
 
 impl Calibrator {
     #[inline]
-    fn sample(&mut self, values: &Values) -> Sample {
+    fn sample(&mut self, values: &CellValues) -> Sample {
         let mut status = Status::from_bits_retain(values.integer(slot::IMU_STATUS) as u16);
         let [mut gyro_saturated, mut accelerometer_saturated] = [false; 2];
         let delta_theta = core::array::from_fn(|i| {
@@ -96,7 +96,7 @@ impl Calibrator {
 
 /// Reads the reference for a sample of this stamp.
 #[inline]
-fn aiding(values: &Values, stamp: DeviceTime) -> Option<Aiding> {
+fn aiding(values: &CellValues, stamp: DeviceTime) -> Option<Aiding> {
     let reference = match values.integer(slot::REFERENCE_KIND) {
         1 => Reference::Velocity(values.reals(slot::REFERENCE_VELOCITY)),
         2 => Reference::Position {
@@ -116,12 +116,12 @@ fn aiding(values: &Values, stamp: DeviceTime) -> Option<Aiding> {
     Some(Aiding { device_time: DeviceTime::from_ns(ns), reference })
 }
 
-impl Component for Calibrator {
+impl ModelComponent for Calibrator {
     const MODEL: &'static Model = &table::MODEL;
 
-    type Error = Failure;
+    type Error = CalibratorFailure;
 
-    fn initialize(values: &mut Values) -> Result<Self, Failure> {
+    fn initialize(values: &mut CellValues) -> Result<Self, CalibratorFailure> {
         let config = config(values)?;
         let core = Core::new(&config)?;
         let output = core.latest();
@@ -147,7 +147,7 @@ impl Component for Calibrator {
     }
 
     #[inline]
-    fn step(&mut self, values: &mut Values) -> Result<(), Failure> {
+    fn step(&mut self, values: &mut CellValues) -> Result<(), CalibratorFailure> {
         let valid = values.boolean(slot::IMU_VALID);
         if valid || self.counted > 0 {
             self.counted += 1;
@@ -170,7 +170,7 @@ impl Component for Calibrator {
         Ok(())
     }
 
-    fn terminate(&mut self, values: &mut Values) {
+    fn terminate(&mut self, values: &mut CellValues) {
         self.output = self.core.end_of_stream();
         if self.output.mode != self.mode {
             (self.mode, self.mode_changed) = (self.output.mode, true);
@@ -205,16 +205,16 @@ impl Component for Calibrator {
         });
     }
 
-    fn load(bytes: &[u8], values: &Values) -> Result<Self, Failure> {
+    fn load(bytes: &[u8], values: &CellValues) -> Result<Self, CalibratorFailure> {
         Ok(Self::read(bytes, values)?)
     }
 }
 
 /// Format of the bytes of a Calibrator.
-const FORMAT: Format = Format { magic: "OCTCALIB", version: 1, what: "the state of a Calibrator" };
+const FORMAT: StateFormat = StateFormat { magic: "OCTCALIB", version: 1, what: "the state of a Calibrator" };
 
 impl Calibrator {
-    fn read(bytes: &[u8], values: &Values) -> Result<Self, StateError> {
+    fn read(bytes: &[u8], values: &CellValues) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let carried = |remainders: [f64; 3]| remainders.map(|remainder| Accumulator { remainder });
         let delta_theta = carried(from.value("remainders of delta_theta")?);

@@ -1,13 +1,13 @@
 //! Outputs of the core as values.
 
 use super::table::slot;
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_calibration::Core;
 use octant_sample::Output;
 
 /// Writes the outputs that change with every sample.
 #[inline]
-pub(super) fn put(output: &Output, values: &mut Values) {
+pub(super) fn put(output: &Output, values: &mut CellValues) {
     let target = output.gimbal_command.target;
     values.set_real(slot::COMMAND_AZIMUTH, target.azimuth_rad());
     values.set_real(slot::COMMAND_ROLL, target.roll_rad());
@@ -30,7 +30,7 @@ pub(super) fn put(output: &Output, values: &mut Values) {
 }
 
 /// Writes the estimated parameters and their standard deviations.
-pub(super) fn put_parameters(core: &Core, values: &mut Values) {
+pub(super) fn put_parameters(core: &Core, values: &mut CellValues) {
     values.set_reals(slot::PARAMETERS, &core.parameters().to_array());
     values.set_reals(slot::SIGMA, core.sigma());
 }

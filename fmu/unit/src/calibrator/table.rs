@@ -9,11 +9,11 @@ pub use enumerations::*;
 pub(crate) use parameters::PARAMETERS;
 pub(crate) use ports::OUTPUTS;
 
-use crate::table::{Model, Variable, concatenated};
+use crate::table::{Model, DeclaredVariable, concatenated};
 
 const COUNT: usize = ports::INPUTS.len() + ports::OUTPUTS.len() + parameters::PARAMETERS.len();
 
-static VARIABLES: [Variable; COUNT] =
+static VARIABLES: [DeclaredVariable; COUNT] =
     concatenated(&[&ports::INPUTS, &ports::OUTPUTS, &parameters::PARAMETERS]);
 
 /// The Calibrator.
@@ -30,8 +30,8 @@ pub static MODEL: Model = Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Causality, Kind};
-    use octant_sample::parameters::Group;
+    use crate::table::{DeclaredCausality, ElementType};
+    use octant_sample::parameters::ParameterGroup;
     use std::collections::BTreeSet;
 
     #[test]
@@ -41,7 +41,7 @@ mod tests {
             let name = variable.name;
             assert!(names.insert(name), "{name} twice");
             assert!(variable.description.ends_with('.'), "{name}");
-            let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
+            let has_start = matches!(variable.causality, DeclaredCausality::Parameter | DeclaredCausality::Input);
             assert_eq!(variable.start.is_empty(), !has_start, "{name}");
             assert!(
                 variable.start.len() <= 1 || variable.start.len() == variable.slots(),
@@ -50,7 +50,7 @@ mod tests {
             for start in variable.start {
                 assert!(variable.min.is_none_or(|min| *start >= min), "{name}: {start}");
                 assert!(variable.max.is_none_or(|max| *start <= max), "{name}: {start}");
-                if let Kind::Enumeration(of) = variable.kind {
+                if let ElementType::Enumeration(of) = variable.kind {
                     assert!(of.items.iter().any(|item| f64::from(item.0) == *start), "{name}");
                 }
             }
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn groups_of_parameters_lie_one_after_another() {
-        for group in Group::ALL {
+        for group in ParameterGroup::ALL {
             let range = group.range();
             for (prefix, first) in [
                 ("parameters", slot::PARAMETERS),

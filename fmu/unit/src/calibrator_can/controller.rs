@@ -7,8 +7,8 @@
 use super::operation::{
     BusError, Configuration, ErrorCause, NodeState, Writer, is_format_error, transmit_bytes,
 };
-use octant_state::{Reader, State, StateError, Writer as StateWriter, check_below, check_count};
-use octant_wire::can::{Format, Frame};
+use octant_state::{StateReader, State, StateError, Writer as StateWriter, check_below, check_count};
+use octant_wire::can::{CanVersion, BusFrame};
 use std::collections::VecDeque;
 
 /// Largest number of waiting frames: fifty outputs with parameters of classic CAN, which a working
@@ -27,7 +27,7 @@ const RECOVERY: u32 = 128;
 /// Setup of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Setup {
-    pub format: Format,
+    pub format: CanVersion,
     /// True if the bus simulation reports the result of each frame.
     pub notifications: bool,
     pub bit_rate: u32,
@@ -39,7 +39,7 @@ pub(super) struct Controller {
     setup: Setup,
     /// Operations other than frames, which are sent before the frames.
     others: Vec<u8>,
-    frames: VecDeque<Frame>,
+    frames: VecDeque<BusFrame>,
     /// True if the first of the frames is on the bus.
     on_bus: bool,
     /// Earliest time of the next attempt to send the first frame, ns.
@@ -74,7 +74,7 @@ impl Controller {
         }
     }
 
-    pub(super) fn format(&self) -> Format {
+    pub(super) fn format(&self) -> CanVersion {
         self.setup.format
     }
 
@@ -96,7 +96,7 @@ impl Controller {
     }
 
     /// Queues a frame; without room, or in bus-off, it is counted as lost.
-    pub(super) fn push(&mut self, frame: Frame) {
+    pub(super) fn push(&mut self, frame: BusFrame) {
         if self.frames.len() >= FRAMES_MAX || self.state == NodeState::BusOff {
             self.lost += 1;
         } else {
@@ -213,7 +213,7 @@ impl Controller {
     /// Takes the operations to send now, within this number of bytes.
     pub(super) fn send(&mut self, now_ns: u64, max_bytes: usize) -> Vec<u8> {
         let mut bytes = core::mem::take(&mut self.others);
-        let fd = self.setup.format == Format::Fd;
+        let fd = self.setup.format == CanVersion::Fd;
         let esi = self.state == NodeState::ErrorPassive;
         if self.on_bus || self.retry_ns > now_ns {
             return bytes;
@@ -250,7 +250,7 @@ impl State for Controller {
         to.value("node state", &(self.state as u8));
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.others = from.value("others")?;
         check_below("others", self.others.len() as u64, 2 * OTHERS_MAX_BYTES as u64)?;
         let waiting: u32 = from.value("waiting")?;
@@ -258,7 +258,7 @@ impl State for Controller {
         self.frames.clear();
         for _ in 0..waiting {
             let (id, data): (u16, &[u8]) = (from.value("identifier")?, from.value("data")?);
-            let frame = Frame::new(id, self.setup.format, data);
+            let frame = BusFrame::new(id, self.setup.format, data);
             let frame = frame.ok_or_else(|| StateError::value("data", "it is no frame"))?;
             self.frames.push_back(frame);
         }
@@ -291,14 +291,14 @@ mod tests {
     use super::*;
 
     fn controller(notifications: bool) -> Controller {
-        let setup = Setup { format: Format::Classic, notifications, bit_rate: 500_000 };
+        let setup = Setup { format: CanVersion::Classic, notifications, bit_rate: 500_000 };
         let mut controller = Controller::new(setup, &[]);
         assert_eq!(status(&controller.send(0, 1000)), [1]);
         controller
     }
 
-    fn frame(id: u16) -> Frame {
-        Frame::new(id, Format::Classic, &[1, 2]).unwrap()
+    fn frame(id: u16) -> BusFrame {
+        BusFrame::new(id, CanVersion::Classic, &[1, 2]).unwrap()
     }
 
     /// Node states sent, as numbers.

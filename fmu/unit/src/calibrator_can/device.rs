@@ -1,18 +1,18 @@
 //! Device end of a session, on messages; `README.md` of octant-wire defines the answers.
 
 use super::controller::Controller;
-use octant_calibration::state_machine::ConfigError;
-use octant_calibration::{Config, Core};
+use octant_calibration::state_machine::CoreConfigError;
+use octant_calibration::{CoreConfig, Core};
 use octant_sample::{Mode, Output, Parameters};
-use octant_state::{Reader, State, StateError, Writer, check_count};
-use octant_wire::can::{self, Counters};
+use octant_state::{StateReader, State, StateError, Writer, check_count};
+use octant_wire::can::{self, CanTraffic};
 use octant_wire::message::{
-    Agreement, Bye, Capabilities, ClockTime, Condition, End, Heartbeat, Hello, Limits,
-    OutputMessage, Pacing, ParametersSegment, Ready, Reason, Restart, SampleMessage, Status,
+    Agreement, Bye, Capabilities, ClockTime, EndCondition, End, Heartbeat, Hello, EndLimits,
+    OutputMessage, StepPacing, ParametersSegment, Ready, Reason, Restart, SampleMessage, DeviceStatus,
     TimeReply, TimeRequest, agree,
 };
-use octant_wire::requests::{Requests, Verdict};
-use octant_wire::{Kind, Message, Role, Step, Text};
+use octant_wire::requests::{Requests, RequestDecision};
+use octant_wire::{MessageKind, Message, EndRole, StepNumber, Text};
 
 /// Largest number of samples accepted ahead of the first answer: each is answered at once, and the
 /// bound is for answers that wait for the bus.
@@ -29,14 +29,14 @@ enum Answer {
     #[default]
     None,
     Output(OutputMessage, Option<Box<[ParametersSegment; 6]>>),
-    Ready(Step),
+    Ready(StepNumber),
 }
 
 /// Counts of the bus in a status: received, lost, damaged, missing, out of order, unreadable.
 type Counts = [u64; 6];
 
-fn counts(counters: &Counters) -> Counts {
-    let Counters { messages, orphaned, missing, duplicated, disordered, unreadable, .. } =
+fn counts(counters: &CanTraffic) -> Counts {
+    let CanTraffic { messages, orphaned, missing, duplicated, disordered, unreadable, .. } =
         *counters;
     let out_of_order = duplicated.saturating_add(disordered);
     [messages, orphaned, counters.damaged(), missing, out_of_order, unreadable]
@@ -51,13 +51,13 @@ struct Session {
     before: Counts,
     /// Longest time without a message of the device, ns; 0: unlimited.
     beat_ns: u64,
-    condition: Condition,
+    condition: EndCondition,
 }
 
 /// The device.
 #[derive(Clone, Debug)]
 pub(super) struct Device {
-    config: Box<Config>,
+    config: Box<CoreConfig>,
     core: Core,
     output: Output,
     /// Revision of the parameters that were sent last.
@@ -75,7 +75,7 @@ pub(super) struct Device {
 pub(super) struct Changed(pub bool);
 
 impl Device {
-    pub(super) fn new(config: Config) -> Result<Self, ConfigError> {
+    pub(super) fn new(config: CoreConfig) -> Result<Self, CoreConfigError> {
         let core = Core::new(&config)?;
         let output = core.latest();
         Ok(Self {
@@ -104,16 +104,16 @@ impl Device {
         self.remark.take()
     }
 
-    fn hello(&self, session: u32, pacing: Pacing) -> Hello {
+    fn hello(&self, session: u32, pacing: StepPacing) -> Hello {
         Hello {
-            role: Role::Device,
+            role: EndRole::Device,
             pacing,
             session,
             capabilities: CAPABILITIES,
             sample_period_ns: self.config.sample_period_ns,
             // The device never considers the harness gone, and keeps up with any period: its
             // computation takes no time.
-            limits: Limits { window: WINDOW, silence_ms: 0, shortest_period_ns: 0 },
+            limits: EndLimits { window: WINDOW, silence_ms: 0, shortest_period_ns: 0 },
             configuration: [0; 32],
             name: Text::fitting("calibrator_can"),
             firmware: Text::fitting(concat!("octant ", env!("CARGO_PKG_VERSION"))),
@@ -124,13 +124,13 @@ impl Device {
     /// Sends the hello of a device just switched on, which shows the restart to a harness in the
     /// middle of a session.
     pub(super) fn power_on(&mut self, to: &mut Controller) {
-        let hello = self.hello(0, Pacing::LockStep);
+        let hello = self.hello(0, StepPacing::LockStep);
         self.say(&Message::Hello(hello), 0, to);
     }
 
     fn say(&mut self, message: &Message, now_ns: u64, to: &mut Controller) {
         // Messages that a device doesn't send have no frames.
-        if let Ok(frames) = can::segments(message, Role::Device, to.format()) {
+        if let Ok(frames) = can::segments(message, EndRole::Device, to.format()) {
             frames.for_each(|frame| to.push(frame));
         }
         if let Some(session) = &self.session {
@@ -143,7 +143,7 @@ impl Device {
         &mut self,
         message: &Message,
         now_ns: u64,
-        counters: &Counters,
+        counters: &CanTraffic,
         to: &mut Controller,
     ) -> Changed {
         match message {
@@ -179,11 +179,11 @@ impl Device {
         &mut self,
         theirs: &Hello,
         now_ns: u64,
-        counters: &Counters,
+        counters: &CanTraffic,
         to: &mut Controller,
     ) -> Changed {
         // A harness draws a number other than 0.
-        if theirs.role != Role::Harness || theirs.session == 0 {
+        if theirs.role != EndRole::Harness || theirs.session == 0 {
             return Changed(false);
         }
         let ours = self.hello(theirs.session, theirs.pacing);
@@ -202,7 +202,7 @@ impl Device {
         }
         let beat_ns = u64::from(theirs.limits.silence_ms) * 1_000_000 / 4;
         let requests = Requests::new(pacing);
-        let (before, condition) = (counts(counters), Condition::Ready);
+        let (before, condition) = (counts(counters), EndCondition::Ready);
         self.session = Some(Session { number, requests, before, beat_ns, condition });
         self.status_due_ns = now_ns.saturating_add(STATUS_NS);
         self.beat_due_ns = now_ns.saturating_add(beat_ns);
@@ -211,8 +211,8 @@ impl Device {
     }
 
     /// Makes a core as at power on, with stored parameters that differ by `offset`.
-    fn anew(&mut self, offset: Option<&Parameters>) -> Result<(), ConfigError> {
-        let mut config = Config::clone(&self.config);
+    fn anew(&mut self, offset: Option<&Parameters>) -> Result<(), CoreConfigError> {
+        let mut config = CoreConfig::clone(&self.config);
         if let Some(offset) = offset {
             let (stored, offset) = (config.initial_parameters.to_array(), offset.to_array());
             config.initial_parameters =
@@ -229,21 +229,21 @@ impl Device {
     fn sample(&mut self, sample: &SampleMessage, now_ns: u64, to: &mut Controller) -> Changed {
         let Some(session) = &mut self.session else { return Changed(false) };
         let aiding = match session.requests.sample(sample) {
-            Verdict::Do(aiding) => aiding,
+            RequestDecision::Do(aiding) => aiding,
             verdict => return self.without_step(verdict, now_ns, to),
         };
-        session.condition = Condition::Stepping;
+        session.condition = EndCondition::Stepping;
         self.core.step_into(&sample.sample, aiding.as_ref(), &mut self.output);
         self.answer_with_output(sample.step, now_ns, to)
     }
 
-    fn end(&mut self, step: Step, now_ns: u64, to: &mut Controller) -> Changed {
+    fn end(&mut self, step: StepNumber, now_ns: u64, to: &mut Controller) -> Changed {
         let Some(session) = &mut self.session else { return Changed(false) };
         match session.requests.other(step) {
-            Verdict::Do(_) => {}
+            RequestDecision::Do(_) => {}
             verdict => return self.without_step(verdict, now_ns, to),
         }
-        session.condition = Condition::Ended;
+        session.condition = EndCondition::Ended;
         self.output = self.core.end_of_stream();
         self.answer_with_output(step, now_ns, to)
     }
@@ -252,15 +252,15 @@ impl Device {
         &mut self,
         restart: &Restart,
         now_ns: u64,
-        counters: &Counters,
+        counters: &CanTraffic,
         to: &mut Controller,
     ) -> Changed {
         let Some(session) = &mut self.session else { return Changed(false) };
         match session.requests.other(restart.step) {
-            Verdict::Do(_) => {}
+            RequestDecision::Do(_) => {}
             verdict => return self.without_step(verdict, now_ns, to),
         }
-        session.condition = Condition::Ready;
+        session.condition = EndCondition::Ready;
         if let Err(reason) = self.anew(restart.offset.as_ref()) {
             self.say_status(now_ns, counters, to);
             let text = Text::fitting("the parameters make no core");
@@ -274,14 +274,14 @@ impl Device {
         Changed(true)
     }
 
-    fn without_step(&mut self, verdict: Verdict, now_ns: u64, to: &mut Controller) -> Changed {
-        if verdict == Verdict::Again {
+    fn without_step(&mut self, verdict: RequestDecision, now_ns: u64, to: &mut Controller) -> Changed {
+        if verdict == RequestDecision::Again {
             self.repeat(now_ns, to);
         }
         Changed(false)
     }
 
-    fn answer_with_output(&mut self, step: Step, now_ns: u64, to: &mut Controller) -> Changed {
+    fn answer_with_output(&mut self, step: StepNumber, now_ns: u64, to: &mut Controller) -> Changed {
         let revision = self.output.parameters_revision;
         let follow = self.revision != Some(revision);
         let parameters = follow.then(|| {
@@ -323,14 +323,14 @@ impl Device {
     }
 
     /// Sends the counts of steps, and those of the frames, since the session began.
-    fn say_status(&mut self, now_ns: u64, counters: &Counters, to: &mut Controller) {
+    fn say_status(&mut self, now_ns: u64, counters: &CanTraffic, to: &mut Controller) {
         let Some(session) = &self.session else { return };
         let (now, before) = (counts(counters), session.before);
         let since = core::array::from_fn(|i| {
             u32::try_from(now[i].saturating_sub(before[i])).unwrap_or(u32::MAX)
         });
         let [received, lost, damaged, missing, out_of_order, unreadable] = since;
-        let status = Status {
+        let status = DeviceStatus {
             received,
             lost,
             damaged,
@@ -352,7 +352,7 @@ impl Device {
     }
 
     /// Sends the messages due at this time.
-    pub(super) fn on_time(&mut self, now_ns: u64, counters: &Counters, to: &mut Controller) {
+    pub(super) fn on_time(&mut self, now_ns: u64, counters: &CanTraffic, to: &mut Controller) {
         let Some(session) = &self.session else { return };
         if self.status_due_ns <= now_ns {
             let late_ns = now_ns - self.status_due_ns;
@@ -376,9 +376,9 @@ fn save_message(to: &mut Writer, name: &'static str, message: &Message) {
 }
 
 fn load_message(
-    from: &mut Reader<'_>,
+    from: &mut StateReader<'_>,
     name: &'static str,
-    kind: Kind,
+    kind: MessageKind,
 ) -> Result<Message, StateError> {
     Message::read(kind, from.value(name)?)
         .map_err(|error| StateError::value(name, error.to_string()))
@@ -415,7 +415,7 @@ impl State for Device {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         let core: Vec<u8> = from.value("core")?;
         self.core = Core::load(&core)?;
         self.output = self.core.latest();
@@ -429,19 +429,19 @@ impl State for Device {
         self.session = None;
         if let Some((number, beat_ns, condition)) = session {
             check_count("beat", beat_ns)?;
-            let condition = Condition::ALL.get(usize::from(condition));
+            let condition = EndCondition::ALL.get(usize::from(condition));
             let condition =
                 *condition.ok_or_else(|| StateError::value("session", "a condition of no kind"))?;
             let before: Counts = from.value("before")?;
-            let mut requests = Requests::new(Pacing::LockStep);
+            let mut requests = Requests::new(StepPacing::LockStep);
             from.part("requests", &mut requests)?;
             self.session = Some(Session { number, requests, before, beat_ns, condition });
         }
         self.answer = match from.value::<u8>("answer")? {
             0 => Answer::None,
-            1 => Answer::Ready(Step::new(from.value("step")?)),
+            1 => Answer::Ready(StepNumber::new(from.value("step")?)),
             2 => {
-                let Message::Output(output) = load_message(from, "output", Kind::Output)? else {
+                let Message::Output(output) = load_message(from, "output", MessageKind::Output)? else {
                     return Err(StateError::value("output", "it is none"));
                 };
                 let mut parameters = None;
@@ -449,7 +449,7 @@ impl State for Device {
                     let mut segments = Box::new([ParametersSegment::default(); 6]);
                     for segment in segments.iter_mut() {
                         if let Message::Parameters(read) =
-                            load_message(from, "segment", Kind::Parameters)?
+                            load_message(from, "segment", MessageKind::Parameters)?
                         {
                             *segment = read;
                         }

@@ -1,18 +1,18 @@
 //! Errors in the values of a Calibrator on CAN.
 
-use crate::calibrator::ValueError;
-use octant_calibration::state_machine::ConfigError;
+use crate::calibrator::CalibratorValueError;
+use octant_calibration::state_machine::CoreConfigError;
 use octant_state::StateError;
 
 /// Reason why there is no device.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
+pub enum CalibratorCanFailure {
     /// The values make no configuration of the core.
     #[error(transparent)]
-    Value(#[from] ValueError),
+    Value(#[from] CalibratorValueError),
     /// The core can't be made from the configuration.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] CoreConfigError),
     /// Frames that lose the bus would be lost.
     #[error(
         "can.arbitration_lost is discard, for which can.bus_notifications has to be true: frames \

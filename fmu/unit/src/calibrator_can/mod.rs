@@ -16,17 +16,17 @@ mod error;
 mod operation;
 pub mod table;
 
-pub use error::Failure;
+pub use error::CalibratorCanFailure;
 
 use crate::calibrator;
-use crate::component::{Component, Network};
-use crate::table::{Causality, Model};
-use crate::values::Values;
+use crate::component::{ModelComponent, Network};
+use crate::table::{DeclaredCausality, Model};
+use crate::values::CellValues;
 use controller::{Controller, Setup};
 use device::{Changed, Device};
-use octant_state::{Format, StateError};
-use octant_wire::can::{self, Cause, Event, Frame, Reassembler};
-use octant_wire::{Role, Unreadable};
+use octant_state::{StateFormat, StateError};
+use octant_wire::can::{self, DropCause, ReassemblyEvent, BusFrame, Reassembler};
+use octant_wire::{EndRole, Unreadable};
 use operation::{ArbitrationLost, Configuration, Kind, Operation, Operations, Transmit};
 use table::slot;
 
@@ -38,7 +38,7 @@ pub struct CalibratorCan {
     reassembler: Reassembler,
     period_ns: u64,
     /// Variables of the Calibrator, from which the outputs of the same names are copied.
-    core_values: Values,
+    core_values: CellValues,
     remark: Option<String>,
 }
 
@@ -51,7 +51,7 @@ fn ns(time_s: f64) -> u64 {
 }
 
 /// Copies the cells of variables that both tables have, of one causality.
-fn copy_same(causality: Causality, from: (&Model, &Values), to: (&Model, &mut Values)) {
+fn copy_same(causality: DeclaredCausality, from: (&Model, &CellValues), to: (&Model, &mut CellValues)) {
     for (slot, variable) in from.0.with_slots().filter(|(_, v)| v.causality == causality) {
         if let Some((other, _)) = to.0.find(variable.name) {
             let cells = &from.1.cells()[slot..slot + variable.slots()];
@@ -62,10 +62,10 @@ fn copy_same(causality: Causality, from: (&Model, &Values), to: (&Model, &mut Va
 
 impl CalibratorCan {
     /// Makes a device from the parameters alone, as after power on and before its first message.
-    fn new(values: &Values) -> Result<Self, Failure> {
-        let mut core_values = Values::new(&calibrator::table::MODEL);
+    fn new(values: &CellValues) -> Result<Self, CalibratorCanFailure> {
+        let mut core_values = CellValues::new(&calibrator::table::MODEL);
         copy_same(
-            Causality::Parameter,
+            DeclaredCausality::Parameter,
             (&table::MODEL, values),
             (&calibrator::table::MODEL, &mut core_values),
         );
@@ -77,7 +77,7 @@ impl CalibratorCan {
             _ => ArbitrationLost::Notify,
         };
         if lost == ArbitrationLost::Notify && !notifications {
-            return Err(Failure::Discard);
+            return Err(CalibratorCanFailure::Discard);
         }
         // The table limits their range.
         let rate = |slot| values.count(slot) as u32;
@@ -87,20 +87,20 @@ impl CalibratorCan {
             configuration.push(Configuration::DataBitRate(rate(slot::DATA_BIT_RATE)));
         }
         configuration.push(Configuration::ArbitrationLost(lost));
-        let format = if fd { can::Format::Fd } else { can::Format::Classic };
+        let format = if fd { can::CanVersion::Fd } else { can::CanVersion::Classic };
         let setup = Setup { format, notifications, bit_rate };
         Ok(Self {
             period_ns: config.sample_period_ns,
             device: Device::new(config)?,
             controller: Controller::new(setup, &configuration),
-            reassembler: Reassembler::new(&[Role::Harness], format),
+            reassembler: Reassembler::new(&[EndRole::Harness], format),
             core_values,
             remark: None,
         })
     }
 
     /// Writes the core's outputs.
-    fn put_core(&mut self, values: &mut Values) {
+    fn put_core(&mut self, values: &mut CellValues) {
         calibrator::put_outputs(self.device.output(), self.device.core(), &mut self.core_values);
         values.cells_mut()[slot::OUTPUTS..slot::OUTPUTS + table::OUTPUT_SLOTS].copy_from_slice(
             &self.core_values.cells()
@@ -109,7 +109,7 @@ impl CalibratorCan {
     }
 
     /// Writes the controller's outputs.
-    fn put_controller(&self, values: &mut Values) {
+    fn put_controller(&self, values: &mut CellValues) {
         let (transmit, receive) = self.controller.errors();
         values.set_integer(slot::NODE_STATE, self.controller.state() as i32);
         values.set_count(slot::TRANSMIT_ERRORS, transmit.into());
@@ -121,22 +121,22 @@ impl CalibratorCan {
     fn frame(&mut self, transmit: &Transmit<'_>, now_ns: u64) -> Changed {
         self.controller.heard_frame();
         let format = match transmit.kind {
-            Kind::Classic { remote: false } => can::Format::Classic,
-            Kind::Fd => can::Format::Fd,
+            Kind::Classic { remote: false } => can::CanVersion::Classic,
+            Kind::Fd => can::CanVersion::Fd,
             Kind::Classic { remote: true } | Kind::Xl => return Changed(false),
         };
         // Frames of the protocol have identifiers of 11 bits.
         let id = u16::try_from(transmit.id).ok().filter(|_| !transmit.extended);
-        let Some(frame) = id.and_then(|id| Frame::new(id, format, transmit.data)) else {
+        let Some(frame) = id.and_then(|id| BusFrame::new(id, format, transmit.data)) else {
             return Changed(false);
         };
         match self.reassembler.receive(&frame) {
-            Some(Event::Received { message, .. }) => {
+            Some(ReassemblyEvent::Received { message, .. }) => {
                 let counters = self.reassembler.counters();
                 self.device.take(&message, now_ns, counters, &mut self.controller)
             }
-            Some(Event::Lost(lost)) => {
-                if let Cause::Unreadable(Unreadable::NewerVersion { .. }) = lost.cause {
+            Some(ReassemblyEvent::Lost(lost)) => {
+                if let DropCause::Unreadable(Unreadable::NewerVersion { .. }) = lost.cause {
                     self.device.too_new(now_ns, &mut self.controller);
                 }
                 Changed(false)
@@ -146,12 +146,12 @@ impl CalibratorCan {
     }
 }
 
-impl Component for CalibratorCan {
+impl ModelComponent for CalibratorCan {
     const MODEL: &'static Model = &table::MODEL;
 
-    type Error = Failure;
+    type Error = CalibratorCanFailure;
 
-    fn initialize(values: &mut Values) -> Result<Self, Failure> {
+    fn initialize(values: &mut CellValues) -> Result<Self, CalibratorCanFailure> {
         let mut this = Self::new(values)?;
         this.device.power_on(&mut this.controller);
         this.put_core(values);
@@ -164,7 +164,7 @@ impl Component for CalibratorCan {
     }
 
     /// Does nothing: the device acts only at events.
-    fn step(&mut self, _: &mut Values) -> Result<(), Failure> {
+    fn step(&mut self, _: &mut CellValues) -> Result<(), CalibratorCanFailure> {
         Ok(())
     }
 
@@ -184,7 +184,7 @@ impl Component for CalibratorCan {
         });
     }
 
-    fn load(bytes: &[u8], values: &Values) -> Result<Self, Failure> {
+    fn load(bytes: &[u8], values: &CellValues) -> Result<Self, CalibratorCanFailure> {
         let mut this = Self::new(values)?;
         this.read(bytes)?;
         Ok(this)
@@ -192,7 +192,7 @@ impl Component for CalibratorCan {
 }
 
 impl Network for CalibratorCan {
-    fn receive(&mut self, bytes: &[u8], time_s: f64, values: &mut Values) {
+    fn receive(&mut self, bytes: &[u8], time_s: f64, values: &mut CellValues) {
         let now_ns = ns(time_s);
         let mut changed = false;
         for operation in Operations::of(bytes) {
@@ -218,7 +218,7 @@ impl Network for CalibratorCan {
         self.put_controller(values);
     }
 
-    fn send(&mut self, time_s: f64, max_bytes: usize, values: &mut Values) -> Vec<u8> {
+    fn send(&mut self, time_s: f64, max_bytes: usize, values: &mut CellValues) -> Vec<u8> {
         let now_ns = ns(time_s);
         self.device.on_time(now_ns, self.reassembler.counters(), &mut self.controller);
         let bytes = self.controller.send(now_ns, max_bytes);
@@ -235,8 +235,8 @@ impl Network for CalibratorCan {
 }
 
 /// Format of the bytes of a device.
-const FORMAT: Format =
-    Format { magic: "OCTCANDV", version: 1, what: "the state of a Calibrator on CAN" };
+const FORMAT: StateFormat =
+    StateFormat { magic: "OCTCANDV", version: 1, what: "the state of a Calibrator on CAN" };
 
 impl CalibratorCan {
     fn read(&mut self, bytes: &[u8]) -> Result<(), StateError> {

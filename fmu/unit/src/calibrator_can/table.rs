@@ -4,7 +4,7 @@ pub(super) mod slot;
 
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
-use crate::table::{Binary, Enumeration, Kind, Model, Ticks, Variable, concatenated};
+use crate::table::{ClockedBinary, DeclaredEnumeration, ElementType, Model, Ticks, DeclaredVariable, concatenated};
 
 /// Largest number of bytes of a tick, in both directions.
 const BYTES_MAX: usize = 65_535;
@@ -12,13 +12,13 @@ const BYTES_MAX: usize = 65_535;
 /// MIME type of the bytes in FMI-LS-BUS.
 const MIME_TYPE: &str = "application/org.fmi-standard.fmi-ls-bus.can; version=\"1.0.0\"";
 
-static RX_DATA: Binary =
-    Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Rx_Clock" };
-static TX_DATA: Binary =
-    Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
+static RX_DATA: ClockedBinary =
+    ClockedBinary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Rx_Clock" };
+static TX_DATA: ClockedBinary =
+    ClockedBinary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
 
 /// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
-static ARBITRATION_LOST: Enumeration = Enumeration {
+static ARBITRATION_LOST: DeclaredEnumeration = DeclaredEnumeration {
     name: "ArbitrationLost",
     description: "What the bus simulation does with a frame that loses the bus.",
     items: &[
@@ -28,7 +28,7 @@ static ARBITRATION_LOST: Enumeration = Enumeration {
 };
 
 /// State of a CAN node; values as on the bus.
-static NODE_STATE: Enumeration = Enumeration {
+static NODE_STATE: DeclaredEnumeration = DeclaredEnumeration {
     name: "CanNodeState",
     description: "State of a CAN node.",
     items: &[
@@ -46,52 +46,52 @@ pub const NOTIFICATIONS: &str = "can.bus_notifications";
 
 const RATE_MAX: f64 = u32::MAX as f64;
 
-const LINK: [Variable; 14] = [
-    Variable::input("can.Rx_Clock", Kind::Clock(Ticks::Triggered))
+const LINK: [DeclaredVariable; 14] = [
+    DeclaredVariable::input("can.Rx_Clock", ElementType::Clock(Ticks::Triggered))
         .described("Ticks when can.Rx_Data has come."),
-    Variable::input("can.Rx_Data", Kind::Binary(&RX_DATA)).described(
+    DeclaredVariable::input("can.Rx_Data", ElementType::Binary(&RX_DATA)).described(
         "Bus operations that come: the frames of the harness, and what the bus simulation says.",
     ),
-    Variable::input("can.Tx_Clock", Kind::Clock(Ticks::Countdown)).described(
+    DeclaredVariable::input("can.Tx_Clock", ElementType::Clock(Ticks::Countdown)).described(
         "Ticks when can.Tx_Data is to be taken: at once (interval 0) when an answer is there, else \
          when a status or heartbeat is due.",
     ),
-    Variable::output("can.Tx_Data", Kind::Binary(&TX_DATA))
+    DeclaredVariable::output("can.Tx_Data", ElementType::Binary(&TX_DATA))
         .described("Bus operations that go: the frames of the device, its settings and its state."),
-    Variable::parameter(NOTIFICATIONS, Kind::Boolean).described(
+    DeclaredVariable::parameter(NOTIFICATIONS, ElementType::Boolean).described(
         "The bus simulation confirms frames and tells of errors and lost arbitration: the device \
          has one frame at a time on the bus, and sends it until it is confirmed.",
     ),
-    Variable::parameter("can.fd", Kind::Boolean)
+    DeclaredVariable::parameter("can.fd", ElementType::Boolean)
         .described("CAN FD, with another bit rate for the data; else classic CAN."),
-    Variable::parameter("can.bit_rate", Kind::Count)
+    DeclaredVariable::parameter("can.bit_rate", ElementType::Count)
         .within(1.0, RATE_MAX)
         .start(&[500_000.0])
         .described("Bit rate, bit/s, that the bus simulation is told."),
-    Variable::parameter("can.data_bit_rate", Kind::Count)
+    DeclaredVariable::parameter("can.data_bit_rate", ElementType::Count)
         .within(1.0, RATE_MAX)
         .start(&[2_000_000.0])
         .described("Bit rate of the data, bit/s, that the bus simulation is told of CAN FD."),
-    Variable::parameter("can.arbitration_lost", Kind::Enumeration(&ARBITRATION_LOST))
+    DeclaredVariable::parameter("can.arbitration_lost", ElementType::Enumeration(&ARBITRATION_LOST))
         .start(&[1.0])
         .described(
             "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
              takes can.bus_notifications.",
         ),
-    Variable::output("can.node_state", Kind::Enumeration(&NODE_STATE))
+    DeclaredVariable::output("can.node_state", ElementType::Enumeration(&NODE_STATE))
         .described("State of the node, as it follows from the error counters."),
-    Variable::output("can.transmit_errors", Kind::Count).described("Transmit error counter."),
-    Variable::output("can.receive_errors", Kind::Count).described("Receive error counter."),
-    Variable::output("can.waiting", Kind::Count)
+    DeclaredVariable::output("can.transmit_errors", ElementType::Count).described("Transmit error counter."),
+    DeclaredVariable::output("can.receive_errors", ElementType::Count).described("Receive error counter."),
+    DeclaredVariable::output("can.waiting", ElementType::Count)
         .described("Frames that wait for the bus, one that is on it included."),
-    Variable::output("can.lost", Kind::Count).described(
+    DeclaredVariable::output("can.lost", ElementType::Count).described(
         "Frames that there was no room for, or that were thrown away when the node went off the \
          bus.",
     ),
 ];
 
 /// Sample period, which is not that of a communication step here.
-const PERIOD: [Variable; 1] = [Variable::parameter("imu.period_ns", Kind::Count)
+const PERIOD: [DeclaredVariable; 1] = [DeclaredVariable::parameter("imu.period_ns", ElementType::Count)
     .of(&q::NANOSECONDS)
     .within(1.0, 1e9)
     .start(&[5e6])
@@ -127,7 +127,7 @@ const fn same(a: &str, b: &str) -> bool {
 const COUNT: usize =
     LINK.len() + calibrator::OUTPUTS.len() + PERIOD.len() + calibrator::PARAMETERS.len() - FIRST;
 
-static VARIABLES: [Variable; COUNT] =
+static VARIABLES: [DeclaredVariable; COUNT] =
     concatenated(&[&LINK, &calibrator::OUTPUTS, &PERIOD, calibrator::PARAMETERS.split_at(FIRST).1]);
 
 /// The Calibrator on CAN.

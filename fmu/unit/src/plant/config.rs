@@ -1,8 +1,8 @@
 //! The plant's configuration from the values of the parameters, and back: bit for bit.
 
-use super::error::ValueError;
+use super::error::PlantValueError;
 use super::table::{MODEL, SINUSOIDS_MAX, slot};
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_plant::config::*;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -14,12 +14,12 @@ const SEED_EXACT: u64 = 1 << 53;
 ///
 /// # Errors
 /// If a motion of the ship has more sinusoids than there is room for.
-pub(super) fn put(config: &Config, values: &mut Values) -> Result<(), ValueError> {
-    let Config {
+pub(super) fn put(config: &PlantConfig, values: &mut CellValues) -> Result<(), PlantValueError> {
+    let PlantConfig {
         sample_period_ns,
         seed,
         calibration_samples,
-        site: Site { latitude_rad, longitude_rad, height_m },
+        site: PlantSite { latitude_rad, longitude_rad, height_m },
         motion,
         turntable,
         imu,
@@ -48,7 +48,7 @@ pub(super) fn put(config: &Config, values: &mut Values) -> Result<(), ValueError
             put_ship(ship, values)?;
         }
     }
-    let Turntable {
+    let TurntableConfig {
         rate_radps,
         acceleration_radps2,
         encoder_sigma_rad,
@@ -90,10 +90,10 @@ pub(super) fn put(config: &Config, values: &mut Values) -> Result<(), ValueError
 /// # Errors
 /// If a number or an item is invalid: the variable, the value found and the values expected. The
 /// plant reports other contradictions.
-pub fn config(values: &Values) -> Result<Config, ValueError> {
+pub fn config(values: &CellValues) -> Result<PlantConfig, PlantValueError> {
     let endless = values.boolean(slot::CALIBRATION_ENDLESS);
     let high = values.count(slot::SEED_HIGH);
-    Ok(Config {
+    Ok(PlantConfig {
         sample_period_ns: values.count(slot::PERIOD),
         seed: values.count(slot::SEED).wrapping_add(high.wrapping_shl(32)),
         calibration_samples: if endless {
@@ -101,7 +101,7 @@ pub fn config(values: &Values) -> Result<Config, ValueError> {
         } else {
             values.count(slot::CALIBRATION_SAMPLES)
         },
-        site: Site {
+        site: PlantSite {
             latitude_rad: values.real(slot::SITE_LATITUDE),
             longitude_rad: values.real(slot::SITE_LONGITUDE),
             height_m: values.real(slot::SITE_HEIGHT),
@@ -111,7 +111,7 @@ pub fn config(values: &Values) -> Result<Config, ValueError> {
             1 => Motion::Dockside(ship(values)?),
             _ => return Err(no_item(slot::MOTION, values)),
         },
-        turntable: Turntable {
+        turntable: TurntableConfig {
             rate_radps: values.real(slot::TURNTABLE_RATE),
             acceleration_radps2: values.real(slot::TURNTABLE_ACCELERATION),
             encoder_sigma_rad: values.real(slot::ENCODER_SIGMA),
@@ -138,14 +138,14 @@ pub fn config(values: &Values) -> Result<Config, ValueError> {
     })
 }
 
-fn put_attitude(attitude: &CaseAttitude, values: &mut Values) {
+fn put_attitude(attitude: &CaseAttitude, values: &mut CellValues) {
     let CaseAttitude { heading_rad, pitch_rad, roll_rad } = attitude;
     values.set_real(slot::MEAN_HEADING, *heading_rad);
     values.set_real(slot::MEAN_PITCH, *pitch_rad);
     values.set_real(slot::MEAN_ROLL, *roll_rad);
 }
 
-fn attitude(values: &Values) -> CaseAttitude {
+fn attitude(values: &CellValues) -> CaseAttitude {
     CaseAttitude {
         heading_rad: values.real(slot::MEAN_HEADING),
         pitch_rad: values.real(slot::MEAN_PITCH),
@@ -160,7 +160,7 @@ fn motion_slots(motion: usize) -> [usize; 4] {
     [count, count + 1, count + 1 + SINUSOIDS_MAX, count + 1 + 2 * SINUSOIDS_MAX]
 }
 
-fn put_ship(ship: &Dockside, values: &mut Values) -> Result<(), ValueError> {
+fn put_ship(ship: &Dockside, values: &mut CellValues) -> Result<(), PlantValueError> {
     let Dockside { mean, roll, pitch, yaw, surge, sway, heave, mooring_offset_m } = ship;
     put_attitude(mean, values);
     values.set_reals(slot::MOORING_OFFSET, mooring_offset_m);
@@ -168,7 +168,7 @@ fn put_ship(ship: &Dockside, values: &mut Values) -> Result<(), ValueError> {
         let [count, amplitude, period, phase] = motion_slots(index);
         let found = sinusoids.len();
         if found > SINUSOIDS_MAX {
-            return Err(ValueError::TooManySinusoids { label: MODEL.label(count), found });
+            return Err(PlantValueError::TooManySinusoids { label: MODEL.label(count), found });
         }
         values.set_integer(count, found as i32);
         for (i, sinusoid) in sinusoids.iter().enumerate() {
@@ -181,7 +181,7 @@ fn put_ship(ship: &Dockside, values: &mut Values) -> Result<(), ValueError> {
     Ok(())
 }
 
-fn ship(values: &Values) -> Result<Dockside, ValueError> {
+fn ship(values: &CellValues) -> Result<Dockside, PlantValueError> {
     let motion = |index| sinusoids(index, values);
     Ok(Dockside {
         mean: attitude(values),
@@ -195,11 +195,11 @@ fn ship(values: &Values) -> Result<Dockside, ValueError> {
     })
 }
 
-fn sinusoids(motion: usize, values: &Values) -> Result<Vec<Sinusoid>, ValueError> {
+fn sinusoids(motion: usize, values: &CellValues) -> Result<Vec<Sinusoid>, PlantValueError> {
     let [count, amplitude, period, phase] = motion_slots(motion);
     let found = values.integer(count);
     let Some(number) = usize::try_from(found).ok().filter(|number| *number <= SINUSOIDS_MAX) else {
-        return Err(ValueError::Sinusoids { label: MODEL.label(count), found });
+        return Err(PlantValueError::Sinusoids { label: MODEL.label(count), found });
     };
     let one = |i| Sinusoid {
         amplitude: values.real(amplitude + i),
@@ -209,7 +209,7 @@ fn sinusoids(motion: usize, values: &Values) -> Result<Vec<Sinusoid>, ValueError
     Ok((0..number).map(one).collect())
 }
 
-fn put_extensions(extensions: &Extensions, values: &mut Values) {
+fn put_extensions(extensions: &Extensions, values: &mut CellValues) {
     let Extensions {
         gyro_gauss_markov,
         accel_gauss_markov,
@@ -267,7 +267,7 @@ fn put_extensions(extensions: &Extensions, values: &mut Values) {
     values.set_real(slot::TIME_SKEW, *time_skew_s);
 }
 
-fn extensions(values: &Values) -> Extensions {
+fn extensions(values: &CellValues) -> Extensions {
     let process = |slot| {
         let [sigma, correlation_time_s] = values.reals(slot + 1);
         values.boolean(slot).then_some(GaussMarkov { sigma, correlation_time_s })
@@ -299,6 +299,6 @@ fn extensions(values: &Values) -> Extensions {
     }
 }
 
-fn no_item(slot: usize, values: &Values) -> ValueError {
-    ValueError::NoItem { label: MODEL.label(slot), found: values.integer(slot) }
+fn no_item(slot: usize, values: &CellValues) -> PlantValueError {
+    PlantValueError::NoItem { label: MODEL.label(slot), found: values.integer(slot) }
 }

@@ -1,12 +1,12 @@
 //! Errors in the values of a Plant, and in the configurations and faults that become values.
 
 use super::table::{FAULT_SLOTS, SINUSOIDS_MAX};
-use octant_plant::ConfigError;
+use octant_plant::PlantConfigError;
 use octant_state::StateError;
 
 /// A value of the parameters that no configuration can have, or one for which there is no room.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
+pub enum PlantValueError {
     /// An enumeration has no such item.
     #[error("{label} is {found}, which is none of its items")]
     NoItem {
@@ -163,7 +163,7 @@ pub enum FaultError {
         /// Id of the fault.
         id: String,
         /// Error in its parameters.
-        error: octant_faults::BuildError,
+        error: octant_faults::FaultBuildError,
     },
     /// The faults can deliver more than one sample.
     #[error("the faults together can deliver {samples} samples in a step, one is possible")]
@@ -178,7 +178,7 @@ pub enum FaultError {
 pub enum PutError {
     /// The configuration has more values than the variables hold.
     #[error(transparent)]
-    Value(#[from] ValueError),
+    Value(#[from] PlantValueError),
     /// The faults have more values than the variables hold.
     #[error(transparent)]
     Fault(#[from] FaultError),
@@ -186,13 +186,13 @@ pub enum PutError {
 
 /// Reason why there is no Plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
+pub enum PlantFailure {
     /// The values make no configuration.
     #[error(transparent)]
-    Value(#[from] ValueError),
+    Value(#[from] PlantValueError),
     /// The plant can't be made from the configuration.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] PlantConfigError),
     /// The values make no faults.
     #[error(transparent)]
     Fault(#[from] FaultError),

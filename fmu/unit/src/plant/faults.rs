@@ -2,11 +2,11 @@
 
 use super::error::{FaultError, Misplaced, Unplaced};
 use super::table::{FAULT_KIND, FAULT_NUMBERS, FAULT_SLOTS, MODEL, acts_in_plant, slot};
-use crate::values::Values;
-use octant_faults::catalogue::{Acts, Bounds, Dimension, Kind, Lasts, Parameter, Takes};
+use crate::values::CellValues;
+use octant_faults::catalogue::{Acts, ParameterBounds, Dimension, FaultKind, Lasts, FaultParameter, Takes};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Channels, Setup, Spec, Station, Value, kinds};
-use octant_plant::config::Config;
+use octant_faults::{Channels, Setup, FaultSpec, Station, Value, kinds};
+use octant_plant::config::PlantConfig;
 
 /// Id of a fault, by its index from 0.
 fn id(fault: usize) -> String {
@@ -15,7 +15,7 @@ fn id(fault: usize) -> String {
 
 /// Makes the setup of the faults for a plant with this configuration.
 #[must_use]
-pub fn setup(config: &Config) -> Setup {
+pub fn setup(config: &PlantConfig) -> Setup {
     Setup {
         seed: config.seed,
         sample_period_ns: config.sample_period_ns,
@@ -40,7 +40,7 @@ pub struct Number {
 
 /// Lists the numbers of a kind, in order, for the documentation.
 #[must_use]
-pub fn numbers(kind: &Kind) -> Vec<Number> {
+pub fn numbers(kind: &FaultKind) -> Vec<Number> {
     let mut all = Vec::new();
     for parameter in kind.parameters {
         let doc = parameter.doc.trim_end_matches('.');
@@ -144,9 +144,9 @@ fn of(dimension: Dimension) -> String {
 /// If there are too many faults, or one can't act inside a plant, or has a trigger or a repetition
 /// for which there is no parameter.
 pub(super) fn put(
-    faults: &[Spec],
+    faults: &[FaultSpec],
     sample_period_ns: u64,
-    values: &mut Values,
+    values: &mut CellValues,
 ) -> Result<(), FaultError> {
     if faults.len() > FAULT_SLOTS {
         return Err(FaultError::TooMany { found: faults.len() });
@@ -198,7 +198,7 @@ pub(super) fn put(
 }
 
 /// Converts a value to numbers; returns false if the value doesn't fit the parameter.
-fn spread(parameter: &Parameter, value: Value, numbers: &mut Vec<f64>) -> bool {
+fn spread(parameter: &FaultParameter, value: Value, numbers: &mut Vec<f64>) -> bool {
     let which = |dimensions: &[Dimension], dimension: Dimension, numbers: &mut Vec<f64>| {
         let place = dimensions.iter().position(|known| *known == dimension);
         if dimensions.len() > 1 {
@@ -241,7 +241,7 @@ fn spread(parameter: &Parameter, value: Value, numbers: &mut Vec<f64>) -> bool {
 /// # Errors
 /// If a fault can't act inside a plant, or its kind doesn't accept a number: the variable, the
 /// value found and the values expected. The station reports other contradictions.
-pub fn faults(values: &Values) -> Result<Vec<(usize, Spec)>, FaultError> {
+pub fn faults(values: &CellValues) -> Result<Vec<(usize, FaultSpec)>, FaultError> {
     let mut all = Vec::new();
     for place in 0..FAULT_SLOTS {
         if let Some(spec) = fault(place, values)? {
@@ -251,7 +251,7 @@ pub fn faults(values: &Values) -> Result<Vec<(usize, Spec)>, FaultError> {
     Ok(all)
 }
 
-fn fault(place: usize, values: &Values) -> Result<Option<Spec>, FaultError> {
+fn fault(place: usize, values: &CellValues) -> Result<Option<FaultSpec>, FaultError> {
     let base = place * slot::FAULT_STRIDE;
     let item = values.integer(slot::FAULT_KIND + base);
     if item == 0 {
@@ -301,11 +301,11 @@ fn fault(place: usize, values: &Values) -> Result<Option<Spec>, FaultError> {
         found.set(parameter.name, numbers.value(parameter)?);
     }
     numbers.end()?;
-    Ok(Some(Spec { id, kind, values: found, schedule }))
+    Ok(Some(FaultSpec { id, kind, values: found, schedule }))
 }
 
 /// Refuses a kind that can't act inside a plant, with the reason.
-fn refuse(kind: &Kind) -> Result<(), Misplaced> {
+fn refuse(kind: &FaultKind) -> Result<(), Misplaced> {
     match kind.acts {
         _ if acts_in_plant(kind) => Ok(()),
         Acts::Unit => Err(Misplaced::Unit),
@@ -317,9 +317,9 @@ fn refuse(kind: &Kind) -> Result<(), Misplaced> {
 /// Reader of the numbers of a fault.
 struct Numbers<'a> {
     id: &'a str,
-    kind: &'static Kind,
+    kind: &'static FaultKind,
     next: usize,
-    values: &'a Values,
+    values: &'a CellValues,
     slot: usize,
 }
 
@@ -330,7 +330,7 @@ impl Numbers<'_> {
         if self.next > FAULT_NUMBERS { 0.0 } else { self.values.real(self.slot + self.next - 1) }
     }
 
-    fn wrong(&self, parameter: &Parameter, found: f64, expected: &str) -> FaultError {
+    fn wrong(&self, parameter: &FaultParameter, found: f64, expected: &str) -> FaultError {
         FaultError::Number {
             id: self.id.to_owned(),
             place: self.next,
@@ -342,7 +342,7 @@ impl Numbers<'_> {
     }
 
     /// Reads a whole number from 0 to below `count`.
-    fn place(&mut self, parameter: &Parameter, count: usize) -> Result<usize, FaultError> {
+    fn place(&mut self, parameter: &FaultParameter, count: usize) -> Result<usize, FaultError> {
         let found = self.number();
         let place = found as usize;
         if place as f64 == found && place < count {
@@ -353,7 +353,7 @@ impl Numbers<'_> {
 
     fn dimension(
         &mut self,
-        parameter: &Parameter,
+        parameter: &FaultParameter,
         dimensions: &[Dimension],
     ) -> Result<Dimension, FaultError> {
         match dimensions {
@@ -362,7 +362,7 @@ impl Numbers<'_> {
         }
     }
 
-    fn value(&mut self, parameter: &'static Parameter) -> Result<Value, FaultError> {
+    fn value(&mut self, parameter: &'static FaultParameter) -> Result<Value, FaultError> {
         Ok(match parameter.takes {
             Takes::Quantity(dimensions, bounds) => {
                 let found = self.number();
@@ -425,13 +425,13 @@ impl Numbers<'_> {
 }
 
 /// Returns the expected range of a quantity, if the value is outside of it.
-fn outside(found: f64, bounds: Bounds) -> Option<String> {
+fn outside(found: f64, bounds: ParameterBounds) -> Option<String> {
     let (fits, expected) = match bounds {
-        Bounds::NotZero => (found != 0.0, "a number other than 0".to_owned()),
-        Bounds::Any => (true, "a finite number".to_owned()),
-        Bounds::Positive => (found > 0.0, "a number above 0".to_owned()),
-        Bounds::NotNegative => (found >= 0.0, "0 or more".to_owned()),
-        Bounds::Within(from, to, _) => {
+        ParameterBounds::NotZero => (found != 0.0, "a number other than 0".to_owned()),
+        ParameterBounds::Any => (true, "a finite number".to_owned()),
+        ParameterBounds::Positive => (found > 0.0, "a number above 0".to_owned()),
+        ParameterBounds::NotNegative => (found >= 0.0, "0 or more".to_owned()),
+        ParameterBounds::Within(from, to, _) => {
             ((from..=to).contains(&found), format!("a number from {from} to {to}"))
         }
     };
@@ -440,8 +440,8 @@ fn outside(found: f64, bounds: Bounds) -> Option<String> {
 
 /// Makes the station of the faults, if there are any, with their indices.
 pub(super) fn station(
-    values: &Values,
-    config: &Config,
+    values: &CellValues,
+    config: &PlantConfig,
 ) -> Result<Option<(Station, Vec<usize>)>, FaultError> {
     let faults = faults(values)?;
     if faults.is_empty() {

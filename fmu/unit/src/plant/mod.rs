@@ -13,18 +13,18 @@ pub mod table;
 mod tests;
 
 pub use config::config;
-pub use error::{Failure, FaultError, Misplaced, PutError, Unplaced, ValueError};
+pub use error::{PlantFailure, FaultError, Misplaced, PutError, Unplaced, PlantValueError};
 pub use faults::{Number, faults, numbers, setup};
 
-use crate::component::Component;
+use crate::component::ModelComponent;
 use crate::table::Model;
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_faults::station::{Delivered, World};
-use octant_faults::{Spec, Station};
-use octant_plant::config::Config;
+use octant_faults::{FaultSpec, Station};
+use octant_plant::config::PlantConfig;
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output, Truth};
-use octant_state::{Format, StateError};
+use octant_state::{StateFormat, StateError};
 use table::{FAULT_SLOTS, slot};
 
 /// Start values of all parameters that make a plant with this configuration and these faults: name,
@@ -35,10 +35,10 @@ use table::{FAULT_SLOTS, slot};
 /// If a motion of the ship has more sinusoids than there is room for, or a fault can't be one of the
 /// plant's.
 pub fn start_values(
-    config: &Config,
-    faults: &[Spec],
+    config: &PlantConfig,
+    faults: &[FaultSpec],
 ) -> Result<Vec<(&'static str, Vec<f64>)>, PutError> {
-    let mut values = Values::new(&table::MODEL);
+    let mut values = CellValues::new(&table::MODEL);
     put(config, faults, &mut values)?;
     Ok(values.parameters(&table::MODEL))
 }
@@ -48,7 +48,7 @@ pub fn start_values(
 ///
 /// # Errors
 /// As [`start_values`].
-pub fn put(config: &Config, faults: &[Spec], values: &mut Values) -> Result<(), PutError> {
+pub fn put(config: &PlantConfig, faults: &[FaultSpec], values: &mut CellValues) -> Result<(), PutError> {
     config::put(config, values)?;
     faults::put(faults, config.sample_period_ns, values)?;
     Ok(())
@@ -111,7 +111,7 @@ const NO_OUTPUT: &Output = &Output {
 };
 
 impl Faults {
-    fn of(values: &Values, config: &Config) -> Result<Option<Self>, FaultError> {
+    fn of(values: &CellValues, config: &PlantConfig) -> Result<Option<Self>, FaultError> {
         let made = faults::station(values, config)?;
         Ok(made.map(|(station, places)| Self {
             ids: station.ids().map(str::to_owned).collect(),
@@ -123,7 +123,7 @@ impl Faults {
     }
 
     /// Begins and ends faults by hand.
-    fn hands(&mut self, values: &Values) {
+    fn hands(&mut self, values: &CellValues) {
         for (place, id) in self.places.iter().zip(&self.ids) {
             let is_on = values.boolean(slot::FAULT_FIRE + place);
             if is_on == self.hands[*place] {
@@ -152,7 +152,7 @@ impl Plant {
         faults: &mut Faults,
         command: &mut GimbalCommand,
         epoch: &mut Epoch,
-        values: &mut Values,
+        values: &mut CellValues,
     ) {
         // The caller has reported the events by now.
         faults.station.told();
@@ -173,17 +173,17 @@ impl Plant {
         outputs::put_receipts(&faults.station, &faults.places, values);
     }
 
-    fn put_truth(&self, values: &mut Values) {
+    fn put_truth(&self, values: &mut CellValues) {
         outputs::put_truth(&self.plant.truth(), values);
     }
 }
 
-impl Component for Plant {
+impl ModelComponent for Plant {
     const MODEL: &'static Model = &table::MODEL;
 
-    type Error = Failure;
+    type Error = PlantFailure;
 
-    fn initialize(values: &mut Values) -> Result<Self, Failure> {
+    fn initialize(values: &mut CellValues) -> Result<Self, PlantFailure> {
         let config = config(values)?;
         let plant = octant_plant::Plant::new(&config)?;
         let this = Self {
@@ -215,7 +215,7 @@ impl Component for Plant {
     }
 
     #[inline]
-    fn step(&mut self, values: &mut Values) -> Result<(), Failure> {
+    fn step(&mut self, values: &mut CellValues) -> Result<(), PlantFailure> {
         let target = GimbalAngles::from_rad(
             values.real(slot::COMMAND_AZIMUTH),
             values.real(slot::COMMAND_ROLL),
@@ -266,16 +266,16 @@ impl Component for Plant {
         });
     }
 
-    fn load(bytes: &[u8], values: &Values) -> Result<Self, Failure> {
+    fn load(bytes: &[u8], values: &CellValues) -> Result<Self, PlantFailure> {
         Ok(Self::read(bytes, values)?)
     }
 }
 
 /// Format of the bytes of a Plant.
-const FORMAT: Format = Format { magic: "OCTPLANT", version: 1, what: "the state of a Plant" };
+const FORMAT: StateFormat = StateFormat { magic: "OCTPLANT", version: 1, what: "the state of a Plant" };
 
 impl Plant {
-    fn read(bytes: &[u8], values: &Values) -> Result<Self, StateError> {
+    fn read(bytes: &[u8], values: &CellValues) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let plant: Vec<u8> = from.value("plant")?;
         let station: Vec<u8> = from.value("station")?;
@@ -292,7 +292,7 @@ impl Plant {
         let mut faults = Faults::of(values, &config).map_err(unfit)?;
         if let Some(faults) = &mut faults {
             let found = self::faults(values).map_err(unfit)?;
-            let specs: Vec<Spec> = found.into_iter().map(|(_, spec)| spec).collect();
+            let specs: Vec<FaultSpec> = found.into_iter().map(|(_, spec)| spec).collect();
             faults.station = Station::load(&specs, &setup(&config), &station)?;
             (faults.begun, faults.hands) = (begun, hands);
         } else if !station.is_empty() {

@@ -1,14 +1,14 @@
 //! Samples, references, truth and receipts as values.
 
 use super::table::{FAULT_SLOTS, slot};
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_faults::Station;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Epoch, Reference, Truth};
 
 /// Writes a sample and its aiding. Counts are exact as Real.
 #[inline]
-pub(super) fn put(epoch: &Epoch, values: &mut Values) {
+pub(super) fn put(epoch: &Epoch, values: &mut CellValues) {
     let Epoch { sample, aiding } = epoch;
     for axis in 0..3 {
         let theta = f64::from(sample.delta_theta[axis]) * DELTA_THETA_LSB_RAD;
@@ -44,13 +44,13 @@ pub(super) fn put(epoch: &Epoch, values: &mut Values) {
 }
 
 /// Writes that there is no sample.
-pub(super) fn put_none(values: &mut Values) {
+pub(super) fn put_none(values: &mut CellValues) {
     values.set_boolean(slot::IMU_VALID, false);
     values.set_integer(slot::REFERENCE_KIND, 0);
 }
 
 /// Writes the truth.
-pub(super) fn put_truth(truth: &Truth, values: &mut Values) {
+pub(super) fn put_truth(truth: &Truth, values: &mut CellValues) {
     values.set_real(slot::TRUTH_LATITUDE, truth.latitude_rad);
     values.set_real(slot::TRUTH_LONGITUDE, truth.longitude_rad);
     values.set_real(slot::TRUTH_HEIGHT, truth.height_m);
@@ -61,7 +61,7 @@ pub(super) fn put_truth(truth: &Truth, values: &mut Values) {
 }
 
 /// Writes the receipts of the faults; `places`: their indices among the parameters.
-pub(super) fn put_receipts(station: &Station, places: &[usize], values: &mut Values) {
+pub(super) fn put_receipts(station: &Station, places: &[usize], values: &mut CellValues) {
     for (fault, place) in places.iter().enumerate().filter(|(_, place)| **place < FAULT_SLOTS) {
         let Some(progress) = station.progress(fault) else { continue };
         let base = place * slot::RECEIPT_STRIDE;

@@ -12,9 +12,9 @@ pub use enumerations::{AIDING, FAULT_KIND, MOTION, REFERENCE_KIND};
 pub use faults::{FAULT_NUMBERS, FAULT_SLOTS};
 pub use world::SINUSOIDS_MAX;
 
-use crate::table::{Model, Variable, concatenated, count};
+use crate::table::{Model, DeclaredVariable, concatenated, count};
 
-const PARTS: &[&[Variable]] = &[
+const PARTS: &[&[DeclaredVariable]] = &[
     &ports::INPUTS,
     &faults::INPUTS,
     &ports::OUTPUTS,
@@ -26,7 +26,7 @@ const PARTS: &[&[Variable]] = &[
 
 const COUNT: usize = count(PARTS);
 
-static VARIABLES: [Variable; COUNT] = concatenated(PARTS);
+static VARIABLES: [DeclaredVariable; COUNT] = concatenated(PARTS);
 
 /// The Plant.
 pub static MODEL: Model = Model {
@@ -42,7 +42,7 @@ pub static MODEL: Model = Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Causality, Kind};
+    use crate::table::{DeclaredCausality, ElementType};
     use std::collections::BTreeSet;
 
     #[test]
@@ -52,7 +52,7 @@ mod tests {
             let name = variable.name;
             assert!(names.insert(name), "{name} twice");
             assert!(variable.description.ends_with('.'), "{name}");
-            let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
+            let has_start = matches!(variable.causality, DeclaredCausality::Parameter | DeclaredCausality::Input);
             assert_eq!(variable.start.is_empty(), !has_start, "{name}");
             assert!(
                 variable.start.len() <= 1 || variable.start.len() == variable.slots(),
@@ -61,7 +61,7 @@ mod tests {
             for start in variable.start {
                 assert!(variable.min.is_none_or(|min| *start >= min), "{name}: {start}");
                 assert!(variable.max.is_none_or(|max| *start <= max), "{name}: {start}");
-                if let Kind::Enumeration(of) = variable.kind {
+                if let ElementType::Enumeration(of) = variable.kind {
                     assert!(of.items.iter().any(|item| f64::from(item.0) == *start), "{name}");
                 }
             }
@@ -82,9 +82,9 @@ mod tests {
             model.variables.iter().filter(move |variable| variable.causality == causality)
         };
         let calibrator = &crate::calibrator::table::MODEL;
-        for input in of(calibrator, Causality::Input) {
+        for input in of(calibrator, DeclaredCausality::Input) {
             let (_, output) = MODEL.find(input.name).unwrap();
-            assert_eq!(output.causality, Causality::Output, "{}", input.name);
+            assert_eq!(output.causality, DeclaredCausality::Output, "{}", input.name);
             assert_eq!(
                 (output.kind, output.elements, output.quantity),
                 (input.kind, input.elements, input.quantity),
@@ -92,7 +92,7 @@ mod tests {
                 input.name
             );
         }
-        for input in of(&MODEL, Causality::Input).filter(|input| !input.name.starts_with("fault")) {
+        for input in of(&MODEL, DeclaredCausality::Input).filter(|input| !input.name.starts_with("fault")) {
             let (_, output) = calibrator.find(input.name).unwrap();
             assert_eq!((output.kind, output.elements), (input.kind, input.elements));
             assert_eq!(output.quantity, input.quantity);

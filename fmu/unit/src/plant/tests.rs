@@ -3,8 +3,8 @@
 
 use super::table::{FAULT_KIND, FAULT_NUMBERS, MODEL, slot};
 use super::{Plant, numbers};
-use crate::component::Component;
-use crate::values::Values;
+use crate::component::ModelComponent;
+use crate::values::CellValues;
 use octant_faults::kinds;
 
 fn at(name: &str) -> usize {
@@ -20,20 +20,20 @@ fn item(kind: &str) -> i32 {
 }
 
 /// Sets a bias on the x gyro for a fault: 1e-3 rad/s.
-fn bias_step(place: usize, values: &mut Values) {
+fn bias_step(place: usize, values: &mut CellValues) {
     let of = |name: &str| at(&format!("fault[{place}].{name}"));
     values.set_integer(of("kind"), item("bias-step"));
     // Channels, the bias, and its dimension (that of gyros).
     values.set_reals(of("values"), &[1.0, 1e-3, 0.0]);
 }
 
-fn made(mut values: Values) -> (Plant, Values) {
+fn made(mut values: CellValues) -> (Plant, CellValues) {
     let plant = Plant::initialize(&mut values).unwrap();
     (plant, values)
 }
 
-fn refused(change: impl FnOnce(&mut Values)) -> String {
-    let mut values = Values::new(&MODEL);
+fn refused(change: impl FnOnce(&mut CellValues)) -> String {
+    let mut values = CellValues::new(&MODEL);
     change(&mut values);
     match Plant::initialize(&mut values) {
         Ok(_) => panic!("it was taken: {:?}", super::faults(&values)),
@@ -43,7 +43,7 @@ fn refused(change: impl FnOnce(&mut Values)) -> String {
 
 #[test]
 fn before_the_first_sample_there_is_truth_and_nothing_else() {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     bias_step(2, &mut values);
     let (plant, values) = made(values);
     assert_eq!(plant.period_ns(), 5_000_000);
@@ -58,7 +58,7 @@ fn before_the_first_sample_there_is_truth_and_nothing_else() {
 
 #[test]
 fn the_reference_comes_once_a_second_and_truth_can_be_left_out() {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     values.set_boolean(at("truth.enabled"), false);
     values.set_real(at("gimbal_command.azimuth"), 1.0);
     let (mut plant, mut values) = made(values);
@@ -79,14 +79,14 @@ fn the_reference_comes_once_a_second_and_truth_can_be_left_out() {
 
 #[test]
 fn a_fault_by_hand_is_held_or_lasts_its_duration() {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     for place in [1, 2] {
         bias_step(place, &mut values);
         values.set_boolean(at(&format!("fault[{place}].by_hand")), true);
     }
     values.set_real(at("fault[2].duration"), 0.02);
     let (mut plant, mut values) = made(values);
-    let (mut clean, mut twin) = made(Values::new(&MODEL));
+    let (mut clean, mut twin) = made(CellValues::new(&MODEL));
     let mut altered = Vec::new();
     let mut remarks = Vec::new();
     for k in 1..=100 {
@@ -112,7 +112,7 @@ fn a_fault_by_hand_is_held_or_lasts_its_duration() {
 
 #[test]
 fn a_lost_sample_is_not_valid() {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     values.set_integer(at("fault[1].kind"), item("dropout"));
     // All samples are lost, and aiding with them; from 0.05 s on for 0.1 s.
     values.set_reals(at("fault[1].values"), &[1.0, 0.0]);
@@ -133,7 +133,7 @@ fn a_lost_sample_is_not_valid() {
 #[test]
 fn what_is_wrong_is_said() {
     let kind = |name: &'static str| {
-        move |values: &mut Values| {
+        move |values: &mut CellValues| {
             let all: Vec<_> = kinds::all().map(|kind| kind.name).collect();
             let place = all.iter().position(|known| *known == name).unwrap();
             values.set_integer(at("fault[3].kind"), place as i32 + 1);
@@ -235,7 +235,7 @@ fn every_kind_has_room_for_its_numbers_and_says_what_they_are() {
 
 #[test]
 fn a_state_is_of_one_plant_and_whole() {
-    let mut values = Values::new(&MODEL);
+    let mut values = CellValues::new(&MODEL);
     bias_step(1, &mut values);
     values.set_real(at("fault[1].start"), 0.5);
     let (mut plant, mut values) = made(values);
@@ -259,7 +259,7 @@ fn a_state_is_of_one_plant_and_whole() {
         altered[at] ^= 0x10;
         assert!(Plant::load(&altered, &values).is_err(), "{at}");
     }
-    let said = |change: &dyn Fn(&mut Values)| {
+    let said = |change: &dyn Fn(&mut CellValues)| {
         let mut values = values.clone();
         change(&mut values);
         Plant::load(&bytes, &values).unwrap_err().to_string()

@@ -8,51 +8,51 @@ use node::{Node, frame_of, frames, frames_of, operation, operations, slot, trans
 use octant_calibration::Core;
 use octant_fmi::fmi3::{DISCARD, ERROR, OK};
 use octant_fmu::c::fmi3::*;
-use octant_fmu::values::Values;
+use octant_fmu::values::CellValues;
 use octant_fmu::{calibrator, plant};
 use octant_plant::Plant;
 use octant_sample::{Aiding, Output, Parameters, Sample};
-use octant_wire::can::{Event, Format, Frame, Reassembler};
+use octant_wire::can::{ReassemblyEvent, CanVersion, BusFrame, Reassembler};
 use octant_wire::message::{
-    AidingMessage, Condition, End, Hello, Limits, Pacing, ParametersSegment, Restart,
+    AidingMessage, EndCondition, End, Hello, EndLimits, StepPacing, ParametersSegment, Restart,
     SampleMessage, TimeRequest,
 };
-use octant_wire::{Message, Role, Step};
+use octant_wire::{Message, EndRole, StepNumber};
 use std::ptr::null;
 
 const PERIOD_S: f64 = 0.005;
 
 /// The harness's end: what it has put together of the frames that came.
 struct Harness {
-    format: Format,
+    format: CanVersion,
     reassembler: Reassembler,
 }
 
 impl Harness {
-    fn new(format: Format) -> Self {
-        Self { format, reassembler: Reassembler::new(&[Role::Device], format) }
+    fn new(format: CanVersion) -> Self {
+        Self { format, reassembler: Reassembler::new(&[EndRole::Device], format) }
     }
 
     fn hear(&mut self, bytes: &[u8]) -> Vec<Message> {
         frames_of(bytes).iter().filter_map(|frame| self.hear_frame(frame)).collect()
     }
 
-    fn hear_frame(&mut self, frame: &Frame) -> Option<Message> {
+    fn hear_frame(&mut self, frame: &BusFrame) -> Option<Message> {
         match self.reassembler.receive(frame) {
-            Some(Event::Received { message, .. }) => Some(message),
-            Some(Event::Lost(lost)) => panic!("{lost:?}"),
+            Some(ReassemblyEvent::Received { message, .. }) => Some(message),
+            Some(ReassemblyEvent::Lost(lost)) => panic!("{lost:?}"),
             None => None,
         }
     }
 
-    fn hello(&self, session: u32, pacing: Pacing) -> Vec<u8> {
-        let limits = Limits { silence_ms: 2000, ..Limits::default() };
+    fn hello(&self, session: u32, pacing: StepPacing) -> Vec<u8> {
+        let limits = EndLimits { silence_ms: 2000, ..EndLimits::default() };
         let hello =
             Hello { session, pacing, limits, sample_period_ns: 5_000_000, ..Hello::default() };
         frames(&Message::Hello(hello), self.format)
     }
 
-    fn sample(&self, step: Step, sample: &Sample, aiding: Option<&Aiding>) -> Vec<u8> {
+    fn sample(&self, step: StepNumber, sample: &Sample, aiding: Option<&Aiding>) -> Vec<u8> {
         let mut bytes = Vec::new();
         if let Some(aiding) = aiding {
             let aiding = AidingMessage { step, aiding: *aiding };
@@ -76,7 +76,7 @@ struct InProcess {
 
 impl InProcess {
     fn new(offset: Option<&Parameters>) -> Self {
-        let mut config = calibrator::config(&Values::new(&calibrator::table::MODEL)).unwrap();
+        let mut config = calibrator::config(&CellValues::new(&calibrator::table::MODEL)).unwrap();
         if let Some(offset) = offset {
             let (a, b) = (config.initial_parameters.to_array(), offset.to_array());
             config.initial_parameters =
@@ -84,7 +84,7 @@ impl InProcess {
         }
         let core = Core::new(&config).unwrap();
         let plant =
-            Plant::new(&plant::config(&Values::new(&plant::table::MODEL)).unwrap()).unwrap();
+            Plant::new(&plant::config(&CellValues::new(&plant::table::MODEL)).unwrap()).unwrap();
         Self {
             output: core.latest(),
             core,
@@ -101,12 +101,12 @@ impl InProcess {
     }
 
     /// Answer of the device to the sample.
-    fn answer(&mut self, step: Step) -> Vec<Message> {
+    fn answer(&mut self, step: StepNumber) -> Vec<Message> {
         self.core.step_into(&self.sample, self.aiding.as_ref(), &mut self.output);
         self.expected(step)
     }
 
-    fn expected(&mut self, step: Step) -> Vec<Message> {
+    fn expected(&mut self, step: StepNumber) -> Vec<Message> {
         let revision = self.output.parameters_revision;
         let follow = self.revision.replace(revision) != Some(revision);
         let output = octant_wire::message::OutputMessage {
@@ -140,12 +140,12 @@ fn answers(messages: Vec<Message>) -> Vec<Message> {
 
 #[test]
 fn at_power_on_it_says_how_it_is_set_up_and_who_it_is() {
-    for (settings, format) in [(&[][..], Format::Classic), (&["can.fd"][..], Format::Fd)] {
+    for (settings, format) in [(&[][..], CanVersion::Classic), (&["can.fd"][..], CanVersion::Fd)] {
         let mut node = Node::new(settings);
         assert_eq!(node.interval(), (0.0, 1), "it was asked before");
         let bytes = node.all_sent();
         let codes: Vec<u32> = operations(&bytes).iter().map(|(code, _)| *code).collect();
-        let settings = if format == Format::Fd { 3 } else { 2 };
+        let settings = if format == CanVersion::Fd { 3 } else { 2 };
         assert_eq!(codes[..settings], vec![0x40; settings]);
         assert_eq!(codes[settings], 0x41);
         let [(_, rate), ..] = &operations(&bytes)[..] else { panic!() };
@@ -159,16 +159,16 @@ fn at_power_on_it_says_how_it_is_set_up_and_who_it_is() {
 
 /// 70 s from power on: the alignment, and ten measurements. Restarted with other parameters, moved to
 /// another instance in the middle of a message, and concluded.
-fn lock_step(settings: &[&str], format: Format) {
+fn lock_step(settings: &[&str], format: CanVersion) {
     let offset = Parameters::from_array(&std::array::from_fn(|i| 1e-9 * i as f64));
     let mut node = Node::new(settings);
     let mut harness = Harness::new(format);
     harness.hear(&node.all_sent());
-    node.receive(&harness.hello(77, Pacing::LockStep));
+    node.receive(&harness.hello(77, StepPacing::LockStep));
     let messages = harness.hear(&node.all_sent());
     assert!(matches!(&messages[..], [Message::Hello(hello)] if hello.session == 77));
 
-    let mut step = Step::default();
+    let mut step = StepNumber::default();
     let mut own = InProcess::new(None);
     for k in 1..=14_300_u32 {
         step = step.next();
@@ -222,12 +222,12 @@ fn lock_step(settings: &[&str], format: Format) {
 
 #[test]
 fn outputs_on_classic_can_are_those_of_the_core() {
-    lock_step(&[], Format::Classic);
+    lock_step(&[], CanVersion::Classic);
 }
 
 #[test]
 fn outputs_on_can_fd_are_those_of_the_core() {
-    lock_step(&["can.fd"], Format::Fd);
+    lock_step(&["can.fd"], CanVersion::Fd);
 }
 
 /// A bus that confirms, and now and then lets a frame lose or destroys it. What becomes of the frame
@@ -282,15 +282,15 @@ impl Bus {
 #[test]
 fn with_notifications_every_frame_arrives_in_the_end() {
     let mut node = Node::new(&["can.bus_notifications"]);
-    let mut harness = Harness::new(Format::Classic);
+    let mut harness = Harness::new(CanVersion::Classic);
     let mut bus = Bus { random: 7, lost: 0, destroyed: 0 };
     let messages = bus.carry(&mut node, &mut harness);
     assert!(matches!(&messages[..], [Message::Hello(_)]));
-    node.receive(&harness.hello(5, Pacing::RealTime));
+    node.receive(&harness.hello(5, StepPacing::RealTime));
     let messages = bus.carry(&mut node, &mut harness);
     assert!(matches!(&messages[..], [Message::Hello(_)]));
     let mut own = InProcess::new(None);
-    let mut step = Step::default();
+    let mut step = StepNumber::default();
     for k in 0..400 {
         step = step.next();
         own.next_sample();
@@ -317,11 +317,11 @@ fn off_the_bus_it_is_silent_until_it_has_heard_enough() {
     node.receive(&error);
     assert_eq!(node.item("can.node_state"), 3);
     assert_eq!(node.all_sent(), operation(0x41, &[&[3]]));
-    let harness = Harness::new(Format::Classic);
-    node.receive(&harness.hello(9, Pacing::LockStep));
+    let harness = Harness::new(CanVersion::Classic);
+    node.receive(&harness.hello(9, StepPacing::LockStep));
     assert!(node.all_sent().is_empty(), "an answer while it is off");
     // The hello was 14 frames.
-    let other = transmit(&Frame::new(0x7F, Format::Classic, &[]).unwrap());
+    let other = transmit(&BusFrame::new(0x7F, CanVersion::Classic, &[]).unwrap());
     node.receive(&other.repeat(113));
     assert_eq!(node.item("can.node_state"), 3);
     node.receive(&other);
@@ -360,10 +360,10 @@ fn what_it_does_not_rely_on_it_ignores_and_nonsense_it_quotes() {
 #[test]
 fn by_time_it_says_how_it_is() {
     let mut node = Node::new(&["can.fd"]);
-    let mut harness = Harness::new(Format::Fd);
+    let mut harness = Harness::new(CanVersion::Fd);
     node.all_sent();
     assert!(node.run_to(1.7).is_empty(), "without a session there is nothing to say");
-    node.receive(&harness.hello(1, Pacing::LockStep));
+    node.receive(&harness.hello(1, StepPacing::LockStep));
     let mut said = node.run_to(4.0).into_iter();
     assert!((said.next().unwrap().0 - 1.7).abs() < 1e-9);
     // Silent for a quarter of two seconds: a heartbeat; a status once a second.
@@ -372,7 +372,7 @@ fn by_time_it_says_how_it_is() {
         for message in harness.hear(&bytes) {
             let what = match message {
                 Message::Heartbeat(beat) => {
-                    assert_eq!(beat.condition, Condition::Ready);
+                    assert_eq!(beat.condition, EndCondition::Ready);
                     assert_eq!(beat.clock.ns, (time_s * 1e9).round() as u64);
                     'h'
                 }
@@ -387,7 +387,7 @@ fn by_time_it_says_how_it_is() {
     }
     assert_eq!(times, [(2200, 'h'), (2700, 's'), (3200, 'h'), (3700, 's')]);
     let request = TimeRequest { id: 3, ..TimeRequest::default() };
-    node.receive(&frames(&Message::TimeRequest(request), Format::Fd));
+    node.receive(&frames(&Message::TimeRequest(request), CanVersion::Fd));
     let messages = harness.hear(&node.all_sent());
     assert!(
         matches!(&messages[..], [Message::TimeReply(r)] if r.id == 3 && r.sent.ns == 4_000_000_000)
@@ -397,14 +397,14 @@ fn by_time_it_says_how_it_is() {
 #[test]
 fn a_harness_that_does_not_fit_is_refused() {
     let mut node = Node::new(&[]);
-    let mut harness = Harness::new(Format::Classic);
+    let mut harness = Harness::new(CanVersion::Classic);
     harness.hear(&node.all_sent());
     let hello = Hello { session: 4, sample_period_ns: 1, ..Hello::default() };
-    node.receive(&frames(&Message::Hello(hello), Format::Classic));
+    node.receive(&frames(&Message::Hello(hello), CanVersion::Classic));
     let messages = harness.hear(&node.all_sent());
     assert!(matches!(&messages[..], [Message::Hello(_), Message::Bye(bye)] if bye.reason.0 == 5));
     // A newer version is readable up to its number.
-    let newer = Frame::new(0x1E0, Format::Classic, &[2, 0, 0, 0, 0, 0, 0, 0]).unwrap();
+    let newer = BusFrame::new(0x1E0, CanVersion::Classic, &[2, 0, 0, 0, 0, 0, 0, 0]).unwrap();
     node.receive(&transmit(&newer));
     let messages = harness.hear(&node.all_sent());
     assert!(matches!(&messages[..], [Message::Bye(bye)] if bye.reason.0 == 1));

@@ -2,10 +2,10 @@
 
 use octant_fmi::fmi3::OK;
 use octant_fmu::c::fmi3::*;
-use octant_fmu::c::{Standard, token};
+use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator_can::table::MODEL;
-use octant_wire::can::{Format, Frame, Segments};
-use octant_wire::{Message, Role};
+use octant_wire::can::{CanVersion, BusFrame, Segments};
+use octant_wire::{Message, EndRole};
 use std::ffi::{CString, c_void};
 use std::ptr::{null, null_mut};
 
@@ -31,7 +31,7 @@ impl Drop for Node {
 impl Node {
     pub(crate) fn instantiated() -> Self {
         let (name, token) =
-            (CString::new("node").unwrap(), CString::new(token(&MODEL, Standard::Fmi3)).unwrap());
+            (CString::new("node").unwrap(), CString::new(token(&MODEL, ServedStandard::Fmi3)).unwrap());
         // SAFETY: strings, and no callbacks.
         let handle = unsafe {
             let (name, token) = (name.as_ptr(), token.as_ptr());
@@ -254,18 +254,18 @@ pub(crate) fn operation(code: u32, arguments: &[&[u8]]) -> Vec<u8> {
     [&code.to_le_bytes()[..], &length.to_le_bytes(), &arguments].concat()
 }
 
-pub(crate) fn transmit(frame: &Frame) -> Vec<u8> {
+pub(crate) fn transmit(frame: &BusFrame) -> Vec<u8> {
     let (id, size) = (u32::from(frame.id()).to_le_bytes(), frame.data().len() as u16);
     let size = size.to_le_bytes();
     match frame.format() {
-        Format::Classic => operation(0x10, &[&id, &[0, 0], &size, frame.data()]),
-        Format::Fd => operation(0x11, &[&id, &[0, 1, 0], &size, frame.data()]),
+        CanVersion::Classic => operation(0x10, &[&id, &[0, 0], &size, frame.data()]),
+        CanVersion::Fd => operation(0x11, &[&id, &[0, 1, 0], &size, frame.data()]),
     }
 }
 
 /// A message of the harness as operations.
-pub(crate) fn frames(message: &Message, format: Format) -> Vec<u8> {
-    let segments: Segments = octant_wire::can::segments(message, Role::Harness, format).unwrap();
+pub(crate) fn frames(message: &Message, format: CanVersion) -> Vec<u8> {
+    let segments: Segments = octant_wire::can::segments(message, EndRole::Harness, format).unwrap();
     segments.flat_map(|frame| transmit(&frame)).collect()
 }
 
@@ -282,20 +282,20 @@ pub(crate) fn operations(mut bytes: &[u8]) -> Vec<(u32, Vec<u8>)> {
 }
 
 /// The frames in operations; other operations are left out.
-pub(crate) fn frames_of(bytes: &[u8]) -> Vec<Frame> {
+pub(crate) fn frames_of(bytes: &[u8]) -> Vec<BusFrame> {
     operations(bytes).iter().filter_map(|(code, arguments)| frame_of(*code, arguments)).collect()
 }
 
-pub(crate) fn frame_of(code: u32, arguments: &[u8]) -> Option<Frame> {
+pub(crate) fn frame_of(code: u32, arguments: &[u8]) -> Option<BusFrame> {
     let id = u16::from_le_bytes([arguments[0], *arguments.get(1)?]);
     match code {
         0x10 => {
             assert_eq!(arguments[4..6], [0, 0], "not extended, not remote");
-            Frame::new(id, Format::Classic, &arguments[8..])
+            BusFrame::new(id, CanVersion::Classic, &arguments[8..])
         }
         0x11 => {
             assert_eq!(arguments[4..6], [0, 1], "not extended, with a switch of the bit rate");
-            Frame::new(id, Format::Fd, &arguments[9..])
+            BusFrame::new(id, CanVersion::Fd, &arguments[9..])
         }
         _ => None,
     }

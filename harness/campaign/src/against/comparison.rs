@@ -1,11 +1,11 @@
 //! One ensemble, predicted and simulated, error by error.
 
-use octant_statistics::sample::Interval;
+use octant_statistics::sample::ConfidenceInterval;
 use serde::{Deserialize, Serialize};
 
 /// One ensemble, predicted and simulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
+pub struct EnsembleComparison {
     /// Name of the scenario in the campaign.
     pub scenario: String,
     /// Keys that are set.
@@ -31,9 +31,9 @@ pub struct Comparison {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detects: Option<Detects>,
     /// Parameters at the end of the calibration.
-    pub states: Vec<Row>,
+    pub states: Vec<ErrorRow>,
     /// Position errors in navigation.
-    pub drift: Vec<Row>,
+    pub drift: Vec<ErrorRow>,
     /// Mean over the parameters of predicted over simulated σ; null where there is none.
     pub mean_ratio: Option<f64>,
     /// Conclusion whether the prediction holds for these runs; null if there are too few.
@@ -57,7 +57,7 @@ pub struct Detects {
 
 /// One error, predicted and simulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct ErrorRow {
     /// Name.
     pub name: String,
     /// Unit.
@@ -70,9 +70,9 @@ pub struct Row {
     /// Predicted σ about the predicted mean.
     pub predicted_sigma: f64,
     /// Mean of the sample with its interval.
-    pub simulated_mean: Interval,
+    pub simulated_mean: ConfidenceInterval,
     /// σ of the sample about its mean, with its interval.
-    pub simulated_sigma: Interval,
+    pub simulated_sigma: ConfidenceInterval,
     /// Predicted over simulated σ; null if that is zero.
     pub ratio: Option<f64>,
     /// True if both predictions are within the intervals.

@@ -2,12 +2,12 @@
 
 use super::drift::DRAWN_MAX;
 use super::elements::heading;
-use crate::report::Report;
+use crate::report::CampaignReport;
 use maud::{Markup, html};
-use octant_report::chart::{Band, Chart, Line, Role};
-use octant_statistics::convergence::Step;
+use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
+use octant_statistics::convergence::ConvergenceStep;
 
-pub(super) fn section(report: &Report<'_>) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let requirements = || report.statistics.requirements.iter().filter(|r| r.convergence.len() > 1);
     let drifts = || {
         (report.combinations.iter().zip(&report.statistics.combinations))
@@ -21,12 +21,12 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
             p.hint { "Estimates from the first draws of the plan, with intervals at 95 %, where the draws are enough for one." }
             div.multiples {
                 @for r in requirements() {
-                    (chart(&r.id, "probability that a draw passes, %", &[("passed", Role::Primary, &r.convergence)], 100.0))
+                    (chart(&r.id, "probability that a draw passes, %", &[("passed", ChartRole::Primary, &r.convergence)], 100.0))
                 }
                 @for (combination, figures) in drifts().take(DRAWN_MAX) {
                     (chart(&combination.name(), "radial error at the end, nmi", &[
-                        ("CEP50", Role::Primary, &figures.convergence_cep50),
-                        ("R95", Role::Baseline, &figures.convergence_r95),
+                        ("CEP50", ChartRole::Primary, &figures.convergence_cep50),
+                        ("R95", ChartRole::Baseline, &figures.convergence_r95),
                     ], 1.0))
                 }
             }
@@ -34,7 +34,7 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
     }
 }
 
-fn chart(of: &str, unit: &str, estimates: &[(&str, Role, &Vec<Step>)], factor: f64) -> Markup {
+fn chart(of: &str, unit: &str, estimates: &[(&str, ChartRole, &Vec<ConvergenceStep>)], factor: f64) -> Markup {
     let mut chart = Chart::new(&format!("{of}: {unit} by number of draws"), "draws", unit);
     (chart.width, chart.height, chart.hours) = (320.0, 190.0, false);
     for (label, role, steps) in estimates {
@@ -48,7 +48,7 @@ fn chart(of: &str, unit: &str, estimates: &[(&str, Role, &Vec<Step>)], factor: f
                 .map(|s| [s.runs as f64, factor * s.estimate.low, factor * s.estimate.high])
                 .collect(),
         });
-        chart.lines.push(Line {
+        chart.lines.push(ChartLine {
             label: (*label).to_owned(),
             role: *role,
             points: steps.iter().map(|s| [s.runs as f64, factor * s.estimate.value]).collect(),

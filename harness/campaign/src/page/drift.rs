@@ -1,16 +1,16 @@
 //! Drift of the cases: figures with bounds, and percentiles over time.
 
 use super::elements::{heading, with_bounds};
-use crate::report::Report;
+use crate::report::CampaignReport;
 use crate::report::figures::{CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_report::chart::{Band, Chart, Line, Role};
+use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 
 /// Maximum number of combinations that are drawn.
 pub(super) const DRAWN_MAX: usize = 24;
 
-pub(super) fn table(report: &Report<'_>) -> Markup {
+pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
     let statistics = &report.statistics;
     let none = statistics.combinations.iter().all(|figures| figures.navigated == 0);
     html! {
@@ -93,7 +93,7 @@ fn row(name: &str, figures: &CombinationFigures) -> Markup {
 }
 
 /// Renders errors at 24 h and 72 h, for navigations that lasted as long.
-fn marks(report: &Report<'_>) -> Markup {
+fn marks(report: &CampaignReport<'_>) -> Markup {
     let all = || report.combinations.iter().zip(&report.statistics.combinations);
     if all().all(|(_, figures)| figures.at_marks.is_empty()) {
         return html! {};
@@ -111,7 +111,7 @@ fn marks(report: &Report<'_>) -> Markup {
 }
 
 /// Draws percentiles of the errors over time. Curves of a prediction belong into the same charts.
-pub(super) fn envelopes(report: &Report<'_>) -> Markup {
+pub(super) fn envelopes(report: &CampaignReport<'_>) -> Markup {
     let all = || {
         (report.combinations.iter().zip(&report.statistics.combinations))
             .filter_map(|(combination, figures)| Some((combination, figures.envelope.as_ref()?)))
@@ -148,7 +148,7 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
     };
     let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
-    for (role, from, to) in [(Role::Reference, least, greatest), (Role::Primary, low, high)] {
+    for (role, from, to) in [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)] {
         let points = envelope.hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),
@@ -157,9 +157,9 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         });
     }
     let points = envelope.hours.iter().enumerate();
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "median".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: points.map(|(k, hours)| [*hours, value(middle, k)]).collect(),
     });
     chart.render()

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use octant_base::number;
-use octant_statistics::sample::Interval;
+use octant_statistics::sample::ConfidenceInterval;
 
 /// Maximum number of rows of a table on the page; the rest is in separate files.
 pub(super) const ROWS_MAX: usize = 2000;
@@ -44,7 +44,7 @@ pub(super) fn case_link(case: &str, beside: bool) -> Markup {
 }
 
 /// Renders an estimate with its interval.
-pub(super) fn with_bounds(interval: &Interval) -> Markup {
+pub(super) fn with_bounds(interval: &ConfidenceInterval) -> Markup {
     let end = |value: f64| {
         if value.is_finite() { number::significant(value, 3) } else { "∞".to_owned() }
     };

@@ -2,8 +2,8 @@
 //! dispositions.
 
 use super::elements::{case_link, heading};
-use crate::report::Report;
-use crate::report::rows::{Outcome, Row};
+use crate::report::CampaignReport;
+use crate::report::rows::{RowOutcome, ReportRow};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::discrepancies::table;
@@ -13,10 +13,10 @@ const SHOWN: usize = 50;
 /// Number of cases of a discrepancy that are shown at once; the others are folded.
 const FIRST: usize = 5;
 
-pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
     let outliers = &report.statistics.outliers;
-    let of = |wanted: &dyn Fn(&Outcome) -> Option<String>| -> Vec<(String, String)> {
-        let why = |row: &Row<'_>| Some((row.case.id.clone(), wanted(row.outcome.as_ref()?)?));
+    let of = |wanted: &dyn Fn(&RowOutcome) -> Option<String>| -> Vec<(String, String)> {
+        let why = |row: &ReportRow<'_>| Some((row.case.id.clone(), wanted(row.outcome.as_ref()?)?));
         report.rows.iter().filter_map(why).collect()
     };
     let errors = of(&|outcome| outcome.error.clone());
@@ -68,7 +68,7 @@ fn more(all: usize, place: &str) -> Markup {
 }
 
 fn cases(
-    report: &Report<'_>,
+    report: &CampaignReport<'_>,
     title: &str,
     none: &str,
     all: &[(String, String)],
@@ -94,7 +94,7 @@ fn cases(
 }
 
 /// Renders everything that isn't a pass, with the dispositions.
-pub(super) fn discrepancies(report: &Report<'_>, beside: bool) -> Markup {
+pub(super) fn discrepancies(report: &CampaignReport<'_>, beside: bool) -> Markup {
     let hint = "What is said of them stands in dispositions.toml, which people fill in. It changes no \
         verdict. One more case makes another discrepancy, of which nothing is said yet.";
     let list = |cases: &[String]| list(cases, beside);

@@ -3,12 +3,12 @@
 
 use super::elements::{ROWS_MAX, case_link, heading};
 use super::requirements::check;
-use crate::report::Report;
+use crate::report::CampaignReport;
 use crate::report::combination::shown;
 use maud::{Markup, html};
 use octant_report::page::badge;
 
-pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
     let trace = &report.trace;
     html! {
         (heading("trace"))
@@ -64,7 +64,7 @@ fn missing(title: &str, ids: &[String], cases: bool) -> Markup {
     }
 }
 
-fn cases(report: &Report<'_>, beside: bool) -> Markup {
+fn cases(report: &CampaignReport<'_>, beside: bool) -> Markup {
     let requirements = &report.statistics.requirements;
     html! {
         details {

@@ -14,7 +14,7 @@ mod prediction;
 mod requirements;
 mod sensitivity;
 
-use crate::report::{Report, again};
+use crate::report::{CampaignReport, again};
 use elements::{SECTIONS, heading, short};
 use maud::{Markup, html};
 use octant_base::number;
@@ -24,7 +24,7 @@ use octant_requirements::Verdict;
 /// Renders the report as one HTML file. `beside` tells that it is in the folder of the campaign:
 /// then cases link to the files of their results.
 #[must_use]
-pub fn render(report: &Report<'_>, beside: bool) -> String {
+pub fn render(report: &CampaignReport<'_>, beside: bool) -> String {
     let verdict = report.statistics.verdict;
     let body = html! {
         a.skip href="#requirements" { "To the requirements" }
@@ -53,7 +53,7 @@ fn contents() -> Markup {
     }
 }
 
-fn header(report: &Report<'_>) -> Markup {
+fn header(report: &CampaignReport<'_>) -> Markup {
     let statistics = &report.statistics;
     html! {
         header {
@@ -90,7 +90,7 @@ fn header(report: &Report<'_>) -> Markup {
 }
 
 /// Summarises the cases and their results.
-fn what_was_done(report: &Report<'_>) -> String {
+fn what_was_done(report: &CampaignReport<'_>) -> String {
     let statistics = &report.statistics;
     let run = statistics.cases - statistics.open;
     let count =
@@ -111,7 +111,7 @@ fn what_was_done(report: &Report<'_>) -> String {
     text
 }
 
-fn figures(report: &Report<'_>) -> Markup {
+fn figures(report: &CampaignReport<'_>) -> Markup {
     let statistics = &report.statistics;
     let all = statistics.requirements.len();
     let shown = statistics.requirements.iter().filter(|r| r.verdict == Verdict::Pass).count();
@@ -145,7 +145,7 @@ fn figures(report: &Report<'_>) -> Markup {
     }
 }
 
-fn provenance(report: &Report<'_>) -> Markup {
+fn provenance(report: &CampaignReport<'_>) -> Markup {
     html! {
         (heading("provenance"))
         table {

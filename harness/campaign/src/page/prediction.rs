@@ -1,12 +1,12 @@
 //! Linear prediction of an ensemble, compared with its cases.
 
 use super::elements::{heading, with_bounds};
-use crate::against::{Comparison, Row};
-use crate::report::Report;
+use crate::against::{EnsembleComparison, ErrorRow};
+use crate::report::CampaignReport;
 use maud::{Markup, html};
 use octant_base::number;
 
-pub(super) fn section(report: &Report<'_>) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let prediction = &report.prediction;
     html! {
         (heading("prediction"))
@@ -24,7 +24,7 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
     }
 }
 
-fn of(comparison: &Comparison) -> Markup {
+fn of(comparison: &EnsembleComparison) -> Markup {
     let set = comparison.set.join(", ");
     let agreeing = comparison.states.iter().filter(|row| row.agrees).count();
     html! {
@@ -52,7 +52,7 @@ fn of(comparison: &Comparison) -> Markup {
     }
 }
 
-fn table<'a>(name: &str, rows: impl Iterator<Item = &'a Row>) -> Markup {
+fn table<'a>(name: &str, rows: impl Iterator<Item = &'a ErrorRow>) -> Markup {
     html! {
         div.wide tabindex="0" role="region" aria-label=(name) {
             table {

@@ -1,18 +1,18 @@
 //! Verdicts of the requirements: overall, and by combination.
 
 use super::elements::heading;
-use crate::report::requirement::{Part, RequirementFigures};
-use crate::report::{POLICY, Report};
+use crate::report::requirement::{CombinationChecks, RequirementFigures};
+use crate::report::{POLICY, CampaignReport};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::page::badge;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::percent;
-use octant_requirements::trace::Counts;
-use octant_statistics::cluster::Draws;
+use octant_requirements::trace::VerdictCounts;
+use octant_statistics::cluster::DrawCounts;
 use octant_statistics::proportion::Needed;
 
-pub(super) fn section(report: &Report<'_>) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let all = &report.statistics.requirements;
     html! {
         (heading("requirements"))
@@ -82,8 +82,8 @@ fn sign(sign: &str) -> &str {
 }
 
 /// Renders `84 of 90 pass`, and the verdicts of the others.
-fn checks(counts: Counts) -> Markup {
-    let Counts { pass, inconclusive, fail, error, missing } = counts;
+fn checks(counts: VerdictCounts) -> Markup {
+    let VerdictCounts { pass, inconclusive, fail, error, missing } = counts;
     let all = pass + inconclusive + fail + error + missing;
     let others =
         [(fail, "fail"), (error, "error"), (inconclusive, "inconclusive"), (missing, "not run")];
@@ -94,7 +94,7 @@ fn checks(counts: Counts) -> Markup {
 }
 
 /// Renders `84 of 84 pass`, and the number without a result.
-fn draws(draws: Draws) -> Markup {
+fn draws(draws: DrawCounts) -> Markup {
     html! {
         (draws.passed) " of " (draws.all()) " pass"
         @if draws.open > 0 { div.reason { (draws.open) " open" } }
@@ -128,10 +128,10 @@ fn needed(r: &RequirementFigures) -> Markup {
 
 /// Renders requirements by combination. The draws of a combination are its cases; over all
 /// combinations they are the replicates.
-fn by_combination(report: &Report<'_>) -> Markup {
+fn by_combination(report: &CampaignReport<'_>) -> Markup {
     let all = &report.statistics.requirements;
-    let class = |part: &Part| match part.counts {
-        Counts { fail: 0, error: 0, inconclusive: 0, missing: 0, .. } => "n",
+    let class = |part: &CombinationChecks| match part.counts {
+        VerdictCounts { fail: 0, error: 0, inconclusive: 0, missing: 0, .. } => "n",
         _ => "n over",
     };
     html! {
@@ -162,8 +162,8 @@ fn by_combination(report: &Report<'_>) -> Markup {
     }
 }
 
-fn total(counts: Counts) -> u64 {
-    let Counts { pass, inconclusive, fail, error, missing } = counts;
+fn total(counts: VerdictCounts) -> u64 {
+    let VerdictCounts { pass, inconclusive, fail, error, missing } = counts;
     pass + inconclusive + fail + error + missing
 }
 

@@ -1,12 +1,12 @@
 //! Factors with which the drift correlates.
 
 use super::elements::heading;
-use crate::report::Report;
+use crate::report::CampaignReport;
 use crate::report::figures::FactorFigures;
 use maud::{Markup, html};
 use octant_base::number;
 
-pub(super) fn section(report: &Report<'_>) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let drawn = || {
         (report.combinations.iter().zip(&report.statistics.combinations))
             .filter(|(_, figures)| !figures.sensitivity.is_empty())

@@ -5,20 +5,20 @@ use super::combination::Combination;
 use super::error::ReportError;
 use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use super::requirement::RequirementFigures;
-use super::rows::Row;
+use super::rows::ReportRow;
 use super::selftest::SelfTest;
 use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
 use crate::against::{Against, Selection, against};
 use crate::execute::{Shard, refuse_foreign};
 use crate::plan::Plan;
-use crate::status::{self, Status, StatusError};
+use crate::status::{self, CampaignStatus, StatusError};
 use crate::trace::trace;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
 use octant_evidence::manifest::shell_line;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::Requirements;
-use octant_requirements::trace::Trace;
+use octant_requirements::trace::CampaignTrace;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -84,19 +84,19 @@ fn predicted(plan: &Plan, folder: &Path) -> Against {
 
 /// Content of a report.
 #[derive(Clone, Debug)]
-pub struct Report<'a> {
+pub struct CampaignReport<'a> {
     /// The plan.
     pub plan: &'a Plan,
     /// Name of the folder: command lines are relative to the one above it.
     pub name: String,
     /// Progress of the campaign.
-    pub status: Status,
+    pub status: CampaignStatus,
     /// Numbers over the cases.
     pub statistics: Statistics,
     /// Predicted ensembles, compared with the cases.
     pub prediction: Against,
     /// The cases.
-    pub rows: Vec<Row<'a>>,
+    pub rows: Vec<ReportRow<'a>>,
     /// Combinations of the cases, as in the statistics.
     pub combinations: Vec<Combination>,
     /// Dispositions of the discrepancies.
@@ -104,7 +104,7 @@ pub struct Report<'a> {
     /// Texts of the requirements.
     pub about: Requirements,
     /// Trace from requirements to cases and back.
-    pub trace: Trace,
+    pub trace: CampaignTrace,
     /// The self-test of the program.
     pub selftest: Option<SelfTest>,
     /// Notes about missing parts.
@@ -113,7 +113,7 @@ pub struct Report<'a> {
     pub tables: Vec<(String, String)>,
 }
 
-impl<'a> Report<'a> {
+impl<'a> CampaignReport<'a> {
     /// Builds the report of a campaign, from its plan and the results in its folder.
     ///
     /// # Errors
@@ -194,7 +194,7 @@ impl<'a> Report<'a> {
 
     /// Lists the entries whose discrepancy doesn't occur any more.
     #[must_use]
-    pub fn gone(&self) -> Vec<&disposition::Entry> {
+    pub fn gone(&self) -> Vec<&disposition::DispositionEntry> {
         self.dispositions.gone(&self.statistics.discrepancies)
     }
 
@@ -263,7 +263,7 @@ fn json(what: &'static str, value: &impl Serialize) -> Result<String, ReportErro
 }
 
 /// Returns the command line that makes the campaign again.
-pub(crate) fn again(report: &Report<'_>) -> String {
+pub(crate) fn again(report: &CampaignReport<'_>) -> String {
     let lines: Vec<String> = report.again().iter().map(|words| shell_line(words)).collect();
     lines.join(" && ")
 }

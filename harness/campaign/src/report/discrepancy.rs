@@ -2,9 +2,9 @@
 
 use super::combination::Combination;
 use super::requirement;
-use super::rows::{Outcome, Row};
+use super::rows::{RowOutcome, ReportRow};
 use crate::plan::Plan;
-use crate::status::Status;
+use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
 use octant_requirements::Verdict;
 use std::collections::BTreeMap;
@@ -12,9 +12,9 @@ use std::collections::BTreeMap;
 /// Lists everything that isn't a pass. `notes` are other problems, as text.
 pub(super) fn find(
     plan: &Plan,
-    status: &Status,
+    status: &CampaignStatus,
     combinations: &[Combination],
-    rows: &[Row<'_>],
+    rows: &[ReportRow<'_>],
     notes: &[String],
 ) -> Vec<Discrepancy> {
     let mut all = Vec::new();
@@ -40,8 +40,8 @@ pub(super) fn find(
             all.push(Discrepancy::whole(&subject, what));
         }
     }
-    let ids = |wanted: &dyn Fn(&Outcome) -> bool| -> Vec<String> {
-        let is = |row: &&Row<'_>| row.outcome.as_ref().is_some_and(wanted);
+    let ids = |wanted: &dyn Fn(&RowOutcome) -> bool| -> Vec<String> {
+        let is = |row: &&ReportRow<'_>| row.outcome.as_ref().is_some_and(wanted);
         rows.iter().filter(is).map(|row| row.case.id.clone()).collect()
     };
     let differing = ids(&|outcome| outcome.differs);
@@ -91,7 +91,7 @@ fn counted(cases: usize) -> String {
 }
 
 /// Lists the discrepancies of one combination, each with all of its cases.
-fn of_combination(plan: &Plan, combination: &Combination, rows: &[Row<'_>]) -> Vec<Discrepancy> {
+fn of_combination(plan: &Plan, combination: &Combination, rows: &[ReportRow<'_>]) -> Vec<Discrepancy> {
     let name = combination.name();
     // Grouped by content, in the order of the names.
     let mut found: BTreeMap<(&'static str, Verdict, Option<String>, String), Vec<String>> =
@@ -119,7 +119,7 @@ fn of_combination(plan: &Plan, combination: &Combination, rows: &[Row<'_>]) -> V
 type Found = (&'static str, Verdict, Option<String>, String);
 
 /// Lists everything in one case that isn't a pass.
-fn of_case(plan: &Plan, row: &Row<'_>, outcome: &Outcome) -> Vec<Found> {
+fn of_case(plan: &Plan, row: &ReportRow<'_>, outcome: &RowOutcome) -> Vec<Found> {
     if let Some(error) = &outcome.error {
         return vec![("error", Verdict::Error, None, format!("no summary ({error})"))];
     }
@@ -157,7 +157,7 @@ fn of_case(plan: &Plan, row: &Row<'_>, outcome: &Outcome) -> Vec<Found> {
 
 /// Returns the verdict of a case on a requirement, if the case checks it; the inner `None`: it
 /// hasn't run.
-pub(crate) fn checks_of(plan: &Plan, row: &Row<'_>, id: &str) -> Option<Option<Verdict>> {
+pub(crate) fn checks_of(plan: &Plan, row: &ReportRow<'_>, id: &str) -> Option<Option<Verdict>> {
     requirement::checks(plan, &row.case.scenario, id)
         .then(|| row.outcome.as_ref().map(|outcome| outcome.check(id)))
 }

@@ -1,11 +1,11 @@
 //! Folder of a campaign as evidence: inputs, results, and a manifest with the hash of every file,
 //! signed as that of a run.
 
-use super::contents::{Report, again};
+use super::contents::{CampaignReport, again};
 use super::error::ReportError;
 use super::junit::junit;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
-use octant_evidence::signature::{self, Key};
+use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -30,9 +30,9 @@ pub const INPUTS: &str = "inputs";
 /// If a file can't be written, or nothing can be appended to the dispositions: then nothing is
 /// written.
 pub fn write(
-    report: &mut Report<'_>,
+    report: &mut CampaignReport<'_>,
     folder: &Path,
-    key: Option<Arc<Key>>,
+    key: Option<Arc<SigningKey>>,
     started: SystemTime,
 ) -> Result<Manifest, ReportError> {
     let path = folder.join(disposition::FILE_NAME);
@@ -93,7 +93,7 @@ pub fn write(
 }
 
 /// Returns the times of the first and the last result, from the file system.
-fn times(report: &Report<'_>, folder: &Path) -> (Option<String>, Option<String>) {
+fn times(report: &CampaignReport<'_>, folder: &Path) -> (Option<String>, Option<String>) {
     let of = |case: &str| {
         let path = crate::case::file(folder, case);
         std::fs::metadata(path).ok()?.modified().ok()
@@ -106,7 +106,7 @@ fn times(report: &Report<'_>, folder: &Path) -> (Option<String>, Option<String>)
 
 /// Copies the campaign's file, its requirements and its scenarios, if they are still the planned
 /// ones. An existing copy stays.
-fn inputs(report: &mut Report<'_>, folder: &Path) -> Result<(), ReportError> {
+fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportError> {
     let plan = report.plan;
     let mut files: Vec<(PathBuf, PathBuf)> = Vec::new();
     let folder = folder.join(INPUTS);

@@ -9,15 +9,15 @@
 //! that of the good cases. Cases with the same stream count once.
 
 use super::combination::{self, Combination, number_of, takes_part};
-use super::rows::{Curve, Drift, Row};
+use super::rows::{Curve, CaseDrift, ReportRow};
 use crate::plan::{Case, Plan};
-use octant_statistics::convergence::{Step, convergence};
+use octant_statistics::convergence::{ConvergenceStep, convergence};
 use octant_statistics::envelope::envelope;
-use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
 use octant_statistics::quantile::interval;
-use octant_statistics::rank::{Correlation, spearman};
+use octant_statistics::rank::{RankCorrelation, spearman};
 use octant_statistics::rate::{RateBounds, rate_bounds};
-use octant_statistics::sample::{Interval, percentile, rms};
+use octant_statistics::sample::{ConfidenceInterval, percentile, rms};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,9 +34,9 @@ pub struct Position {
     /// Number of cases that have it.
     pub cases: usize,
     /// Median.
-    pub cep50: Interval,
+    pub cep50: ConfidenceInterval,
     /// 95th percentile.
-    pub r95: Interval,
+    pub r95: ConfidenceInterval,
     /// Root mean square.
     pub drms: f64,
 }
@@ -56,9 +56,9 @@ impl Position {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Median.
-    pub p50: Interval,
+    pub p50: ConfidenceInterval,
     /// 95th percentile.
-    pub p95: Interval,
+    pub p95: ConfidenceInterval,
 }
 
 impl Spread {
@@ -98,9 +98,9 @@ pub struct CombinationFigures {
     /// Percentiles of the errors over time.
     pub envelope: Option<EnvelopeFigures>,
     /// Convergence of the median of the radial error at the end.
-    pub convergence_cep50: Vec<Step>,
+    pub convergence_cep50: Vec<ConvergenceStep>,
     /// Convergence of its 95th percentile.
-    pub convergence_r95: Vec<Step>,
+    pub convergence_r95: Vec<ConvergenceStep>,
     /// Correlation of the drift with each drawn factor.
     pub sensitivity: Vec<FactorFigures>,
 }
@@ -127,7 +127,7 @@ pub struct FactorFigures {
     pub cases: usize,
     /// Spearman's rank correlation with the radial error rate; null with fewer than three cases, or
     /// if one of them is constant.
-    pub correlation: Option<Correlation>,
+    pub correlation: Option<RankCorrelation>,
     /// True if significant at 5 %, with all correlations of the campaign considered.
     pub stands_out: bool,
 }
@@ -189,19 +189,19 @@ pub struct OutlierFigures {
 
 /// Cases of a sample that ran, each with its drift; a case without one is beyond every number.
 struct Sample<'a> {
-    cases: Vec<(&'a Case, Option<&'a Drift>)>,
+    cases: Vec<(&'a Case, Option<&'a CaseDrift>)>,
 }
 
 impl<'a> Sample<'a> {
     /// Selects the cases at these places, the first of each draw.
-    fn of_draws(rows: &'a [Row<'_>], places: &[usize], draws: &[usize]) -> Self {
+    fn of_draws(rows: &'a [ReportRow<'_>], places: &[usize], draws: &[usize]) -> Self {
         let mut seen = BTreeSet::new();
         let is_new = |place: &&usize| draws.get(**place).is_none_or(|draw| seen.insert(*draw));
         let run = |place: &&usize| rows.get(**place).is_some_and(|row| row.outcome.is_some());
         Self::of(rows, places.iter().filter(run).filter(is_new).copied())
     }
 
-    fn of(rows: &'a [Row<'_>], places: impl Iterator<Item = usize>) -> Self {
+    fn of(rows: &'a [ReportRow<'_>], places: impl Iterator<Item = usize>) -> Self {
         let one = |place: usize| {
             let row = rows.get(place)?;
             Some((row.case, row.outcome.as_ref()?.drift.as_ref()))
@@ -218,7 +218,7 @@ impl<'a> Sample<'a> {
     }
 
     /// Returns a measure of all cases; empty if no case navigates.
-    fn column(&self, of: impl Fn(&Drift) -> f64) -> Vec<f64> {
+    fn column(&self, of: impl Fn(&CaseDrift) -> f64) -> Vec<f64> {
         if self.navigated() == 0 {
             return Vec::new();
         }
@@ -227,7 +227,7 @@ impl<'a> Sample<'a> {
 }
 
 /// A measure of a drift.
-type Measure = fn(&Drift) -> f64;
+type Measure = fn(&CaseDrift) -> f64;
 
 /// Measures that are searched for outliers.
 const OUTLYING: [(&str, Measure); 2] = [
@@ -235,7 +235,7 @@ const OUTLYING: [(&str, Measure); 2] = [
     (DRIFT, |drift| drift.rate_nmi_per_h),
 ];
 
-fn drift<'a>(rows: &'a [Row<'_>], case: usize) -> Option<&'a Drift> {
+fn drift<'a>(rows: &'a [ReportRow<'_>], case: usize) -> Option<&'a CaseDrift> {
     rows.get(case)?.outcome.as_ref()?.drift.as_ref()
 }
 
@@ -244,11 +244,11 @@ impl CombinationFigures {
         plan: &Plan,
         grid: &[String],
         combination: &Combination,
-        rows: &[Row<'_>],
+        rows: &[ReportRow<'_>],
         draws: &[usize],
     ) -> Self {
         let sample = Sample::of_draws(rows, &combination.cases, draws);
-        let column = |f: fn(&Drift) -> f64| sample.column(f);
+        let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
         let curves: Vec<&Curve> =
@@ -287,7 +287,7 @@ fn marks(sample: &Sample<'_>) -> BTreeMap<String, Position> {
     let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.marks_nmi.keys()).collect();
     let of = |name: &String| {
         let reached = drifts().all(|drift| drift.marks_nmi.contains_key(name));
-        let value = |drift: &Drift| drift.marks_nmi.get(name).copied().unwrap_or(f64::INFINITY);
+        let value = |drift: &CaseDrift| drift.marks_nmi.get(name).copied().unwrap_or(f64::INFINITY);
         Some((name.clone(), Position::of(&reached.then(|| sample.column(value))?)?))
     };
     names.into_iter().filter_map(of).collect()
@@ -366,12 +366,12 @@ impl ScenarioFigures {
         scenario: &str,
         grid: &[String],
         combinations: &[Combination],
-        rows: &[Row<'_>],
+        rows: &[ReportRow<'_>],
     ) -> Self {
         let mine: Vec<&Combination> =
             combinations.iter().filter(|combination| combination.scenario == scenario).collect();
         let sample = Sample::of(rows, mine.iter().flat_map(|c| &c.cases).copied());
-        let at = |p: f64, f: fn(&Drift) -> f64| percentile(&sample.column(f), p);
+        let at = |p: f64, f: fn(&CaseDrift) -> f64| percentile(&sample.column(f), p);
         let of_grid = |factor: &String| {
             let found = FactorFigures::of(factor, &sample)?;
             let rho = found.correlation?.rho;
@@ -393,16 +393,16 @@ impl ScenarioFigures {
 }
 
 /// Lists cases that stand out from their combination, the farthest first.
-pub(super) fn standing_out(combinations: &[Combination], rows: &[Row<'_>]) -> Vec<OutlierFigures> {
+pub(super) fn standing_out(combinations: &[Combination], rows: &[ReportRow<'_>]) -> Vec<OutlierFigures> {
     let mut found = Vec::new();
     for (place, combination) in combinations.iter().enumerate() {
-        let there: Vec<(&Case, &Drift)> = (combination.cases.iter())
+        let there: Vec<(&Case, &CaseDrift)> = (combination.cases.iter())
             .filter_map(|case| Some((rows.get(*case)?.case, drift(rows, *case)?)))
             .collect();
         for (measure, of) in OUTLYING {
             let values: Vec<f64> = there.iter().map(|(_, drift)| of(drift)).collect();
             let median = percentile(&values, 0.5).unwrap_or(f64::NAN);
-            found.extend(outliers(&values, Scale::Logarithm, LIMIT).into_iter().filter_map(|o| {
+            found.extend(outliers(&values, OutlierScale::Logarithm, LIMIT).into_iter().filter_map(|o| {
                 Some(OutlierFigures {
                     case: there.get(o.index)?.0.id.clone(),
                     combination: place,

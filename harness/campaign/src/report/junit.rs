@@ -1,9 +1,9 @@
 //! `junit.xml` of a campaign, in the form of nextest: a suite for each combination, with a test
 //! case for each requirement that a case checks, and one for the case itself.
 
-use super::contents::Report;
+use super::contents::CampaignReport;
 use super::discrepancy::checks_of;
-use super::rows::Row;
+use super::rows::ReportRow;
 use octant_requirements::Verdict;
 use octant_score::junit::status;
 use quick_junit::{TestCase, TestSuite};
@@ -12,7 +12,7 @@ use quick_junit::{TestCase, TestSuite};
 ///
 /// # Errors
 /// If the XML can't be written.
-pub fn junit(report: &Report<'_>) -> Result<String, quick_junit::SerializeError> {
+pub fn junit(report: &CampaignReport<'_>) -> Result<String, quick_junit::SerializeError> {
     let mut all = quick_junit::Report::new("octant campaign");
     let mut suite = TestSuite::new(report.plan.title.clone());
     suite.add_property(("plan", report.plan.id.as_str()));
@@ -46,7 +46,7 @@ pub fn junit(report: &Report<'_>) -> Result<String, quick_junit::SerializeError>
     all.to_string()
 }
 
-fn of_case(report: &Report<'_>, row: &Row<'_>) -> Vec<TestCase> {
+fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>) -> Vec<TestCase> {
     let id = &row.case.id;
     let mut all = Vec::new();
     for requirement in &report.statistics.requirements {

@@ -2,7 +2,7 @@
 //!
 //! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
 //! their statistics, [`discrepancy`] lists everything that isn't a pass,
-//! [`disposition`](octant_evidence::disposition) has its dispositions, [`Report`] puts them together.
+//! [`disposition`](octant_evidence::disposition) has its dispositions, [`CampaignReport`] puts them together.
 //! [`evidence`] writes all of it into the folder of the campaign. The page is [`crate::page`].
 
 mod about;
@@ -19,5 +19,5 @@ pub mod selftest;
 mod tables;
 
 pub(crate) use contents::again;
-pub use contents::{POLICY, Report, SCHEMA, Statistics};
+pub use contents::{POLICY, CampaignReport, SCHEMA, Statistics};
 pub use error::ReportError;

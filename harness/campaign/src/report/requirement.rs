@@ -3,15 +3,15 @@
 
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
-use super::rows::{self, Outcome, Row};
+use super::rows::{self, RowOutcome, ReportRow};
 use crate::plan::Plan;
-use crate::status::{RequirementStatus, Status};
+use crate::status::{RequirementStatus, CampaignStatus};
 use octant_requirements::Verdict;
-use octant_requirements::requirement::{Ensemble, Requirements};
-use octant_requirements::trace::{Counts, claim};
+use octant_requirements::requirement::{EnsembleRequirement, Requirements};
+use octant_requirements::trace::{VerdictCounts, claim};
 use octant_score::verdict::RequirementResult;
-use octant_statistics::cluster::Draws;
-use octant_statistics::convergence::{Step, convergence, pass};
+use octant_statistics::cluster::DrawCounts;
+use octant_statistics::convergence::{ConvergenceStep, convergence, pass};
 use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -36,13 +36,13 @@ pub struct RequirementFigures {
     /// Reason.
     pub reason: String,
     /// Checks.
-    pub counts: Counts,
+    pub counts: VerdictCounts,
     /// Independent draws: one passes if all of its checks did.
-    pub draws: Draws,
+    pub draws: DrawCounts,
     /// Result of the draws, as a sentence; null if none is known.
     pub claim: Option<String>,
     /// Requirement on all cases together; null if every case must pass.
-    pub asked: Option<Ensemble>,
+    pub asked: Option<EnsembleRequirement>,
     /// Confidence of the lower bound, one-sided: the required one, or 95 %.
     pub confidence: f64,
     /// Lower bound of the probability that a draw passes (Clopper and Pearson); null where none is known.
@@ -55,9 +55,9 @@ pub struct RequirementFigures {
     /// Case that came nearest to the limit, or farthest beyond it.
     pub nearest: Option<Nearest>,
     /// Convergence of the probability that a draw passes, with two-sided bounds of 95 %.
-    pub convergence: Vec<Step>,
+    pub convergence: Vec<ConvergenceStep>,
     /// Parts by combination, in their order.
-    pub combinations: Vec<Part>,
+    pub combinations: Vec<CombinationChecks>,
 }
 
 /// Case with the least margin.
@@ -73,29 +73,29 @@ pub struct Nearest {
 
 /// The checks of one combination.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct CombinationChecks {
     /// Checks.
-    pub counts: Counts,
+    pub counts: VerdictCounts,
     /// Independent draws.
-    pub draws: Draws,
+    pub draws: DrawCounts,
     /// Lower bound of the probability that a draw of it passes; null if none is known.
     pub lower_bound: Option<f64>,
 }
 
-fn bound(draws: Draws, confidence: f64) -> Option<f64> {
+fn bound(draws: DrawCounts, confidence: f64) -> Option<f64> {
     (draws.known() > 0).then(|| success_lower_bound(draws.not_passed, draws.known(), confidence))
 }
 
 /// Verdicts of the cases that check a requirement, by check and by draw.
 struct Counted {
-    counts: Counts,
+    counts: VerdictCounts,
     /// Draw of each case and whether it passed, in the order of the plan.
     rows: Vec<(usize, Option<bool>)>,
 }
 
 impl Counted {
-    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, &'a Row<'a>)>) -> Self {
-        let mut counted = Self { counts: Counts::default(), rows: Vec::new() };
+    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, &'a ReportRow<'a>)>) -> Self {
+        let mut counted = Self { counts: VerdictCounts::default(), rows: Vec::new() };
         for (draw, row) in rows {
             if !checks(plan, &row.case.scenario, id) {
                 continue;
@@ -108,7 +108,7 @@ impl Counted {
                 Some(Verdict::Fail) => &mut counts.fail,
                 Some(Verdict::Error) => &mut counts.error,
             } += 1;
-            let passed = |outcome: &Outcome| {
+            let passed = |outcome: &RowOutcome| {
                 outcome.check(id) == Verdict::Pass && outcome.besides == Verdict::Pass
             };
             counted.rows.push((draw, row.outcome.as_ref().map(passed)));
@@ -116,8 +116,8 @@ impl Counted {
         counted
     }
 
-    fn draws(&self) -> Draws {
-        Draws::of(self.rows.iter().copied())
+    fn draws(&self) -> DrawCounts {
+        DrawCounts::of(self.rows.iter().copied())
     }
 
     /// Returns whether each known draw passed, in the order in which they began.
@@ -126,7 +126,7 @@ impl Counted {
         for row in &self.rows {
             rows.entry(row.0).or_default().push(*row);
         }
-        let known = rows.into_values().map(Draws::of).filter(|draws| draws.known() > 0);
+        let known = rows.into_values().map(DrawCounts::of).filter(|draws| draws.known() > 0);
         known.map(|draws| draws.passed > 0).collect()
     }
 }
@@ -140,10 +140,10 @@ pub(super) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
 /// Computes the figures of each requirement, in the order of the ids.
 pub(super) fn of(
     plan: &Plan,
-    status: &Status,
+    status: &CampaignStatus,
     about: &Requirements,
     combinations: &[Combination],
-    rows: &[Row<'_>],
+    rows: &[ReportRow<'_>],
 ) -> Vec<RequirementFigures> {
     let draws = rows::draws(rows);
     status
@@ -159,7 +159,7 @@ fn one(
     status: &RequirementStatus,
     about: &Requirements,
     combinations: &[Combination],
-    rows: &[Row<'_>],
+    rows: &[ReportRow<'_>],
     draws: &[usize],
 ) -> RequirementFigures {
     let results = || {
@@ -206,7 +206,7 @@ fn one(
         confidence,
         lower_bound: bound(counted, confidence),
         needed_if_all_pass: status.needed,
-        needed_at_rate: status.ensemble.map(|Ensemble { pass, confidence }| {
+        needed_at_rate: status.ensemble.map(|EnsembleRequirement { pass, confidence }| {
             further_at_rate(Demand { pass, confidence }, counted.not_passed, counted.known())
         }),
         nearest,
@@ -216,7 +216,7 @@ fn one(
                 let row = |case: &usize| Some((*draws.get(*case)?, rows.get(*case)?));
                 let mine = Counted::of(plan, id, combination.cases.iter().filter_map(row));
                 let draws = mine.draws();
-                Part { counts: mine.counts, draws, lower_bound: bound(draws, confidence) }
+                CombinationChecks { counts: mine.counts, draws, lower_bound: bound(draws, confidence) }
             })
             .collect(),
     }

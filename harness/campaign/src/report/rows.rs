@@ -6,7 +6,7 @@ use crate::case::{self, CaseResult, differing};
 use crate::independence;
 use crate::plan::{Case, Plan};
 use octant_requirements::Verdict;
-use octant_score::summary::{Navigation, Summary};
+use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
 use octant_statistics::envelope::resampled;
 use std::collections::BTreeMap;
@@ -20,16 +20,16 @@ const STEPS_S: [f64; 14] =
 
 /// Case with its result.
 #[derive(Clone, Debug)]
-pub struct Row<'a> {
+pub struct ReportRow<'a> {
     /// The case.
     pub case: &'a Case,
     /// Result; `None` if the case hasn't run.
-    pub outcome: Option<Outcome>,
+    pub outcome: Option<RowOutcome>,
 }
 
 /// Result of a case.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct RowOutcome {
     /// Worst verdict of all parts.
     pub verdict: Verdict,
     /// Worst verdict of all parts except the requirements.
@@ -49,12 +49,12 @@ pub struct Outcome {
     /// Hash of its streams.
     pub stream_hash: Option<String>,
     /// Drift; `None` without a navigation.
-    pub drift: Option<Drift>,
+    pub drift: Option<CaseDrift>,
 }
 
 /// The drift of a case.
 #[derive(Clone, Debug)]
-pub struct Drift {
+pub struct CaseDrift {
     /// Length of the navigation, h.
     pub duration_h: f64,
     /// Radial error at its end, nmi.
@@ -90,7 +90,7 @@ pub fn read<'a>(
     plan: &'a Plan,
     folder: &Path,
     end: usize,
-) -> Result<(Vec<Row<'a>>, String), ReportError> {
+) -> Result<(Vec<ReportRow<'a>>, String), ReportError> {
     let mut hasher = blake3::Hasher::new();
     let mut rows = Vec::with_capacity(end);
     for case in plan.cases.iter().take(end) {
@@ -98,25 +98,25 @@ pub fn read<'a>(
         let read = CaseResult::of_plan(plan, folder, case)?;
         let Some((result, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
-            rows.push(Row { case, outcome: None });
+            rows.push(ReportRow { case, outcome: None });
             continue;
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
         let differs = differing(&path, &case.id).is_some();
-        rows.push(Row { case, outcome: Some(Outcome::of(result, differs)) });
+        rows.push(ReportRow { case, outcome: Some(RowOutcome::of(result, differs)) });
     }
     Ok((rows, hasher.finalize().to_hex().to_string()))
 }
 
 /// Returns the independent draw of each row.
-pub(super) fn draws(rows: &[Row<'_>]) -> Vec<usize> {
-    let stream = |row: &Row<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
+pub(super) fn draws(rows: &[ReportRow<'_>]) -> Vec<usize> {
+    let stream = |row: &ReportRow<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
     let streams: Vec<Option<String>> = rows.iter().map(stream).collect();
     let cases = rows.iter().map(|row| row.case).zip(streams.iter().map(Option::as_deref));
     independence::draws(cases)
 }
 
-impl Outcome {
+impl RowOutcome {
     fn of(result: CaseResult, differs: bool) -> Self {
         let besides = besides(&result);
         let (verdict, error) = (result.verdict, result.error);
@@ -141,7 +141,7 @@ impl Outcome {
         outcome.unfired =
             faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
         outcome.stream_hash = Some(stream_hash);
-        outcome.drift = navigation.as_ref().map(Drift::of);
+        outcome.drift = navigation.as_ref().map(CaseDrift::of);
         outcome
     }
 
@@ -158,8 +158,8 @@ impl Outcome {
     }
 }
 
-impl Drift {
-    fn of(navigation: &Navigation) -> Self {
+impl CaseDrift {
+    fn of(navigation: &NavigationScore) -> Self {
         let radial = &navigation.radial_error_nmi;
         let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
         Self {

@@ -5,7 +5,7 @@ use crate::chain;
 use crate::merge::merged;
 use crate::plan::Plan;
 use crate::results::TABLES;
-use crate::table::{Table, TableError};
+use crate::table::{ExistingTable, TableError};
 use std::path::Path;
 
 /// Lists existing tables with their BLAKE3, and the problems with them. `run` is the number of
@@ -31,7 +31,7 @@ pub(super) fn look(
                 continue;
             }
         };
-        match Table::open(&path) {
+        match ExistingTable::open(&path) {
             Err(error) => wrong.push(format!("{file} can't be read: {error}")),
             Ok(table) if table.plan != plan.id => {
                 wrong.push(format!("{file} is of another plan: it has to be merged again"));

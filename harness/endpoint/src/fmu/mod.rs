@@ -7,9 +7,9 @@ mod ports;
 
 use super::answer::Misbehaviour;
 use super::{Conclusion, Endpoint, EndpointError, Tells};
-use octant_calibration::Config;
-use octant_mapping::bind::Cell;
-use octant_mapping::open::{self, Kept};
+use octant_calibration::CoreConfig;
+use octant_mapping::bind::ChannelCell;
+use octant_mapping::open::{self, NamedInstance};
 use octant_mapping::stepper::{Stepper, UseError};
 use octant_sample::Epoch;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -38,7 +38,7 @@ pub struct FmuEndpoint {
 
 /// Data needed to restart our Calibrator.
 struct Own {
-    config: Config,
+    config: CoreConfig,
     scenario: Scenario,
     fmu: Fmu,
 }
@@ -62,15 +62,15 @@ impl FmuEndpoint {
     ///
     /// # Errors
     /// If the FMU can't be used, or the scenario's settings for it don't fit.
-    pub fn open(scenario: &Scenario, fmu: &Fmu, config: &Config) -> Result<Self, UseError> {
+    pub fn open(scenario: &Scenario, fmu: &Fmu, config: &CoreConfig) -> Result<Self, UseError> {
         Self::of_instance(scenario, fmu, config, open::instance(scenario, fmu)?)
     }
 
     fn of_instance(
         scenario: &Scenario,
         fmu: &Fmu,
-        config: &Config,
-        Kept { instance, uri }: Kept,
+        config: &CoreConfig,
+        NamedInstance { instance, uri }: NamedInstance,
     ) -> Result<Self, UseError> {
         let description = instance.description().clone();
         let own = open::own_calibrator(&description, config);
@@ -129,7 +129,7 @@ impl FmuEndpoint {
         };
         triad(&takes.gyro, &sample.delta_theta, DELTA_THETA_LSB_RAD);
         triad(&takes.accelerometer, &sample.delta_velocity, DELTA_VELOCITY_LSB_MPS);
-        let mut put = |cell: &Option<Cell>, value: f64| {
+        let mut put = |cell: &Option<ChannelCell>, value: f64| {
             if let Some(cell) = cell {
                 cell.write(numbers, value);
             }
@@ -169,8 +169,8 @@ impl FmuEndpoint {
     fn take(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         let numbers = &self.ports.outputs.numbers;
         let answers = &self.ports.answers;
-        let read = |cell: &Option<Cell>| cell.as_ref().map(|cell| cell.read(numbers));
-        let or_zero = |cell: &Option<Cell>| read(cell).unwrap_or(0.0);
+        let read = |cell: &Option<ChannelCell>| cell.as_ref().map(|cell| cell.read(numbers));
+        let or_zero = |cell: &Option<ChannelCell>| read(cell).unwrap_or(0.0);
         let wrong = |field: &str, found: f64, expected: &str| {
             EndpointError::Misbehaved(Misbehaviour {
                 sample: epoch.sample.sequence,
@@ -179,7 +179,7 @@ impl FmuEndpoint {
                 expected: expected.to_owned(),
             })
         };
-        let whole = |field: &str, cell: &Option<Cell>| match read(cell) {
+        let whole = |field: &str, cell: &Option<ChannelCell>| match read(cell) {
             // Doubles represent every whole number up to here.
             Some(value)
                 if !(0.0..=9_007_199_254_740_992.0).contains(&value) || value.fract() != 0.0 =>
@@ -261,7 +261,7 @@ impl FmuEndpoint {
             .get(&mut self.ports.estimated)
             .map_err(|error| self.gone(error.to_string()))?;
         let numbers = &self.ports.estimated.numbers;
-        let read = |cell: &Option<Cell>, without: f64| {
+        let read = |cell: &Option<ChannelCell>, without: f64| {
             cell.as_ref().map_or(without, |cell| cell.read(numbers))
         };
         let estimates = &self.ports.estimates;

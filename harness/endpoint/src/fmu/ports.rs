@@ -1,10 +1,10 @@
 //! The channels of a core, bound to the variables of an FMU.
 
 use octant_fmu_host::description::Description;
-use octant_mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
-use octant_mapping::find::Way;
+use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell, Cells, Handle};
+use octant_mapping::find::ValueWay;
 use octant_sample::Mode;
-use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
 use octant_scenario::channel::{answer, sample};
 use octant_scenario::{Code, Fmu};
 
@@ -22,47 +22,47 @@ pub(super) enum Triad {
 pub(super) struct Takes {
     pub(super) gyro: Triad,
     pub(super) accelerometer: Triad,
-    pub(super) gimbal: [Option<Cell>; 2],
-    pub(super) valid: Option<Cell>,
-    pub(super) status: Option<Cell>,
-    pub(super) sequence: Option<Cell>,
-    pub(super) device_time: Option<Cell>,
+    pub(super) gimbal: [Option<ChannelCell>; 2],
+    pub(super) valid: Option<ChannelCell>,
+    pub(super) status: Option<ChannelCell>,
+    pub(super) sequence: Option<ChannelCell>,
+    pub(super) device_time: Option<ChannelCell>,
     pub(super) reference: References,
 }
 
 /// Cells of the reference among the inputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct References {
-    pub(super) kind: Option<Cell>,
-    pub(super) valid: Option<Cell>,
+    pub(super) kind: Option<ChannelCell>,
+    pub(super) valid: Option<ChannelCell>,
     pub(super) velocity: Option<Cells<3>>,
-    pub(super) position: [Option<Cell>; 3],
-    pub(super) age_ns: Option<Cell>,
+    pub(super) position: [Option<ChannelCell>; 3],
+    pub(super) age_ns: Option<ChannelCell>,
 }
 
 /// Cells of the FMU's answer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answers {
-    pub(super) command: [Option<Cell>; 2],
-    pub(super) mode: Option<Cell>,
-    pub(super) stop: Option<Cell>,
-    pub(super) moving: Option<Cell>,
+    pub(super) command: [Option<ChannelCell>; 2],
+    pub(super) mode: Option<ChannelCell>,
+    pub(super) stop: Option<ChannelCell>,
+    pub(super) moving: Option<ChannelCell>,
     /// Latitude, longitude, height.
-    pub(super) position: [Option<Cell>; 3],
+    pub(super) position: [Option<ChannelCell>; 3],
     pub(super) velocity: Option<Cells<3>>,
     pub(super) attitude: Option<Cells<4>>,
-    pub(super) nis: Option<Cell>,
-    pub(super) measured: Option<Cell>,
-    pub(super) health: Option<Cell>,
-    pub(super) sequence: Option<Cell>,
-    pub(super) device_time: Option<Cell>,
-    pub(super) revision: Option<Cell>,
+    pub(super) nis: Option<ChannelCell>,
+    pub(super) measured: Option<ChannelCell>,
+    pub(super) health: Option<ChannelCell>,
+    pub(super) sequence: Option<ChannelCell>,
+    pub(super) device_time: Option<ChannelCell>,
+    pub(super) revision: Option<ChannelCell>,
 }
 
 /// Cells of the estimates: parameters and σ; `None` where the FMU has none.
 pub(super) struct Estimates {
-    pub(super) parameters: [Option<Cell>; PARAMETER_COUNT],
-    pub(super) sigma: [Option<Cell>; PARAMETER_COUNT],
+    pub(super) parameters: [Option<ChannelCell>; PARAMETER_COUNT],
+    pub(super) sigma: [Option<ChannelCell>; PARAMETER_COUNT],
 }
 
 /// All bound channels.
@@ -94,7 +94,7 @@ impl Ports {
 }
 
 fn takes(description: &Description, fmu: &Fmu) -> Result<(Bound, Takes), BindError> {
-    let mut b = Binder::new(description, fmu, Way::In);
+    let mut b = Binder::new(description, fmu, ValueWay::In);
     let gyro = b.one_of(&sample::DELTA_THETA, &sample::RATE);
     let accelerometer = b.one_of(&sample::DELTA_VELOCITY, &sample::SPECIFIC_FORCE);
     let gimbal = [b.channel(&sample::AZIMUTH), b.channel(&sample::ROLL)];
@@ -141,7 +141,7 @@ fn takes(description: &Description, fmu: &Fmu) -> Result<(Bound, Takes), BindErr
 }
 
 fn answers(description: &Description, fmu: &Fmu) -> Result<(Bound, Answers), BindError> {
-    let mut b = Binder::new(description, fmu, Way::Out);
+    let mut b = Binder::new(description, fmu, ValueWay::Out);
     let command = [b.channel(&sample::COMMAND_AZIMUTH), b.channel(&sample::COMMAND_ROLL)];
     let mode = b.channel(&answer::MODE);
     let stop = b.channel(&answer::STOP);
@@ -183,8 +183,8 @@ fn answers(description: &Description, fmu: &Fmu) -> Result<(Bound, Answers), Bin
 }
 
 fn estimates(description: &Description, fmu: &Fmu) -> Result<(Bound, Estimates), BindError> {
-    let mut b = Binder::new(description, fmu, Way::Out);
-    let handles = Group::ALL.map(|group| {
+    let mut b = Binder::new(description, fmu, ValueWay::Out);
+    let handles = ParameterGroup::ALL.map(|group| {
         let (estimate, sigma) = answer::group(group);
         (group, b.channel(estimate), b.channel(sigma))
     });

@@ -1,7 +1,7 @@
 use super::*;
 use octant_fmu::calibrator::Calibrator;
-use octant_fmu_host::description::{Causality, Kind};
-use octant_mapping::testing::{Own as OwnModel, Scripted, With, description, variable};
+use octant_fmu_host::description::{Causality, VariableType};
+use octant_mapping::testing::{OwnModel as OwnModel, Scripted, With, description, variable};
 use octant_recorder::StreamHash;
 use octant_sample::Mode;
 use octant_scenario::{self as scenario, Method};
@@ -16,13 +16,13 @@ fn scenario(text: &str) -> Scenario {
 
 fn fmu_of(scenario: &Scenario) -> &Fmu {
     match &scenario.endpoint {
-        scenario::Endpoint::Fmu(fmu) => fmu,
-        scenario::Endpoint::InProcess | scenario::Endpoint::Live(_) => panic!("an FMU"),
+        scenario::EndpointSpec::Fmu(fmu) => fmu,
+        scenario::EndpointSpec::InProcess | scenario::EndpointSpec::Live(_) => panic!("an FMU"),
     }
 }
 
-fn kept(instance: Box<dyn octant_fmu_host::instance::Instance>) -> Kept {
-    Kept { instance, uri: "fmu:core.fmu".to_owned() }
+fn kept(instance: Box<dyn octant_fmu_host::instance::Instance>) -> NamedInstance {
+    NamedInstance { instance, uri: "fmu:core.fmu".to_owned() }
 }
 
 /// Returns the hash over the first samples of a scenario, and the last mode.
@@ -88,14 +88,14 @@ fn foreign() -> octant_fmu_host::description::Description {
     description(
         "core",
         vec![
-            variable("w", 1, Kind::Float64, Input).array(3).in_unit("deg/s"),
-            variable("f", 4, Kind::Float64, Input).array(3).in_unit("m/s2"),
-            variable("fresh", 7, Kind::Boolean, Input),
-            variable("v", 8, Kind::Float64, Input).array(3).in_unit("km/h"),
-            variable("az", 11, Kind::Float64, Output).in_unit("deg"),
-            variable("el", 12, Kind::Float64, Output).in_unit("deg"),
-            variable("phase", 13, Kind::Int32, Output),
-            variable("bias", 14, Kind::Float64, Output).array(3).in_unit("deg/h"),
+            variable("w", 1, VariableType::Float64, Input).array(3).in_unit("deg/s"),
+            variable("f", 4, VariableType::Float64, Input).array(3).in_unit("m/s2"),
+            variable("fresh", 7, VariableType::Boolean, Input),
+            variable("v", 8, VariableType::Float64, Input).array(3).in_unit("km/h"),
+            variable("az", 11, VariableType::Float64, Output).in_unit("deg"),
+            variable("el", 12, VariableType::Float64, Output).in_unit("deg"),
+            variable("phase", 13, VariableType::Int32, Output),
+            variable("bias", 14, VariableType::Float64, Output).array(3).in_unit("deg/h"),
         ],
     )
 }

@@ -1,6 +1,6 @@
 //! CAN databases (DBC files).
 
-use super::Problem;
+use super::DbcProblem;
 use can_dbc::{Dbc, DbcError, Message, MessageId, Signal, SignalExtendedValueType};
 use std::format;
 use std::string::{String, ToString};
@@ -18,11 +18,11 @@ impl Database {
     ///
     /// # Errors
     /// If the text is no database, with file and line.
-    pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
+    pub fn parse(file: &str, text: &str) -> Result<Self, DbcProblem> {
         let dbc = Dbc::try_from(text).map_err(|error| {
             let (line, what) = said(&error, text);
             let place = line.map_or_else(|| file.into(), |line| format!("{file}:{line}"));
-            Problem { place, what: format!("this is no DBC: {what}") }
+            DbcProblem { place, what: format!("this is no DBC: {what}") }
         })?;
         Ok(Self { file: file.into(), dbc, text: text.into() })
     }

@@ -2,9 +2,9 @@
 
 use super::signal::{Extract, Named};
 use super::units::Quantity;
-use super::{Database, Mapping, One, Problem, Three};
+use super::{Database, SignalMapping, One, DbcProblem, Three};
 use crate::rollover::Rollover;
-use crate::{Clock, Kind, Measured, Reading, Stamp};
+use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
 use can_dbc::MessageId;
 use octant_sample::{GimbalAngles, Status};
 use std::format;
@@ -100,8 +100,8 @@ impl Ticks {
 #[derive(Clone, Debug)]
 pub struct Gatherer {
     sources: Vec<Source>,
-    rotation: (Kind, Option<f64>),
-    velocity: (Kind, Option<f64>),
+    rotation: (ReadingKind, Option<f64>),
+    velocity: (ReadingKind, Option<f64>),
     valid_equals: u64,
     sequence: Option<Rollover>,
     stamp: Option<Ticks>,
@@ -119,13 +119,13 @@ pub struct Gatherer {
 /// A mapping with the signals looked up so far.
 struct Lookup<'a> {
     database: &'a Database,
-    mapping: &'a Mapping,
+    mapping: &'a SignalMapping,
     sources: Vec<Source>,
     names: Vec<(MessageId, &'a str)>,
 }
 
 impl<'a> Lookup<'a> {
-    fn find(&self, key: &str, name: &str) -> Result<Named<'a>, Problem> {
+    fn find(&self, key: &str, name: &str) -> Result<Named<'a>, DbcProblem> {
         Named::find(self.database, self.mapping, key, name)
     }
 
@@ -148,7 +148,7 @@ impl<'a> Lookup<'a> {
         three: &Three,
         kinds: [Quantity; 2],
         channel: fn(usize) -> Channel,
-    ) -> Result<(Kind, Option<f64>), Problem> {
+    ) -> Result<(ReadingKind, Option<f64>), DbcProblem> {
         let (mut found, mut lsb) = (None, None);
         let axes = [("x", &three.x), ("y", &three.y), ("z", &three.z)];
         for (axis, (letter, name)) in axes.into_iter().enumerate() {
@@ -159,7 +159,7 @@ impl<'a> Lookup<'a> {
             if !(scale.is_finite() && scale != 0.0) {
                 let place = format!("{}: {key}", self.mapping.file);
                 let what = format!("scale {scale} makes no value, expected is another than zero");
-                return Err(Problem { place, what });
+                return Err(DbcProblem { place, what });
             }
             named.extract.factor *= scale;
             named.extract.offset *= scale;
@@ -171,7 +171,7 @@ impl<'a> Lookup<'a> {
                          all are increments, or all are rates",
                         named.place
                     );
-                    return Err(Problem { place, what });
+                    return Err(DbcProblem { place, what });
                 }
                 _ => found = Some(quantity),
             }
@@ -179,7 +179,7 @@ impl<'a> Lookup<'a> {
             lsb = if axis == 0 { own } else { lsb.filter(|lsb| Some(*lsb) == own) };
             self.add(channel(axis), &named);
         }
-        let kind = if found == Some(kinds[0]) { Kind::Increment } else { Kind::Mean };
+        let kind = if found == Some(kinds[0]) { ReadingKind::Increment } else { ReadingKind::Mean };
         Ok((kind, lsb))
     }
 
@@ -189,7 +189,7 @@ impl<'a> Lookup<'a> {
         one: &One,
         kind: Quantity,
         channel: Channel,
-    ) -> Result<Named<'a>, Problem> {
+    ) -> Result<Named<'a>, DbcProblem> {
         let mut named = self.find(key, &one.signal)?;
         named.in_unit(one.unit.as_deref(), &[kind])?;
         self.add(channel, &named);
@@ -197,7 +197,7 @@ impl<'a> Lookup<'a> {
     }
 
     /// Sorts the messages by their order on the bus.
-    fn in_order(&mut self) -> Result<(), Problem> {
+    fn in_order(&mut self) -> Result<(), DbcProblem> {
         let Some(order) = &self.mapping.order else {
             // The lower identifier comes first; of equal numbers the one with 11 bits.
             self.sources.sort_by_key(|source| match source.id {
@@ -207,7 +207,7 @@ impl<'a> Lookup<'a> {
             return Ok(());
         };
         let wrong =
-            |what: String| Err(Problem { place: format!("{}: order", self.mapping.file), what });
+            |what: String| Err(DbcProblem { place: format!("{}: order", self.mapping.file), what });
         let mut sources = Vec::new();
         for name in order {
             let named = self.names.iter().find(|(_, other)| other == name);
@@ -235,7 +235,7 @@ impl Gatherer {
     /// # Errors
     /// If a message or signal doesn't exist, a signal doesn't fit its message, or a unit is missing, is
     /// unsuitable or contradicts the database.
-    pub fn new(database: &Database, mapping: &Mapping) -> Result<Self, Problem> {
+    pub fn new(database: &Database, mapping: &SignalMapping) -> Result<Self, DbcProblem> {
         let mut lookup = Lookup { database, mapping, sources: Vec::new(), names: Vec::new() };
         let kinds = [Quantity::Angle, Quantity::AngularRate];
         let rotation = lookup.three("rotation", &mapping.rotation, kinds, Channel::Rotation)?;
@@ -335,7 +335,7 @@ impl Gatherer {
                 (&mut self.reading.rotation, self.rotation),
                 (&mut self.reading.velocity, self.velocity),
             ] {
-                *measured = Some(Measured { kind, value: [0.0; 3], lsb });
+                *measured = Some(MeasuredTriad { kind, value: [0.0; 3], lsb });
             }
         } else if index != self.next {
             self.counters.orphaned += 1;
@@ -383,7 +383,7 @@ impl Gatherer {
                 // counter.
                 Channel::Sequence => reading.sequence = Some(extract.raw(data)),
                 Channel::Stamp => {
-                    reading.stamp = Some(Stamp { ns: extract.raw(data), clock: Clock::Startup });
+                    reading.stamp = Some(Stamp { ns: extract.raw(data), clock: StampClock::Startup });
                 }
                 Channel::Interval => reading.interval_s = Some(extract.value(data)),
                 Channel::Temperature => reading.temperature_c = Some(extract.value(data) as f32),

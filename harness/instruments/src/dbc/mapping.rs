@@ -1,6 +1,6 @@
 //! Mapping of signals to channels.
 
-use super::Problem;
+use super::DbcProblem;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
@@ -23,7 +23,7 @@ pub struct Three {
 /// Two signals with angles of the gimbals.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Gimbal {
+pub struct GimbalSignals {
     /// Signal of the inner gimbal.
     pub azimuth: String,
     /// Signal of the outer gimbal.
@@ -55,7 +55,7 @@ pub struct Valid {
 /// Mapping of signals to channels.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Mapping {
+pub struct SignalMapping {
     /// Name of its file, for messages.
     #[serde(skip)]
     pub file: String,
@@ -64,7 +64,7 @@ pub struct Mapping {
     /// Velocity increments or specific force.
     pub velocity: Three,
     /// Angles of the gimbals.
-    pub gimbal: Option<Gimbal>,
+    pub gimbal: Option<GimbalSignals>,
     /// Counter of the readings; it may roll over.
     pub sequence: Option<One>,
     /// Time of the unit at the end of the interval; it may roll over.
@@ -82,16 +82,16 @@ pub struct Mapping {
     pub counters: Vec<String>,
 }
 
-impl Mapping {
+impl SignalMapping {
     /// Parses a mapping; `file` is its name in messages.
     ///
     /// # Errors
     /// If the text is no mapping, with file, line and key.
-    pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
+    pub fn parse(file: &str, text: &str) -> Result<Self, DbcProblem> {
         let mapping: Self = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
             let place = line.map_or_else(|| file.into(), |line| std::format!("{file}:{line}"));
-            Problem { place, what: error.message().trim().to_string() }
+            DbcProblem { place, what: error.message().trim().to_string() }
         })?;
         Ok(Self { file: file.into(), ..mapping })
     }

@@ -1,6 +1,6 @@
 //! Any inertial unit on a CAN bus, by its database (DBC) and a mapping.
 //!
-//! A [`Database`] is the maker's DBC file. A [`Mapping`] assigns its signals to channels, in TOML:
+//! A [`Database`] is the maker's DBC file. A [`SignalMapping`] assigns its signals to channels, in TOML:
 //!
 //! ```toml
 //! rotation = { x = "Gyro.rate_x", y = "Gyro.rate_y", z = "-Gyro.rate_z", unit = "deg/s" }
@@ -26,14 +26,14 @@ mod units;
 
 pub use database::Database;
 pub use gather::{CanCounters, CanFrame, Gatherer};
-pub use mapping::{Gimbal, Mapping, One, Three, Valid};
+pub use mapping::{GimbalSignals, SignalMapping, One, Three, Valid};
 
 use std::string::String;
 
 /// Error in a database or a mapping.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {what}")]
-pub struct Problem {
+pub struct DbcProblem {
     /// File with line, or key of the mapping.
     pub place: String,
     /// Error, with the expected form.

@@ -1,7 +1,7 @@
 //! Bits of a signal.
 
 use super::units::{self, Quantity};
-use super::{Database, Mapping, Problem};
+use super::{Database, SignalMapping, DbcProblem};
 use can_dbc::{ByteOrder, Message, MultiplexIndicator, Signal, SignalExtendedValueType, ValueType};
 use std::format;
 use std::string::{String, ToString};
@@ -89,11 +89,11 @@ impl<'a> Named<'a> {
     /// Finds a signal by `Message.signal`, reversed by a minus before it.
     pub(super) fn find(
         database: &'a Database,
-        mapping: &'a Mapping,
+        mapping: &'a SignalMapping,
         key: &str,
         name: &str,
-    ) -> Result<Self, Problem> {
-        let wrong = |what: String| Problem { place: format!("{}: {key}", mapping.file), what };
+    ) -> Result<Self, DbcProblem> {
+        let wrong = |what: String| DbcProblem { place: format!("{}: {key}", mapping.file), what };
         let (sign, bare) = match name.strip_prefix('-') {
             Some(bare) => (-1.0, bare),
             None => (1.0, name),
@@ -117,7 +117,7 @@ impl<'a> Named<'a> {
                 ))
             })?;
         let place = database.place(message, Some(signal_name));
-        let extract = extract(database, message, signal, sign).map_err(|what| Problem {
+        let extract = extract(database, message, signal, sign).map_err(|what| DbcProblem {
             place: place.clone(),
             what: format!("signal `{signal_name}` {what}"),
         })?;
@@ -125,8 +125,8 @@ impl<'a> Named<'a> {
         Ok(Self { message, signal, extract, place, key, mapping: &mapping.file })
     }
 
-    fn wrong(&self, what: String) -> Problem {
-        Problem { place: format!("{}: {}", self.mapping, self.key), what }
+    fn wrong(&self, what: String) -> DbcProblem {
+        DbcProblem { place: format!("{}: {}", self.mapping, self.key), what }
     }
 
     /// Sets the unit of the value: that of the database, or the given one, which must not contradict
@@ -135,7 +135,7 @@ impl<'a> Named<'a> {
         &mut self,
         given: Option<&str>,
         suitable: &[Quantity],
-    ) -> Result<Quantity, Problem> {
+    ) -> Result<Quantity, DbcProblem> {
         let name = &self.signal.name;
         let own = self.signal.unit.trim();
         let place = &self.place;
@@ -175,7 +175,7 @@ impl<'a> Named<'a> {
     }
 
     /// Checks that the value is a counter: an unsigned integer.
-    pub(super) fn counter(&self) -> Result<(), Problem> {
+    pub(super) fn counter(&self) -> Result<(), DbcProblem> {
         if self.extract.is_counter() {
             return Ok(());
         }

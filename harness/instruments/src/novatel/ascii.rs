@@ -2,7 +2,7 @@
 
 use super::raw::RawImu;
 use crate::checksum;
-use crate::framing::{Cause, Extent};
+use crate::framing::{ReadingDefect, Extent};
 use core::fmt::{self, Write};
 
 /// First byte of a line with the short header.
@@ -32,19 +32,19 @@ pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
 }
 
 /// Reads the log from a line.
-pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
-    let text = core::str::from_utf8(frame).map_err(|_| Cause::Malformed)?;
-    let text = text.strip_prefix(char::from(BEGIN)).ok_or(Cause::Malformed)?;
-    let text = text.strip_suffix(END).ok_or(Cause::Malformed)?;
-    let (text, digits) = text.split_once('*').ok_or(Cause::Malformed)?;
+pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+    let text = core::str::from_utf8(frame).map_err(|_| ReadingDefect::Malformed)?;
+    let text = text.strip_prefix(char::from(BEGIN)).ok_or(ReadingDefect::Malformed)?;
+    let text = text.strip_suffix(END).ok_or(ReadingDefect::Malformed)?;
+    let (text, digits) = text.split_once('*').ok_or(ReadingDefect::Malformed)?;
     // A sign must be refused here, because the number parser accepts it.
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-        return Err(Cause::Malformed);
+        return Err(ReadingDefect::Malformed);
     }
-    let found = u32::from_str_radix(digits, 16).map_err(|_| Cause::Malformed)?;
+    let found = u32::from_str_radix(digits, 16).map_err(|_| ReadingDefect::Malformed)?;
     let computed = checksum::novatel(text.as_bytes());
     if found != computed {
-        return Err(Cause::Checksum { found, computed });
+        return Err(ReadingDefect::Checksum { found, computed });
     }
     let Some((head, data)) = text.split_once(';') else { return Ok(None) };
     if head.split(',').next() != Some(NAME) {
@@ -53,7 +53,7 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
     let fields = &mut data.split(',');
     macro_rules! next {
         ($field:literal, $parse:expr) => {
-            fields.next().and_then($parse).ok_or(Cause::NoNumber { field: $field })?
+            fields.next().and_then($parse).ok_or(ReadingDefect::NoNumber { field: $field })?
         };
     }
     let raw = RawImu {
@@ -74,7 +74,7 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
         ],
     };
     if fields.next().is_some() {
-        return Err(Cause::NoNumber { field: "number of fields" });
+        return Err(ReadingDefect::NoNumber { field: "number of fields" });
     }
     Ok(Some(raw))
 }

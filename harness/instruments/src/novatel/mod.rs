@@ -16,15 +16,15 @@ mod scale;
 
 pub use ascii::write_line;
 pub use raw::RawImu;
-pub use scale::{Scale, scale_of};
+pub use scale::{CountScale, scale_of};
 
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{Cause, Extent, Framing};
-use crate::{Clock, Kind, Measured, Reading, Stamp};
+use crate::framing::{ReadingDefect, Extent, Framing};
+use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
 use octant_sample::Status;
 
 const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
@@ -55,11 +55,11 @@ pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NovAtel {
     /// Size of a count, if the kind of unit doesn't determine it. `None`: by the kind.
-    pub scale: Option<Scale>,
+    pub scale: Option<CountScale>,
 }
 
 /// Finds readings in a stream of bytes.
-pub type Decoder = crate::framing::Decoder<NovAtel>;
+pub type NovatelDecoder = crate::framing::FrameDecoder<NovAtel>;
 
 impl Framing for NovAtel {
     type Room = [u8; MAX_BYTES];
@@ -86,7 +86,7 @@ impl Framing for NovAtel {
     }
 
     #[inline]
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
         let raw =
             if frame.first() == Some(&ascii::BEGIN) { ascii::read(frame)? } else { binary(frame)? };
         raw.map(|raw| self.reading(&raw)).transpose()
@@ -94,19 +94,19 @@ impl Framing for NovAtel {
 }
 
 /// Reads the log from a binary frame.
-fn binary(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
-    let (bare, crc) = frame.split_last_chunk::<CRC_BYTES>().ok_or(Cause::Malformed)?;
+fn binary(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+    let (bare, crc) = frame.split_last_chunk::<CRC_BYTES>().ok_or(ReadingDefect::Malformed)?;
     let (found, computed) = (u32::from_le_bytes(*crc), checksum::novatel(bare));
     if found != computed {
-        return Err(Cause::Checksum { found, computed });
+        return Err(ReadingDefect::Checksum { found, computed });
     }
-    let data = bare.get(HEADER_BYTES..).ok_or(Cause::Malformed)?;
+    let data = bare.get(HEADER_BYTES..).ok_or(ReadingDefect::Malformed)?;
     if u16::from_le_bytes([bare[4], bare[5]]) != RAWIMUSX {
         return Ok(None);
     }
     if data.len() != RAWIMUSX_BYTES {
         let found = data.len() as u32;
-        return Err(Cause::Unknown { field: "length of RAWIMUSX", found });
+        return Err(ReadingDefect::Unknown { field: "length of RAWIMUSX", found });
     }
     let data = &mut Reader::new(data);
     Ok(Some(RawImu {
@@ -126,22 +126,22 @@ fn xyz([z, minus_y, x]: [i32; 3]) -> [i32; 3] {
 }
 
 impl NovAtel {
-    fn reading(&self, raw: &RawImu) -> Result<Reading, Cause> {
+    fn reading(&self, raw: &RawImu) -> Result<Reading, ReadingDefect> {
         let scale = self
             .scale
             .or_else(|| scale_of(raw.kind))
-            .ok_or(Cause::Unknown { field: "IMU type", found: raw.kind.into() })?;
+            .ok_or(ReadingDefect::Unknown { field: "IMU type", found: raw.kind.into() })?;
         if !(0.0..=604_800.0).contains(&raw.seconds) {
-            return Err(Cause::Unknown { field: "second of the week", found: raw.seconds as u32 });
+            return Err(ReadingDefect::Unknown { field: "second of the week", found: raw.seconds as u32 });
         }
-        let counts = |counts, lsb| Some(Measured::counts(Kind::Increment, xyz(counts), lsb));
+        let counts = |counts, lsb| Some(MeasuredTriad::counts(ReadingKind::Increment, xyz(counts), lsb));
         let ns = u64::from(raw.week) * WEEK_NS + libm::rint(raw.seconds * 1e9) as u64;
         let mut status = Status::empty();
         status.set(Status::INERTIAL_INVALID, raw.info & (ERROR | ENCRYPTED) != 0);
         Ok(Reading {
             rotation: counts(raw.rotation, scale.rotation_rad),
             velocity: counts(raw.velocity, scale.velocity_mps),
-            stamp: Some(Stamp { ns, clock: Clock::Gps }),
+            stamp: Some(Stamp { ns, clock: StampClock::Gps }),
             status,
             status_word: Some(raw.status),
             ..Reading::NOTHING
@@ -151,19 +151,19 @@ impl NovAtel {
 
 /// Encodes readings as binary frames of `RAWIMUSX`, or as lines.
 #[derive(Clone, Debug)]
-pub struct Encoder {
+pub struct NovatelEncoder {
     kind: u8,
-    scale: Scale,
+    scale: CountScale,
     frame: Frame<MAX_BYTES>,
     rotation: Carry,
     velocity: Carry,
 }
 
-impl Default for Encoder {
+impl Default for NovatelEncoder {
     /// Makes an encoder for an HG4930, which has the finest counts.
     fn default() -> Self {
         const KIND: u8 = 58;
-        const SCALE: Scale = match scale_of(KIND) {
+        const SCALE: CountScale = match scale_of(KIND) {
             Some(scale) => scale,
             None => panic!("the kind is in the table"),
         };
@@ -171,10 +171,10 @@ impl Default for Encoder {
     }
 }
 
-impl Encoder {
+impl NovatelEncoder {
     /// Makes an encoder for a kind of unit and the size of its counts ([`scale_of`]).
     #[must_use]
-    pub const fn new(kind: u8, scale: Scale) -> Self {
+    pub const fn new(kind: u8, scale: CountScale) -> Self {
         let (rotation, velocity) = (Carry::new(), Carry::new());
         Self { kind, scale, frame: Frame::new(), rotation, velocity }
     }
@@ -206,10 +206,10 @@ impl Encoder {
         Ok(frame.bytes())
     }
 
-    /// Encodes a reading as a line, like [`Encoder::encode`]; the stamp has nine decimals.
+    /// Encodes a reading as a line, like [`NovatelEncoder::encode`]; the stamp has nine decimals.
     ///
     /// # Errors
-    /// As [`Encoder::encode`].
+    /// As [`NovatelEncoder::encode`].
     pub fn encode_line(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
         let raw = self.raw(reading)?;
         self.frame.clear();

@@ -8,7 +8,7 @@ use core::f64::consts::PI;
 
 /// Size of one count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub struct CountScale {
     /// Rotation, rad.
     pub rotation_rad: f64,
     /// Velocity, m/s.
@@ -25,8 +25,8 @@ const fn two_to_minus(power: u32) -> f64 {
 
 /// Scale of Epson's units, whose counts are rates in 16.16 bits: degrees a second and mg, at a rate in
 /// Hz.
-const fn epson(degrees_per_s: f64, milli_g: f64, rate_hz: f64) -> Scale {
-    Scale {
+const fn epson(degrees_per_s: f64, milli_g: f64, rate_hz: f64) -> CountScale {
+    CountScale {
         rotation_rad: degrees_per_s / 65536.0 / rate_hz * DEGREE_RAD,
         velocity_mps: milli_g / 65536.0 * (G_MPS2 / 1000.0) / rate_hz,
     }
@@ -34,7 +34,7 @@ const fn epson(degrees_per_s: f64, milli_g: f64, rate_hz: f64) -> Scale {
 
 /// Scale of a kind of unit, by its number in the log; `None`: not in the table.
 #[must_use]
-pub const fn scale_of(kind: u8) -> Option<Scale> {
+pub const fn scale_of(kind: u8) -> Option<CountScale> {
     match kind {
         // HG1700-AG11, HG1900-CA29, HG1700-AG58, HG1930-AA99, HG1900-CA50, HG1930-CA50.
         1 | 5 | 11 | 20 | 27 | 28 => both(two_to_minus(33), two_to_minus(27) * FOOT_M),
@@ -60,6 +60,6 @@ pub const fn scale_of(kind: u8) -> Option<Scale> {
     }
 }
 
-const fn both(rotation_rad: f64, velocity_mps: f64) -> Option<Scale> {
-    Some(Scale { rotation_rad, velocity_mps })
+const fn both(rotation_rad: f64, velocity_mps: f64) -> Option<CountScale> {
+    Some(CountScale { rotation_rad, velocity_mps })
 }

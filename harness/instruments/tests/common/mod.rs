@@ -1,7 +1,7 @@
 //! Shared parts of the tests.
 
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, Clock, Event, Measured, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, StampClock, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp,
 };
 
 /// Parses hexadecimal digits.
@@ -14,7 +14,7 @@ pub(crate) fn unhex(text: &str) -> Vec<u8> {
 }
 
 /// Decodes bytes into all of their events.
-pub(crate) fn events(decoder: &mut AnyDecoder, mut bytes: &[u8]) -> Vec<Event> {
+pub(crate) fn events(decoder: &mut AnyDecoder, mut bytes: &[u8]) -> Vec<FramingEvent> {
     let mut events = Vec::new();
     while let Some(event) = decoder.next(&mut bytes) {
         events.push(event);
@@ -23,10 +23,10 @@ pub(crate) fn events(decoder: &mut AnyDecoder, mut bytes: &[u8]) -> Vec<Event> {
 }
 
 /// Extracts the readings from events.
-pub(crate) fn readings(events: &[Event]) -> Vec<Reading> {
-    let reading = |event: &Event| match event {
-        Event::Reading(reading) => Some(*reading),
-        Event::Lost(_) => None,
+pub(crate) fn readings(events: &[FramingEvent]) -> Vec<Reading> {
+    let reading = |event: &FramingEvent| match event {
+        FramingEvent::Reading(reading) => Some(*reading),
+        FramingEvent::Lost(_) => None,
     };
     events.iter().filter_map(reading).collect()
 }
@@ -45,10 +45,10 @@ pub(crate) fn only(protocol: Protocol, bytes: &[u8]) -> Reading {
 pub(crate) fn reading(number: u64) -> Reading {
     let k = number as f64;
     Reading {
-        rotation: Some(Measured::increment([1e-3 * (0.1 * k).sin(), -2e-6 * k, 3.6e-7])),
-        velocity: Some(Measured::increment([1e-3 * (0.3 * k).cos(), 2e-5, -0.049 + 1e-7 * k])),
+        rotation: Some(MeasuredTriad::increment([1e-3 * (0.1 * k).sin(), -2e-6 * k, 3.6e-7])),
+        velocity: Some(MeasuredTriad::increment([1e-3 * (0.3 * k).cos(), 2e-5, -0.049 + 1e-7 * k])),
         interval_s: Some(0.005),
-        stamp: Some(Stamp { ns: number * 5_000_000, clock: Clock::Startup }),
+        stamp: Some(Stamp { ns: number * 5_000_000, clock: StampClock::Startup }),
         sequence: Some(number),
         temperature_c: Some(25.0 + number as f32 / 256.0),
         ..Reading::NOTHING

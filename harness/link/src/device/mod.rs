@@ -9,15 +9,15 @@ pub use notice::Notice;
 
 use crate::port::{self, PortError};
 use crate::uri::Uri;
-use crate::wire::{Counts, Incoming, Wire};
+use crate::wire::{TrafficCounts, Incoming, Wire};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::message::{
-    Bye, Capabilities, Condition, Heartbeat, Hello, Limits, Message, OutputMessage,
-    PARAMETERS_SEGMENTS, Pacing, ParametersSegment, Ready, Reason, Role, Status, Step, TimeReply,
+    Bye, Capabilities, EndCondition, Heartbeat, Hello, EndLimits, Message, OutputMessage,
+    PARAMETERS_SEGMENTS, StepPacing, ParametersSegment, Ready, Reason, EndRole, DeviceStatus, StepNumber, TimeReply,
     agree,
 };
-use octant_wire::requests::{Requests, Verdict};
+use octant_wire::requests::{Requests, RequestDecision};
 use octant_wire::{Text, VERSION};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -55,7 +55,7 @@ pub struct Facts {
     /// Hash of the configuration; zeros: the device has none.
     pub configuration: [u8; 32],
     /// Limits that the harness has to keep.
-    pub limits: Limits,
+    pub limits: EndLimits,
 }
 
 /// Complete answer to a request, remembered so that it can be sent again.
@@ -73,11 +73,11 @@ struct Session {
     requests: Requests,
     /// Silence after which the harness gives up this device; zero: never.
     their_silence: Duration,
-    counts_before: Counts,
+    counts_before: TrafficCounts,
     answer: Answer,
     revision: Option<u32>,
     late: u32,
-    condition: Condition,
+    condition: EndCondition,
     status_sent: Instant,
 }
 
@@ -124,7 +124,7 @@ impl<'a> Device<'a> {
             newer: None,
             lost_since: None,
         };
-        device.say_hello(0, Pacing::LockStep, Duration::ZERO)?;
+        device.say_hello(0, StepPacing::LockStep, Duration::ZERO)?;
         Ok(device)
     }
 
@@ -154,15 +154,15 @@ impl<'a> Device<'a> {
         &self.wire
     }
 
-    fn say_hello(&mut self, session: u32, pacing: Pacing, wait: Duration) -> Result<(), PortError> {
+    fn say_hello(&mut self, session: u32, pacing: StepPacing, wait: Duration) -> Result<(), PortError> {
         let hello = self.hello(session, pacing);
         self.wire.send(&Message::Hello(hello), wait).map(|_| ())
     }
 
-    fn hello(&self, session: u32, pacing: Pacing) -> Hello {
+    fn hello(&self, session: u32, pacing: StepPacing) -> Hello {
         Hello {
             version: VERSION,
-            role: Role::Device,
+            role: EndRole::Device,
             pacing,
             session,
             capabilities: self.facts.capabilities,
@@ -254,14 +254,14 @@ impl<'a> Device<'a> {
         let lately = self.lost_since.is_some_and(|at| at.elapsed() < SEND_WAIT);
         if asks && !lately {
             self.lost_since = Some(Instant::now());
-            self.say_hello(0, Pacing::LockStep, SEND_WAIT)?;
+            self.say_hello(0, StepPacing::LockStep, SEND_WAIT)?;
         }
         Ok(())
     }
 
     /// Answers a hello: begins a session or refuses it.
     fn greet(&mut self, theirs: &Hello) -> Result<(), PortError> {
-        if theirs.role == Role::Harness
+        if theirs.role == EndRole::Harness
             && self.session.as_ref().is_some_and(|session| session.id == theirs.session)
         {
             // The same hello again: its answer was lost.
@@ -288,7 +288,7 @@ impl<'a> Device<'a> {
             answer: Answer::default(),
             revision: None,
             late: 0,
-            condition: Condition::Ready,
+            condition: EndCondition::Ready,
             status_sent: Instant::now(),
         });
         (self.notice)(&Notice::Began {
@@ -299,21 +299,21 @@ impl<'a> Device<'a> {
         Ok(())
     }
 
-    fn decide(&mut self, decide: impl FnOnce(&mut Requests) -> Verdict) -> Verdict {
-        self.session.as_mut().map_or(Verdict::Nothing, |session| decide(&mut session.requests))
+    fn decide(&mut self, decide: impl FnOnce(&mut Requests) -> RequestDecision) -> RequestDecision {
+        self.session.as_mut().map_or(RequestDecision::Nothing, |session| decide(&mut session.requests))
     }
 
     /// Acts on the verdict about a request: `make` computes its answer, which is remembered.
     fn follow(
         &mut self,
-        verdict: Verdict,
-        step: Step,
+        verdict: RequestDecision,
+        step: StepNumber,
         make: impl FnOnce(&mut Self, Option<Aiding>) -> Result<Answer, String>,
     ) -> Result<(), PortError> {
         match verdict {
-            Verdict::Nothing => Ok(()),
-            Verdict::Again => self.answer(),
-            Verdict::Do(aiding) => match make(self, aiding) {
+            RequestDecision::Nothing => Ok(()),
+            RequestDecision::Again => self.answer(),
+            RequestDecision::Do(aiding) => match make(self, aiding) {
                 Ok(answer) => {
                     if let Some(session) = &mut self.session {
                         debug_assert_eq!(session.requests.last(), step);
@@ -338,24 +338,24 @@ impl<'a> Device<'a> {
         let late = took > Duration::from_nanos(self.facts.sample_period_ns);
         if let Some(session) = &mut self.session {
             session.late = session.late.saturating_add(late.into());
-            session.condition = Condition::Stepping;
+            session.condition = EndCondition::Stepping;
         }
         Ok(self.output_answer(computing_ns))
     }
 
-    fn end(&mut self, _: Step) -> Result<Answer, String> {
+    fn end(&mut self, _: StepNumber) -> Result<Answer, String> {
         self.output = self.steps.end();
         if let Some(session) = &mut self.session {
-            session.condition = Condition::Ended;
+            session.condition = EndCondition::Ended;
         }
         Ok(self.output_answer(0))
     }
 
-    fn restart(&mut self, step: Step, offset: Option<&Parameters>) -> Result<Answer, String> {
+    fn restart(&mut self, step: StepNumber, offset: Option<&Parameters>) -> Result<Answer, String> {
         self.steps.restart(offset)?;
         if let Some(session) = &mut self.session {
             session.revision = None;
-            session.condition = Condition::Ready;
+            session.condition = EndCondition::Ready;
         }
         Ok(Answer { ready: Some(Ready { step }), ..Answer::default() })
     }
@@ -417,11 +417,11 @@ impl<'a> Device<'a> {
         Ok(())
     }
 
-    fn status(&self) -> Status {
-        let Some(session) = &self.session else { return Status::default() };
+    fn status(&self) -> DeviceStatus {
+        let Some(session) = &self.session else { return DeviceStatus::default() };
         let of_wire = self.wire.status(&session.counts_before);
         let of_steps = session.requests.status();
-        Status {
+        DeviceStatus {
             step: of_steps.step,
             steps: of_steps.steps,
             repeated: of_steps.repeated,
@@ -465,10 +465,10 @@ pub fn serve(
     notice: &mut dyn FnMut(&Notice),
     stop: &AtomicBool,
 ) -> Result<(), PortError> {
-    let opened = port::open(uri, Role::Device)?;
+    let opened = port::open(uri, EndRole::Device)?;
     notice(&Notice::Listening(port::announcement(uri, &opened)));
     let mut device =
-        Device::new(Wire::new(uri.to_string(), opened, Role::Device), facts, steps, notice)?;
+        Device::new(Wire::new(uri.to_string(), opened, EndRole::Device), facts, steps, notice)?;
     while let Err(error) = device.serve(stop) {
         (device.notice)(&Notice::PortGone(error.to_string()));
         while device.wire.reopen().is_err() {

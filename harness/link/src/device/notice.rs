@@ -1,7 +1,7 @@
 //! Events that a device reports to its operator.
 
 use octant_wire::Text;
-use octant_wire::message::{Pacing, Status};
+use octant_wire::message::{StepPacing, DeviceStatus};
 use std::fmt;
 
 /// Event that a device reports to its operator.
@@ -16,7 +16,7 @@ pub enum Notice {
         /// Firmware of the harness.
         firmware: Text<24>,
         /// Pacing of the steps.
-        pacing: Pacing,
+        pacing: StepPacing,
     },
     /// A harness was refused, for this reason.
     Refused(String),
@@ -25,7 +25,7 @@ pub enum Notice {
         /// Reason.
         why: String,
         /// Status of the session at its end.
-        status: Status,
+        status: DeviceStatus,
     },
     /// The port went away, for this reason; the device opens it again when it is back.
     PortGone(String),

@@ -2,9 +2,9 @@
 
 use super::lane::{Lane, below, seconds};
 use super::table::Table;
-use crate::port::{BusEvent, Frames, PortError, Trouble};
+use crate::port::{BusEvent, Frames, PortError, BusTrouble};
 use octant_faults::wire::{Altered, Way, WireAction, WireFault, Wired};
-use octant_wire::can::{Format, Frame};
+use octant_wire::can::{CanVersion, BusFrame};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -13,12 +13,12 @@ use std::time::{Duration, Instant};
 pub struct FaultyFrames {
     inner: Box<dyn Frames>,
     table: Table,
-    there: Lane<Frame>,
-    back: Lane<Frame>,
-    flight: Vec<(Frame, Duration)>,
-    landed: Vec<(Frame, Duration)>,
+    there: Lane<BusFrame>,
+    back: Lane<BusFrame>,
+    flight: Vec<(BusFrame, Duration)>,
+    landed: Vec<(BusFrame, Duration)>,
     /// Events that the controller has to report.
-    reports: VecDeque<Trouble>,
+    reports: VecDeque<BusTrouble>,
     /// True after a hang-up closed the port.
     closed: bool,
     /// True while a fault keeps the controller off the bus.
@@ -29,7 +29,7 @@ pub struct FaultyFrames {
 const AGAIN_S: f64 = 200e-6;
 
 /// Bytes of a frame, for checksums.
-fn digest(frame: &Frame) -> [u8; 66] {
+fn digest(frame: &BusFrame) -> [u8; 66] {
     let mut bytes = [0; 66];
     bytes[..2].copy_from_slice(&frame.id().to_le_bytes());
     bytes[2..2 + frame.data().len()].copy_from_slice(frame.data());
@@ -54,7 +54,7 @@ impl FaultyFrames {
     }
 
     /// Passes a frame through all faults, and queues the result.
-    fn pass(&mut self, way: Way, frame: &Frame) {
+    fn pass(&mut self, way: Way, frame: &BusFrame) {
         let now = Instant::now();
         let lane = match way {
             Way::ToDevice => &mut self.there,
@@ -115,12 +115,12 @@ impl FaultyFrames {
         match (self.table.lasting(now, off), self.off) {
             (Some((entry, _)), false) => {
                 self.off = true;
-                self.reports.push_back(Trouble::Off);
+                self.reports.push_back(BusTrouble::Off);
                 entry.altered(b"on", [b"off".as_slice()]);
             }
             (None, true) => {
                 self.off = false;
-                self.reports.push_back(Trouble::Restarted);
+                self.reports.push_back(BusTrouble::Restarted);
             }
             _ => {}
         }
@@ -132,9 +132,9 @@ impl FaultyFrames {
 }
 
 /// Frame of another node, with identifier 0, which wins every arbitration.
-fn foreign(fault: &WireFault, way: Way, nth: u64, i: u64, format: Format) -> Option<Frame> {
+fn foreign(fault: &WireFault, way: Way, nth: u64, i: u64, format: CanVersion) -> Option<BusFrame> {
     let data: [u8; 8] = std::array::from_fn(|k| fault.byte(way, nth, 8 * i + k as u64));
-    Frame::new(0, format, &data)
+    BusFrame::new(0, format, &data)
 }
 
 /// Applies a fault to a frame: puts the results into `landed`, and returns the controller's report.
@@ -143,11 +143,11 @@ fn act(
     way: Way,
     nth: u64,
     [a, b, c]: [f64; 3],
-    lane: &mut Lane<Frame>,
-    (frame, after): (Frame, Duration),
-    landed: &mut Vec<(Frame, Duration)>,
-) -> Option<Trouble> {
-    let with = |data: &[u8]| Frame::new(frame.id(), frame.format(), data);
+    lane: &mut Lane<BusFrame>,
+    (frame, after): (BusFrame, Duration),
+    landed: &mut Vec<(BusFrame, Duration)>,
+) -> Option<BusTrouble> {
+    let with = |data: &[u8]| BusFrame::new(frame.id(), frame.format(), data);
     let mut data = [0; 64];
     let data = &mut data[..frame.data().len()];
     data.copy_from_slice(frame.data());
@@ -176,21 +176,21 @@ fn act(
             for i in 0..count.into() {
                 let [high, low] = [0, 1].map(|k| fault.byte(way, nth, 1000 + 10 * i + k));
                 let id = u16::from_le_bytes([low, high]) & 0x3FF
-                    | if frame.format() == Format::Fd { 0x400 } else { 0 };
+                    | if frame.format() == CanVersion::Fd { 0x400 } else { 0 };
                 let bytes: [u8; 8] =
                     std::array::from_fn(|k| fault.byte(way, nth, 1002 + 10 * i + k as u64));
-                landed.extend(Frame::new(id, frame.format(), &bytes).map(|f| (f, after)));
+                landed.extend(BusFrame::new(id, frame.format(), &bytes).map(|f| (f, after)));
             }
             landed.push((frame, after));
         }
         WireAction::ErrorFrame => {
             landed.push((frame, after + seconds(AGAIN_S)));
-            report = Some(Trouble::ErrorFrame);
+            report = Some(BusTrouble::ErrorFrame);
         }
         WireAction::ArbitrationLost => {
             landed.extend(foreign(fault, way, nth, 0, frame.format()).map(|f| (f, after)));
             landed.push((frame, after));
-            report = Some(Trouble::ArbitrationLost);
+            report = Some(BusTrouble::ArbitrationLost);
         }
         WireAction::Collision => {
             for (i, byte) in data.iter_mut().enumerate() {
@@ -215,7 +215,7 @@ fn act(
 }
 
 impl Frames for FaultyFrames {
-    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
+    fn send(&mut self, frame: &BusFrame, wait: Duration) -> Result<bool, PortError> {
         self.there()?;
         self.pass(Way::ToDevice, frame);
         self.send_due(wait)
@@ -256,7 +256,7 @@ impl Frames for FaultyFrames {
         }
     }
 
-    fn format(&self) -> Format {
+    fn format(&self) -> CanVersion {
         self.inner.format()
     }
 

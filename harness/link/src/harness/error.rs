@@ -1,7 +1,7 @@
 //! Reasons why a session can't begin or continue.
 
 use crate::port::PortError;
-use octant_wire::message::{Bye, Reason, Refusal};
+use octant_wire::message::{Bye, Reason, SessionRefusal};
 use std::fmt;
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ pub enum SessionError {
         /// Number of times that it was asked for.
         asked: u32,
         /// Traffic received instead.
-        heard: Heard,
+        heard: HeardTraffic,
     },
     /// The two ends are incompatible.
     #[error("{port}: {reason}")]
@@ -34,7 +34,7 @@ pub enum SessionError {
         /// The port.
         port: String,
         /// Reason.
-        reason: Refusal,
+        reason: SessionRefusal,
     },
     /// A name has a control character, which a terminal would execute and which doesn't belong in a
     /// file.
@@ -103,7 +103,7 @@ impl fmt::Display for Said<'_> {
 
 /// Traffic received while something else was waited for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heard {
+pub struct HeardTraffic {
     /// Messages received.
     pub messages: u64,
     /// Bytes or frames that belong to no message.
@@ -118,7 +118,7 @@ pub struct Heard {
     pub bye: Option<Reason>,
 }
 
-impl fmt::Display for Heard {
+impl fmt::Display for HeardTraffic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { messages, lost, damaged, not_sent, off_bus, bye } = *self;
         match (messages, lost + damaged) {

@@ -2,22 +2,22 @@
 
 use crate::clock::Stamps;
 use octant_wire::message::{
-    AidingMessage, Gathered, Heartbeat, OutputMessage, SampleMessage, Status, Step,
+    AidingMessage, Gathered, Heartbeat, OutputMessage, SampleMessage, DeviceStatus, StepNumber,
 };
 use std::time::Duration;
 
 /// Event received from the other end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
-pub enum Event {
+pub enum LinkEvent {
     /// The device answered a sample or the end.
     Output(OutputMessage),
     /// All segments of the parameters arrived.
     Parameters(Gathered),
     /// The device restarted, as requested.
-    Ready(Step),
+    Ready(StepNumber),
     /// Status of the device: its counts of steps and losses.
-    Status(Status),
+    Status(DeviceStatus),
     /// Sign of life.
     Heartbeat(Heartbeat),
     /// The device answered a time request.
@@ -37,9 +37,9 @@ pub enum Event {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sending {
     /// The sample is on its way.
-    Sent(Step),
+    Sent(StepNumber),
     /// The port did not accept the whole message: the device will count a missing step.
-    NotTaken(Step),
+    NotTaken(StepNumber),
     /// The device's window is full: the sample was not sent, and has no step.
     WindowFull,
 }

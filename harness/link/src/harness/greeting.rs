@@ -1,9 +1,9 @@
 //! Greeting of a session: hellos until the other end answers.
 
-use super::error::{Heard, SessionError};
+use super::error::{HeardTraffic, SessionError};
 use super::options::Patience;
 use crate::asking::Taken;
-use crate::wire::{Counts, Incoming, Wire};
+use crate::wire::{TrafficCounts, Incoming, Wire};
 use octant_wire::message::{Hello, Message, Reason};
 use std::time::Instant;
 
@@ -23,9 +23,9 @@ fn newer(wire: &Wire, found: u16) -> SessionError {
     }
 }
 
-pub(super) fn heard(wire: &Wire, before: &Counts, bye: Option<Reason>) -> Heard {
+pub(super) fn heard(wire: &Wire, before: &TrafficCounts, bye: Option<Reason>) -> HeardTraffic {
     let now = wire.counts();
-    Heard {
+    HeardTraffic {
         messages: now.received - before.received,
         lost: now.lost - before.lost,
         damaged: now.damaged - before.damaged,

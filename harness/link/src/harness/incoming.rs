@@ -2,19 +2,19 @@
 
 use super::Harness;
 use super::error::SessionError;
-use super::event::Event;
+use super::event::LinkEvent;
 use super::greeting::heard;
 use crate::clock::Stamps;
-use crate::wire::{Counts, Incoming};
-use octant_wire::message::{Message, Pacing, Role, Step};
+use crate::wire::{TrafficCounts, Incoming};
+use octant_wire::message::{Message, StepPacing, EndRole, StepNumber};
 use std::time::Duration;
 
 impl Harness {
     #[cold]
     pub(super) fn no_answer(
         &self,
-        before: &Counts,
-        step: Step,
+        before: &TrafficCounts,
+        step: StepNumber,
         what: &str,
         waited: Duration,
         asked: u32,
@@ -29,47 +29,47 @@ impl Harness {
     }
 
     /// Converts an incoming message to an event.
-    pub(super) fn take(&mut self, incoming: Incoming, during: &str) -> Result<Event, SessionError> {
+    pub(super) fn take(&mut self, incoming: Incoming, during: &str) -> Result<LinkEvent, SessionError> {
         let message = match incoming {
             Incoming::Message(message) => message,
             // The two ends have agreed on a version: on a bus a damaged frame can look like another
             // one.
-            Incoming::Newer(_) => return Ok(Event::Other),
+            Incoming::Newer(_) => return Ok(LinkEvent::Other),
         };
         Ok(match message {
             Message::Output(output) => {
-                if self.options.pacing == Pacing::RealTime
+                if self.options.pacing == StepPacing::RealTime
                     && output.step.since(self.answered) > 0
                     && output.step.since(self.step) <= 0
                 {
                     self.answered = output.step;
                 }
-                Event::Output(output)
+                LinkEvent::Output(output)
             }
             Message::Parameters(segment) => match self.gathering.add(&segment) {
                 Some(gathered) => {
                     self.parameters = Some(gathered);
-                    Event::Parameters(gathered)
+                    LinkEvent::Parameters(gathered)
                 }
-                None => Event::Other,
+                None => LinkEvent::Other,
             },
             Message::Ready(ready) => {
-                if self.options.pacing == Pacing::RealTime {
+                if self.options.pacing == StepPacing::RealTime {
                     self.answered = ready.step;
                 }
-                Event::Ready(ready.step)
+                LinkEvent::Ready(ready.step)
             }
             Message::Status(status) => {
                 self.status = Some(status);
-                Event::Status(status)
+                LinkEvent::Status(status)
             }
-            Message::Heartbeat(heartbeat) => Event::Heartbeat(heartbeat),
+            Message::Heartbeat(heartbeat) => LinkEvent::Heartbeat(heartbeat),
             Message::TimeReply(reply) => {
-                Event::Time(Stamps { reply, harness_received: self.wire.now() })
+                LinkEvent::Time(Stamps { reply, harness_received: self.wire.now() })
             }
             // Answer to a hello that was sent twice.
-            Message::Hello(hello) if hello.session == self.agreement.session => Event::Other,
-            Message::Hello(hello) if hello.role != Role::Harness => Event::Anew,
+            Message::Hello(hello) if hello.session == self.agreement.session => LinkEvent::Other,
+            Message::Hello(hello) if hello.role != EndRole::Harness => LinkEvent::Anew,
             Message::Bye(bye) => {
                 self.said_bye = true;
                 return Err(SessionError::Bye {
@@ -78,9 +78,9 @@ impl Harness {
                     bye,
                 });
             }
-            Message::Sample(sample) => Event::Sample(sample),
-            Message::Aiding(aiding) => Event::Aiding(aiding),
-            _ => Event::Other,
+            Message::Sample(sample) => LinkEvent::Sample(sample),
+            Message::Aiding(aiding) => LinkEvent::Aiding(aiding),
+            _ => LinkEvent::Other,
         })
     }
 }

@@ -10,20 +10,20 @@ mod greeting;
 mod incoming;
 mod options;
 
-pub use error::{Heard, SessionError};
-pub use event::{Effort, Event, Sending};
-pub use options::{Options, Patience};
+pub use error::{HeardTraffic, SessionError};
+pub use event::{Effort, LinkEvent, Sending};
+pub use options::{SessionOptions, Patience};
 
 use crate::asking::Taken;
 use crate::port::PortError;
-use crate::wire::{Counts, Wire};
+use crate::wire::{TrafficCounts, Wire};
 use greeting::{draw_session, is_control, say_hello};
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::Text;
 use octant_wire::message::{
-    Agreement, AidingMessage, Bye, Capabilities, ClockTime, Condition, End, Gathered, Gathering,
-    Heartbeat, Hello, Limits, Message, OutputMessage, Reason, Restart, Role, SampleMessage, Status,
-    Step, TimeRequest, agree,
+    Agreement, AidingMessage, Bye, Capabilities, ClockTime, EndCondition, End, Gathered, Gathering,
+    Heartbeat, Hello, EndLimits, Message, OutputMessage, Reason, Restart, EndRole, SampleMessage, DeviceStatus,
+    StepNumber, TimeRequest, agree,
 };
 use std::time::{Duration, Instant};
 
@@ -31,18 +31,18 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct Harness {
     wire: Wire,
-    options: Options,
+    options: SessionOptions,
     theirs: Hello,
     agreement: Agreement,
     /// Last step sent; `answered` is the last step answered.
-    step: Step,
-    answered: Step,
+    step: StepNumber,
+    answered: StepNumber,
     /// Request that is repeated until answered.
     request: Option<Message>,
     aiding: Option<AidingMessage>,
     gathering: Gathering,
     parameters: Option<Gathered>,
-    status: Option<Status>,
+    status: Option<DeviceStatus>,
     effort: Effort,
     taken: Taken,
     time_id: u16,
@@ -55,15 +55,15 @@ impl Harness {
     ///
     /// # Errors
     /// If nobody answers, or the two ends don't fit together.
-    pub fn open(mut wire: Wire, options: Options) -> Result<Self, SessionError> {
+    pub fn open(mut wire: Wire, options: SessionOptions) -> Result<Self, SessionError> {
         let session = draw_session();
         let ours = Hello {
-            role: Role::Harness,
+            role: EndRole::Harness,
             pacing: options.pacing,
             session,
             capabilities: Capabilities::empty(),
             sample_period_ns: options.sample_period_ns,
-            limits: Limits::default(),
+            limits: EndLimits::default(),
             configuration: options.configuration,
             name: options.name,
             firmware: options.firmware,
@@ -95,8 +95,8 @@ impl Harness {
             options,
             theirs,
             agreement,
-            step: Step::default(),
-            answered: Step::default(),
+            step: StepNumber::default(),
+            answered: StepNumber::default(),
             request: None,
             aiding: None,
             gathering: Gathering::new(),
@@ -130,7 +130,7 @@ impl Harness {
 
     /// Counts of the traffic on the wire.
     #[must_use]
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> TrafficCounts {
         self.wire.counts()
     }
 
@@ -142,7 +142,7 @@ impl Harness {
 
     /// Last status of the device.
     #[must_use]
-    pub fn status(&self) -> Option<Status> {
+    pub fn status(&self) -> Option<DeviceStatus> {
         self.status
     }
 
@@ -192,7 +192,7 @@ impl Harness {
         self.parameters = None;
         self.send_request(self.options.patience.repeat)?;
         self.wait_for(step, "ready", |_, event| {
-            matches!(event, Event::Ready(ready) if *ready == step).then_some(())
+            matches!(event, LinkEvent::Ready(ready) if *ready == step).then_some(())
         })
     }
 
@@ -233,7 +233,7 @@ impl Harness {
     ///
     /// # Errors
     /// If the port or the device is gone.
-    pub fn poll(&mut self, wait: Duration) -> Result<Option<Event>, SessionError> {
+    pub fn poll(&mut self, wait: Duration) -> Result<Option<LinkEvent>, SessionError> {
         match self.wire.receive(wait)? {
             Some(incoming) => self.take(incoming, "output").map(Some),
             None => Ok(None),
@@ -250,10 +250,10 @@ impl Harness {
         if !silence.is_zero() && self.wire.quiet() >= silence / 4 {
             let heartbeat = Heartbeat {
                 step: self.step,
-                condition: if self.step == Step::default() {
-                    Condition::Ready
+                condition: if self.step == StepNumber::default() {
+                    EndCondition::Ready
                 } else {
-                    Condition::Stepping
+                    EndCondition::Stepping
                 },
                 queued: 0,
                 clock: self.wire.now(),
@@ -269,7 +269,7 @@ impl Harness {
         self.wire.silence()
     }
 
-    /// Asks the other end for the time; the answer arrives as an [`Event::Time`].
+    /// Asks the other end for the time; the answer arrives as an [`LinkEvent::Time`].
     ///
     /// # Errors
     /// If the port is gone.
@@ -326,13 +326,13 @@ impl Harness {
         Err(SessionError::Unsupported { port: self.wire.name().to_owned(), what: name })
     }
 
-    fn ask(&mut self, step: Step, request: Message) {
+    fn ask(&mut self, step: StepNumber, request: Message) {
         self.step = step;
         self.request = Some(request);
         self.aiding = None;
     }
 
-    fn next_sample(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> Step {
+    fn next_sample(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> StepNumber {
         let step = self.step.next();
         let message = SampleMessage { step, aided: aiding.is_some(), sample: *sample };
         self.ask(step, Message::Sample(message));
@@ -354,17 +354,17 @@ impl Harness {
 
     fn wait_for_output(
         &mut self,
-        step: Step,
+        step: StepNumber,
         what: &'static str,
     ) -> Result<OutputMessage, SessionError> {
         let mut answer: Option<OutputMessage> = None;
         self.wait_for(step, what, |this, event| {
             match event {
-                Event::Output(output) if output.step == step => {
+                LinkEvent::Output(output) if output.step == step => {
                     this.effort.doubled += u64::from(answer.is_some());
                     answer = Some(*output);
                 }
-                Event::Parameters(_) => {}
+                LinkEvent::Parameters(_) => {}
                 _ => return None,
             }
             let answer = answer?;
@@ -379,9 +379,9 @@ impl Harness {
     /// Waits for the answer to the last request, and repeats the request when the answer is late.
     fn wait_for<T>(
         &mut self,
-        step: Step,
+        step: StepNumber,
         what: &'static str,
-        mut found: impl FnMut(&mut Self, &Event) -> Option<T>,
+        mut found: impl FnMut(&mut Self, &LinkEvent) -> Option<T>,
     ) -> Result<T, SessionError> {
         let Patience { repeat, answer, .. } = self.options.patience;
         let silence = Duration::from_millis(self.theirs.limits.silence_ms.into());
@@ -406,7 +406,7 @@ impl Harness {
                 }
                 // A device without a session says so at each request; a frame repeated on its way does
                 // not.
-                anew += u32::from(event == Event::Anew);
+                anew += u32::from(event == LinkEvent::Anew);
                 if anew >= ANEW {
                     return Err(self.started_anew());
                 }

@@ -1,14 +1,14 @@
 //! Options of a session.
 
 use octant_wire::Text;
-use octant_wire::message::Pacing;
+use octant_wire::message::StepPacing;
 use std::time::Duration;
 
 /// Options of a session.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct SessionOptions {
     /// Pacing of the steps.
-    pub pacing: Pacing,
+    pub pacing: StepPacing,
     /// Sample period, ns.
     pub sample_period_ns: u64,
     /// Hash of the configuration that the core should have; zeros: any.
@@ -21,12 +21,12 @@ pub struct Options {
     pub patience: Patience,
 }
 
-impl Options {
+impl SessionOptions {
     /// A session in lock-step with a device of this sample period.
     #[must_use]
     pub fn lock_step(sample_period_ns: u64) -> Self {
         Self {
-            pacing: Pacing::LockStep,
+            pacing: StepPacing::LockStep,
             sample_period_ns,
             configuration: [0; 32],
             name: Text::fitting("octant"),

@@ -1,12 +1,12 @@
 //! Listening to a CAN bus: the frames of all nodes, with identifiers of 11 or 29 bits.
 
-use super::{PortError, Slcan};
+use super::{PortError, SlcanPort};
 use crate::Uri;
 use std::time::Duration;
 
 /// A frame of any node.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Heard {
+pub struct HeardFrame {
     /// Identifier.
     pub id: u32,
     /// True for an identifier of 29 bits.
@@ -15,7 +15,7 @@ pub struct Heard {
     pub(super) bytes: [u8; 64],
 }
 
-impl Heard {
+impl HeardFrame {
     pub(super) fn new(id: u32, extended: bool, data: &[u8]) -> Self {
         let mut bytes = [0; 64];
         let length = data.len().min(64);
@@ -30,7 +30,7 @@ impl Heard {
     }
 }
 
-impl std::fmt::Debug for Heard {
+impl std::fmt::Debug for HeardFrame {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:X}{}#{:02X?}", self.id, if self.extended { "x" } else { "" }, self.data())
     }
@@ -46,7 +46,7 @@ pub struct Listener {
 enum Bus {
     #[cfg(all(target_os = "linux", feature = "can"))]
     Kernel(super::SocketCan),
-    Slcan(Box<Slcan>),
+    Slcan(Box<SlcanPort>),
 }
 
 impl Listener {
@@ -57,7 +57,7 @@ impl Listener {
     /// If the port is no CAN bus, or can't be opened.
     pub fn open(uri: &Uri, identifiers: &[(u32, bool)]) -> Result<Self, PortError> {
         let bus = match uri {
-            Uri::Slcan(slcan) => Bus::Slcan(Box::new(Slcan::open(slcan)?)),
+            Uri::Slcan(slcan) => Bus::Slcan(Box::new(SlcanPort::open(slcan)?)),
             #[cfg(all(target_os = "linux", feature = "can"))]
             Uri::Can(can) => Bus::Kernel(super::SocketCan::listen(can, identifiers)?),
             #[cfg(not(all(target_os = "linux", feature = "can")))]
@@ -75,7 +75,7 @@ impl Listener {
     ///
     /// # Errors
     /// If the port is gone.
-    pub fn hear(&mut self, wait: Duration) -> Result<Option<Heard>, PortError> {
+    pub fn hear(&mut self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
         match &mut self.bus {
             #[cfg(all(target_os = "linux", feature = "can"))]
             Bus::Kernel(bus) => bus.hear(wait),

@@ -9,18 +9,18 @@ mod udp;
 #[cfg(all(target_os = "linux", feature = "can"))]
 mod socket_can;
 
-pub use listen::{Heard, Listener};
+pub use listen::{HeardFrame, Listener};
 pub use pty::Pty;
 pub use serial::SerialLine;
-pub use slcan::Slcan;
+pub use slcan::SlcanPort;
 #[cfg(all(target_os = "linux", feature = "can"))]
 pub use socket_can::{SocketCan, interface_bus};
 pub use udp::UdpPort;
 
 use crate::Uri;
 use octant_faults::wire::Wired;
-use octant_wire::Role;
-use octant_wire::can::{Format, Frame};
+use octant_wire::EndRole;
+use octant_wire::can::{CanVersion, BusFrame};
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -100,14 +100,14 @@ pub trait Bytes: Debug + Send {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BusEvent {
     /// A frame arrived.
-    Frame(Frame),
+    Frame(BusFrame),
     /// The controller reported a problem, or a foreign frame arrived.
-    Trouble(Trouble),
+    Trouble(BusTrouble),
 }
 
 /// Problem of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Trouble {
+pub enum BusTrouble {
     /// An error frame that is none of the following.
     ErrorFrame,
     /// Arbitration was lost; the controller sends again by itself.
@@ -135,7 +135,7 @@ pub trait Frames: Debug + Send {
     ///
     /// # Errors
     /// If the port is gone.
-    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError>;
+    fn send(&mut self, frame: &BusFrame, wait: Duration) -> Result<bool, PortError>;
 
     /// Receives the next event within a time. With a zero wait it returns at once.
     ///
@@ -144,7 +144,7 @@ pub trait Frames: Debug + Send {
     fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError>;
 
     /// Format of the frames that it carries.
-    fn format(&self) -> Format;
+    fn format(&self) -> CanVersion;
 
     /// Tries to bring back a controller that left the bus. False: that is impossible from here; the
     /// controller comes back by itself or not at all.
@@ -182,31 +182,31 @@ pub enum Port {
 ///
 /// # Errors
 /// If the port can't be opened.
-pub fn open(uri: &Uri, role: Role) -> Result<Port, PortError> {
+pub fn open(uri: &Uri, role: EndRole) -> Result<Port, PortError> {
     match (uri, role) {
         (Uri::Serial(serial), _) => Ok(Port::Bytes(Box::new(SerialLine::open(serial)?))),
-        (Uri::Pty { link }, Role::Device | Role::Instrument) => {
+        (Uri::Pty { link }, EndRole::Device | EndRole::Instrument) => {
             Ok(Port::Bytes(Box::new(Pty::open(link)?)))
         }
-        (Uri::Pty { .. }, Role::Harness) => Err(PortError::open(
+        (Uri::Pty { .. }, EndRole::Harness) => Err(PortError::open(
             uri,
             "a new pseudo terminal has nobody at its other end; expected serial: with the terminal \
              that the device made",
         )),
-        (Uri::Slcan(slcan), _) => Ok(Port::Frames(Box::new(Slcan::open(slcan)?))),
-        (Uri::Udp(udp), Role::Harness) => Ok(Port::Bytes(Box::new(UdpPort::connect(udp)?))),
+        (Uri::Slcan(slcan), _) => Ok(Port::Frames(Box::new(SlcanPort::open(slcan)?))),
+        (Uri::Udp(udp), EndRole::Harness) => Ok(Port::Bytes(Box::new(UdpPort::connect(udp)?))),
         (Uri::Udp(udp), _) => Ok(Port::Bytes(Box::new(UdpPort::listen(udp)?))),
         (Uri::Can(can), role) => open_can(can, role),
     }
 }
 
 #[cfg(all(target_os = "linux", feature = "can"))]
-fn open_can(can: &crate::uri::Can, role: Role) -> Result<Port, PortError> {
+fn open_can(can: &crate::uri::Can, role: EndRole) -> Result<Port, PortError> {
     Ok(Port::Frames(Box::new(SocketCan::open(can, role)?)))
 }
 
 #[cfg(not(all(target_os = "linux", feature = "can")))]
-fn open_can(can: &crate::uri::Can, _: Role) -> Result<Port, PortError> {
+fn open_can(can: &crate::uri::Can, _: EndRole) -> Result<Port, PortError> {
     Err(PortError::open(Uri::Can(can.clone()), WITHOUT_CAN))
 }
 

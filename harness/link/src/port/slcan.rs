@@ -3,17 +3,17 @@
 //! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
 //! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
 
-use super::{BusEvent, Bytes, Frames, Heard, PortError, SerialLine, Trouble};
+use super::{BusEvent, Bytes, Frames, HeardFrame, PortError, SerialLine, BusTrouble};
 use crate::Uri;
 use crate::uri::{self, SLCAN_BITRATES};
-use octant_wire::can::{Format, Frame};
+use octant_wire::can::{CanVersion, BusFrame};
 use std::time::{Duration, Instant};
 
 /// An adapter with its channel open.
 #[derive(Debug)]
-pub struct Slcan {
+pub struct SlcanPort {
     line: Box<dyn Bytes>,
-    slcan: uri::Slcan,
+    slcan: uri::SlcanUri,
     text: Lines,
     buffer: [u8; 512],
     from: usize,
@@ -26,12 +26,12 @@ const LINE_MAX: usize = 1 + 8 + 1 + 128;
 /// Longest wait for an adapter's answer to a command.
 const COMMAND_WAIT: Duration = Duration::from_millis(100);
 
-impl Slcan {
+impl SlcanPort {
     /// Opens the line and the channel.
     ///
     /// # Errors
     /// If the line can't be opened, or the adapter refuses its bit rate.
-    pub fn open(slcan: &uri::Slcan) -> Result<Self, PortError> {
+    pub fn open(slcan: &uri::SlcanUri) -> Result<Self, PortError> {
         let line = Box::new(SerialLine::open(&slcan.serial)?);
         Self::over(line, slcan)
     }
@@ -40,7 +40,7 @@ impl Slcan {
     ///
     /// # Errors
     /// If the line goes away, or the adapter refuses its bit rate.
-    pub fn over(line: Box<dyn Bytes>, slcan: &uri::Slcan) -> Result<Self, PortError> {
+    pub fn over(line: Box<dyn Bytes>, slcan: &uri::SlcanUri) -> Result<Self, PortError> {
         let slcan = slcan.clone();
         let text = Lines::default();
         let mut this = Self { line, slcan, text, buffer: [0; 512], from: 0, to: 0 };
@@ -95,12 +95,12 @@ impl Slcan {
     }
 }
 
-impl Slcan {
+impl SlcanPort {
     /// Receives the next frame of any node within a time.
     ///
     /// # Errors
     /// If the port is gone.
-    pub(super) fn hear(&mut self, wait: Duration) -> Result<Option<Heard>, PortError> {
+    pub(super) fn hear(&mut self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
         let begun = Instant::now();
         loop {
             while self.from < self.to {
@@ -120,15 +120,15 @@ impl Slcan {
     }
 }
 
-impl Drop for Slcan {
+impl Drop for SlcanPort {
     fn drop(&mut self) {
         // The adapter may be gone.
         let _ = self.line.send(b"C\r", COMMAND_WAIT);
     }
 }
 
-impl Frames for Slcan {
-    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
+impl Frames for SlcanPort {
+    fn send(&mut self, frame: &BusFrame, wait: Duration) -> Result<bool, PortError> {
         let mut line = [0; LINE_MAX + 1];
         let count = write_line(frame, &mut line);
         self.line.send(&line[..count], wait)
@@ -153,7 +153,7 @@ impl Frames for Slcan {
         }
     }
 
-    fn format(&self) -> Format {
+    fn format(&self) -> CanVersion {
         self.slcan.bus.format()
     }
 
@@ -178,11 +178,11 @@ impl Frames for Slcan {
 const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 
 /// Writes a frame as a line, and returns its number of bytes.
-fn write_line(frame: &Frame, line: &mut [u8; LINE_MAX + 1]) -> usize {
+fn write_line(frame: &BusFrame, line: &mut [u8; LINE_MAX + 1]) -> usize {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
     line[0] = match frame.format() {
-        Format::Classic => b't',
-        Format::Fd => b'b',
+        CanVersion::Classic => b't',
+        CanVersion::Fd => b'b',
     };
     let id = usize::from(frame.id());
     for (i, shift) in [8, 4, 0].into_iter().enumerate() {
@@ -229,13 +229,13 @@ impl Lines {
     fn push(&mut self, byte: u8) -> Option<BusEvent> {
         match self.take(byte)? {
             Taken::Line(length) => read_line(&self.line[..length]),
-            Taken::Long => Some(BusEvent::Trouble(Trouble::Foreign)),
-            Taken::NotDone => Some(BusEvent::Trouble(Trouble::Overrun)),
+            Taken::Long => Some(BusEvent::Trouble(BusTrouble::Foreign)),
+            Taken::NotDone => Some(BusEvent::Trouble(BusTrouble::Overrun)),
         }
     }
 
     /// As [`Self::push`], for a listener: frames of any node.
-    fn heard(&mut self, byte: u8) -> Option<Heard> {
+    fn heard(&mut self, byte: u8) -> Option<HeardFrame> {
         match self.take(byte)? {
             Taken::Line(length) => any_frame(&self.line[..length]),
             Taken::Long | Taken::NotDone => None,
@@ -271,11 +271,11 @@ impl Lines {
 
 /// Parses a line; `None`: it has nothing to do with frames.
 fn read_line(line: &[u8]) -> Option<BusEvent> {
-    let foreign = Some(BusEvent::Trouble(Trouble::Foreign));
+    let foreign = Some(BusEvent::Trouble(BusTrouble::Foreign));
     let (first, rest) = line.split_first()?;
     let format = match first {
-        b't' => Format::Classic,
-        b'd' | b'b' => Format::Fd,
+        b't' => CanVersion::Classic,
+        b'd' | b'b' => CanVersion::Fd,
         b'T' | b'r' | b'R' | b'D' | b'B' => return foreign,
         // Status flags of the adapter: bit 7 bus error, 5 passive, 2 warning, 3 overrun.
         b'F' => {
@@ -283,10 +283,10 @@ fn read_line(line: &[u8]) -> Option<BusEvent> {
             let flags = digit(*high)? << 4 | digit(*low)?;
             return match flags {
                 0 => None,
-                flags if flags & 0x20 != 0 => Some(BusEvent::Trouble(Trouble::Passive)),
-                flags if flags & 0x08 != 0 => Some(BusEvent::Trouble(Trouble::Overrun)),
-                flags if flags & 0x80 != 0 => Some(BusEvent::Trouble(Trouble::ErrorFrame)),
-                _ => Some(BusEvent::Trouble(Trouble::Warning)),
+                flags if flags & 0x20 != 0 => Some(BusEvent::Trouble(BusTrouble::Passive)),
+                flags if flags & 0x08 != 0 => Some(BusEvent::Trouble(BusTrouble::Overrun)),
+                flags if flags & 0x80 != 0 => Some(BusEvent::Trouble(BusTrouble::ErrorFrame)),
+                _ => Some(BusEvent::Trouble(BusTrouble::Warning)),
             };
         }
         // Answers to commands, and commands of another program on the line.
@@ -295,18 +295,18 @@ fn read_line(line: &[u8]) -> Option<BusEvent> {
     frame(format, rest).map_or(foreign, |frame| Some(BusEvent::Frame(frame)))
 }
 
-fn frame(format: Format, rest: &[u8]) -> Option<Frame> {
+fn frame(format: CanVersion, rest: &[u8]) -> Option<BusFrame> {
     let heard = identified(3, rest)?;
-    Frame::new(u16::try_from(heard.id).ok()?, format, heard.data())
+    BusFrame::new(u16::try_from(heard.id).ok()?, format, heard.data())
 }
 
 /// Parses a frame with any identifier; `None`: the line is no frame with data.
-fn any_frame(line: &[u8]) -> Option<Heard> {
+fn any_frame(line: &[u8]) -> Option<HeardFrame> {
     let (first, rest) = line.split_first()?;
     let classic = matches!(first, b't' | b'T');
     let heard = match first {
         b't' | b'd' | b'b' => identified(3, rest)?,
-        b'T' | b'D' | b'B' => Heard { extended: true, ..identified(8, rest)? },
+        b'T' | b'D' | b'B' => HeardFrame { extended: true, ..identified(8, rest)? },
         _ => return None,
     };
     let most = if heard.extended { 1 << 29 } else { 1 << 11 };
@@ -314,7 +314,7 @@ fn any_frame(line: &[u8]) -> Option<Heard> {
 }
 
 /// Parses an identifier of that many digits, a length and data.
-fn identified(digits: usize, rest: &[u8]) -> Option<Heard> {
+fn identified(digits: usize, rest: &[u8]) -> Option<HeardFrame> {
     let (id, rest) = rest.split_at_checked(digits)?;
     let id = id.iter().try_fold(0, |id, byte| Some(id << 4 | u32::from(digit(*byte)?)))?;
     let (length, data) = rest.split_first()?;
@@ -326,7 +326,7 @@ fn identified(digits: usize, rest: &[u8]) -> Option<Heard> {
     for (byte, pair) in bytes.iter_mut().zip(data.chunks_exact(2)) {
         *byte = digit(pair[0])? << 4 | digit(pair[1])?;
     }
-    Some(Heard::new(id, false, &bytes[..length]))
+    Some(HeardFrame::new(id, false, &bytes[..length]))
 }
 
 fn digit(byte: u8) -> Option<u8> {
@@ -343,7 +343,7 @@ mod tests {
         text.iter().filter_map(|byte| lines.push(*byte)).collect()
     }
 
-    fn line(frame: &Frame) -> Vec<u8> {
+    fn line(frame: &BusFrame) -> Vec<u8> {
         let mut line = [0; LINE_MAX + 1];
         let count = write_line(frame, &mut line);
         line[..count].to_vec()
@@ -351,16 +351,16 @@ mod tests {
 
     #[test]
     fn frames_are_the_lines_that_the_protocol_has() {
-        let classic = Frame::new(0x123, Format::Classic, &[0x11, 0x22, 0xAF]).unwrap();
+        let classic = BusFrame::new(0x123, CanVersion::Classic, &[0x11, 0x22, 0xAF]).unwrap();
         assert_eq!(line(&classic), b"t12331122AF\r");
-        let fd = Frame::new(0x5A0, Format::Fd, &[0xFF; 12]).unwrap();
+        let fd = BusFrame::new(0x5A0, CanVersion::Fd, &[0xFF; 12]).unwrap();
         assert_eq!(line(&fd), b"b5A09FFFFFFFFFFFFFFFFFFFFFFFF\r");
         assert_eq!(read(b"t12331122af\r"), [BusEvent::Frame(classic)]);
     }
 
     #[test]
     fn what_is_no_frame_of_ours_is_told_or_passed_over() {
-        let foreign = BusEvent::Trouble(Trouble::Foreign);
+        let foreign = BusEvent::Trouble(BusTrouble::Foreign);
         for text in [
             &b"T0000012381122334455667788\r"[..],
             b"r1230\r",
@@ -374,7 +374,7 @@ mod tests {
         }
         assert_eq!(read(&[b"t".as_slice(), &[b'0'; 500], b"\rt0000\r"].concat()).len(), 2);
         assert!(read(b"\r\rz\rV1013\rN1234\rF00\r").is_empty());
-        assert_eq!(read(b"\x07"), [BusEvent::Trouble(Trouble::Overrun)]);
+        assert_eq!(read(b"\x07"), [BusEvent::Trouble(BusTrouble::Overrun)]);
         assert_eq!(read(b"F20\rF04\r").len(), 2);
     }
 
@@ -382,13 +382,13 @@ mod tests {
     fn who_listens_hears_frames_of_any_identifier() {
         let mut lines = Lines::default();
         let text = b"t12331122AF\rT18FF00A12BEEF\rtFFF0\rT200000000\rr1230\r\x07D0000012390102030405060708090A0B0C\rt12390102030405060708090A0B0C\r";
-        let heard: Vec<Heard> = text.iter().filter_map(|byte| lines.heard(*byte)).collect();
+        let heard: Vec<HeardFrame> = text.iter().filter_map(|byte| lines.heard(*byte)).collect();
         assert_eq!(
             heard,
             [
-                Heard::new(0x123, false, &[0x11, 0x22, 0xAF]),
-                Heard::new(0x18FF_00A1, true, &[0xBE, 0xEF]),
-                Heard::new(0x123, true, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]),
+                HeardFrame::new(0x123, false, &[0x11, 0x22, 0xAF]),
+                HeardFrame::new(0x18FF_00A1, true, &[0xBE, 0xEF]),
+                HeardFrame::new(0x123, true, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]),
             ]
         );
     }
@@ -396,9 +396,9 @@ mod tests {
     proptest! {
         #[test]
         fn every_frame_comes_back(id in 0..0x800u16, fd: bool, code in 0..16usize, fill: u8) {
-            let format = if fd { Format::Fd } else { Format::Classic };
+            let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
             let data = vec![fill; LENGTHS[code].min(format.room())];
-            let frame = Frame::new(id, format, &data).unwrap();
+            let frame = BusFrame::new(id, format, &data).unwrap();
             prop_assert_eq!(read(&line(&frame)), [BusEvent::Frame(frame)]);
         }
 

@@ -1,10 +1,10 @@
 //! CAN interfaces of the Linux kernel.
 
-use super::{BusEvent, Frames, Heard, PortError, Trouble};
+use super::{BusEvent, Frames, HeardFrame, PortError, BusTrouble};
 use crate::Uri;
 use crate::uri::Can;
-use octant_wire::Role;
-use octant_wire::can::{Bus, Format, Frame, Slot};
+use octant_wire::EndRole;
+use octant_wire::can::{Bus, CanVersion, BusFrame, Slot};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{
     CanAnyFrame, CanDataFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, CanInterface,
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct SocketCan {
     can: Can,
-    role: Role,
+    role: EndRole,
     uri: String,
     /// `None` while the interface is closed.
     socket: Option<CanFdSocket>,
@@ -47,7 +47,7 @@ impl SocketCan {
     /// # Errors
     /// If the interface isn't there or is down, can't do CAN FD where that is requested, or has another
     /// bit rate than the URI says.
-    pub fn open(can: &Can, role: Role) -> Result<Self, PortError> {
+    pub fn open(can: &Can, role: EndRole) -> Result<Self, PortError> {
         Self::filtered(can, role, &filters(role, can.format))
     }
 
@@ -58,10 +58,10 @@ impl SocketCan {
             CanFilter::new(id, mask | EXTENDED | REMOTE)
         };
         let filters: Vec<CanFilter> = identifiers.iter().map(filter).collect();
-        Self::filtered(can, Role::Device, &filters)
+        Self::filtered(can, EndRole::Device, &filters)
     }
 
-    fn filtered(can: &Can, role: Role, filters: &[CanFilter]) -> Result<Self, PortError> {
+    fn filtered(can: &Can, role: EndRole, filters: &[CanFilter]) -> Result<Self, PortError> {
         let uri = Uri::Can(can.clone()).to_string();
         let refused = |reason: String| PortError::open(&uri, reason);
         let interface = CanInterface::open(&can.interface)
@@ -75,7 +75,7 @@ impl SocketCan {
         }
         let is_fd = |mtu| matches!(mtu, socketcan::nl::Mtu::Fd);
         let mtu = details.and_then(|details| details.mtu);
-        if can.format == Format::Fd && mtu.is_some_and(|mtu| !is_fd(mtu)) {
+        if can.format == CanVersion::Fd && mtu.is_some_and(|mtu| !is_fd(mtu)) {
             return Err(refused(
                 "the interface carries classic CAN alone, expected one with CAN FD switched on"
                     .to_owned(),
@@ -120,10 +120,10 @@ impl SocketCan {
     }
 
     /// Receives the next frame of any node within a time; `None`: nothing came, or no frame with data.
-    pub(super) fn hear(&self, wait: Duration) -> Result<Option<Heard>, PortError> {
+    pub(super) fn hear(&self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
         let heard = |id: Id, data: &[u8]| match id {
-            Id::Standard(id) => Heard::new(u32::from(id.as_raw()), false, data),
-            Id::Extended(id) => Heard::new(id.as_raw(), true, data),
+            Id::Standard(id) => HeardFrame::new(u32::from(id.as_raw()), false, data),
+            Id::Extended(id) => HeardFrame::new(id.as_raw(), true, data),
         };
         Ok(self.next(wait)?.and_then(|frame| match &frame {
             CanAnyFrame::Normal(frame) => Some(heard(frame.id(), frame.data())),
@@ -148,13 +148,13 @@ impl SocketCan {
 
 /// Bit rates of an interface's bus; `None`: it has none, like a virtual one.
 #[must_use]
-pub fn interface_bus(interface: &str, format: Format) -> Option<Bus> {
+pub fn interface_bus(interface: &str, format: CanVersion) -> Option<Bus> {
     let interface = CanInterface::open(interface).ok()?;
     let rate = |bps: u32| (bps > 0).then_some(bps);
     let nominal_bps = rate(interface.bit_rate().ok()??)?;
     let data_bps = match format {
-        Format::Classic => None,
-        Format::Fd => {
+        CanVersion::Classic => None,
+        CanVersion::Fd => {
             let timing = interface.data_bit_timing().ok().flatten();
             Some(timing.and_then(|timing| rate(timing.bitrate)).unwrap_or(nominal_bps))
         }
@@ -180,8 +180,8 @@ fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
 }
 
 /// Kernel filters of a role: it receives the messages of the other roles.
-fn filters(role: Role, format: Format) -> Vec<CanFilter> {
-    let heard = |sender: Role| (sender == Role::Harness) != (role == Role::Harness);
+fn filters(role: EndRole, format: CanVersion) -> Vec<CanFilter> {
+    let heard = |sender: EndRole| (sender == EndRole::Harness) != (role == EndRole::Harness);
     Slot::ALL
         .iter()
         .filter(|slot| heard(slot.sender))
@@ -191,42 +191,42 @@ fn filters(role: Role, format: Format) -> Vec<CanFilter> {
 
 /// Problem that an error frame reports. Drivers combine several bits in one frame: the worst one
 /// counts.
-fn trouble(frame: &CanErrorFrame) -> Trouble {
+fn trouble(frame: &CanErrorFrame) -> BusTrouble {
     let bits = frame.error_bits();
     let controller =
         if bits & error::CONTROLLER != 0 { frame.data().get(1).copied().unwrap_or(0) } else { 0 };
     if bits & error::OFF != 0 {
-        Trouble::Off
+        BusTrouble::Off
     } else if bits & error::RESTARTED != 0 {
-        Trouble::Restarted
+        BusTrouble::Restarted
     } else if controller & error::PASSIVE != 0 {
-        Trouble::Passive
+        BusTrouble::Passive
     } else if controller & error::OVERFLOW != 0 {
-        Trouble::Overrun
+        BusTrouble::Overrun
     } else if controller & error::WARNING != 0 {
-        Trouble::Warning
+        BusTrouble::Warning
     } else if bits & error::NOT_ACKNOWLEDGED != 0 {
-        Trouble::NotAcknowledged
+        BusTrouble::NotAcknowledged
     } else if bits & error::ARBITRATION != 0 {
-        Trouble::ArbitrationLost
+        BusTrouble::ArbitrationLost
     } else {
-        Trouble::ErrorFrame
+        BusTrouble::ErrorFrame
     }
 }
 
 /// Converts a frame of the kernel to a frame of this protocol.
 fn event(frame: &CanAnyFrame) -> BusEvent {
-    let ours = |id: Id, format: Format, data: &[u8]| match id {
-        Id::Standard(id) => Frame::new(id.as_raw(), format, data),
+    let ours = |id: Id, format: CanVersion, data: &[u8]| match id {
+        Id::Standard(id) => BusFrame::new(id.as_raw(), format, data),
         Id::Extended(_) => None,
     };
     let frame = match frame {
         CanAnyFrame::Error(frame) => return BusEvent::Trouble(trouble(frame)),
         CanAnyFrame::Remote(_) => None,
-        CanAnyFrame::Normal(frame) => ours(frame.id(), Format::Classic, frame.data()),
-        CanAnyFrame::Fd(frame) => ours(frame.id(), Format::Fd, frame.data()),
+        CanAnyFrame::Normal(frame) => ours(frame.id(), CanVersion::Classic, frame.data()),
+        CanAnyFrame::Fd(frame) => ours(frame.id(), CanVersion::Fd, frame.data()),
     };
-    frame.map_or(BusEvent::Trouble(Trouble::Foreign), BusEvent::Frame)
+    frame.map_or(BusEvent::Trouble(BusTrouble::Foreign), BusEvent::Frame)
 }
 
 /// True if the queue of the interface is full.
@@ -239,18 +239,18 @@ fn is_full(error: &std::io::Error) -> bool {
 const FULL_WAIT: Duration = Duration::from_micros(100);
 
 impl Frames for SocketCan {
-    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
+    fn send(&mut self, frame: &BusFrame, wait: Duration) -> Result<bool, PortError> {
         // Identifiers of this protocol have 11 bits.
         let Some(id) = StandardId::new(frame.id()) else { return Ok(false) };
         let socket = self.socket()?;
         let begun = Instant::now();
         loop {
             let written = match frame.format() {
-                Format::Classic => match CanDataFrame::new(id, frame.data()) {
+                CanVersion::Classic => match CanDataFrame::new(id, frame.data()) {
                     Some(frame) => socket.write_frame(&socketcan::CanFrame::Data(frame)),
                     None => return Ok(false),
                 },
-                Format::Fd => match CanFdFrame::new(id, frame.data()) {
+                CanVersion::Fd => match CanFdFrame::new(id, frame.data()) {
                     Some(mut frame) => {
                         frame.set_brs(true);
                         socket.write_frame(&frame)
@@ -276,7 +276,7 @@ impl Frames for SocketCan {
         Ok(self.next(wait)?.map(|frame| event(&frame)))
     }
 
-    fn format(&self) -> Format {
+    fn format(&self) -> CanVersion {
         self.can.format
     }
 
@@ -301,38 +301,38 @@ impl Frames for SocketCan {
 mod tests {
     use super::*;
 
-    fn error_frame(bits: u32, controller: u8) -> Trouble {
+    fn error_frame(bits: u32, controller: u8) -> BusTrouble {
         let frame = CanErrorFrame::new_error(bits, &[0, controller, 0, 0, 0, 0, 0, 0]).unwrap();
         trouble(&frame)
     }
 
     #[test]
     fn an_error_frame_is_the_worst_that_it_says() {
-        assert_eq!(error_frame(0x40, 0), Trouble::Off);
-        assert_eq!(error_frame(0x04, 0x20), Trouble::Passive);
+        assert_eq!(error_frame(0x40, 0), BusTrouble::Off);
+        assert_eq!(error_frame(0x04, 0x20), BusTrouble::Passive);
         // Error frames as the sja1000 driver reports them: protocol violation, bus error and controller
         // in one frame.
-        assert_eq!(error_frame(0x8C, 0x10), Trouble::Passive);
-        assert_eq!(error_frame(0x8C, 0x08), Trouble::Warning);
-        assert_eq!(error_frame(0x88, 0x10), Trouble::ErrorFrame);
-        assert_eq!(error_frame(0x02, 0), Trouble::ArbitrationLost);
-        assert_eq!(error_frame(0x20, 0), Trouble::NotAcknowledged);
-        assert_eq!(error_frame(0x100, 0), Trouble::Restarted);
-        assert_eq!(error_frame(0x04, 0x01), Trouble::Overrun);
+        assert_eq!(error_frame(0x8C, 0x10), BusTrouble::Passive);
+        assert_eq!(error_frame(0x8C, 0x08), BusTrouble::Warning);
+        assert_eq!(error_frame(0x88, 0x10), BusTrouble::ErrorFrame);
+        assert_eq!(error_frame(0x02, 0), BusTrouble::ArbitrationLost);
+        assert_eq!(error_frame(0x20, 0), BusTrouble::NotAcknowledged);
+        assert_eq!(error_frame(0x100, 0), BusTrouble::Restarted);
+        assert_eq!(error_frame(0x04, 0x01), BusTrouble::Overrun);
     }
 
     #[test]
     fn a_frame_becomes_the_kernel_s_and_is_itself_again() {
         let id = StandardId::new(0x2C3).unwrap();
         let classic = CanAnyFrame::Normal(CanDataFrame::new(id, &[1, 2, 3]).unwrap());
-        let expected = Frame::new(0x2C3, Format::Classic, &[1, 2, 3]).unwrap();
+        let expected = BusFrame::new(0x2C3, CanVersion::Classic, &[1, 2, 3]).unwrap();
         assert_eq!(event(&classic), BusEvent::Frame(expected));
         let fd = CanAnyFrame::Fd(CanFdFrame::new(id, &[7; 12]).unwrap());
-        let expected = Frame::new(0x2C3, Format::Fd, &[7; 12]).unwrap();
+        let expected = BusFrame::new(0x2C3, CanVersion::Fd, &[7; 12]).unwrap();
         assert_eq!(event(&fd), BusEvent::Frame(expected));
         let extended = socketcan::ExtendedId::new(0x2C3).unwrap();
         let foreign = CanAnyFrame::Normal(CanDataFrame::new(extended, &[1]).unwrap());
-        assert_eq!(event(&foreign), BusEvent::Trouble(Trouble::Foreign));
+        assert_eq!(event(&foreign), BusEvent::Trouble(BusTrouble::Foreign));
     }
 
     #[test]
@@ -347,15 +347,15 @@ mod tests {
 
     #[test]
     fn each_end_hears_the_other() {
-        let heard = |role| filters(role, Format::Classic).len();
-        assert_eq!(heard(Role::Device), 8);
-        assert_eq!(heard(Role::Harness), Slot::ALL.len() - 8);
+        let heard = |role| filters(role, CanVersion::Classic).len();
+        assert_eq!(heard(EndRole::Device), 8);
+        assert_eq!(heard(EndRole::Harness), Slot::ALL.len() - 8);
     }
 
     #[test]
     fn an_interface_that_isn_t_there_is_named() {
         let Uri::Can(can) = "can:octant9".parse().unwrap() else { panic!() };
-        let error = SocketCan::open(&can, Role::Harness).unwrap_err().to_string();
+        let error = SocketCan::open(&can, EndRole::Harness).unwrap_err().to_string();
         assert!(error.contains("can:octant9") && error.contains("no such interface"), "{error}");
     }
 }

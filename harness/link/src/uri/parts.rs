@@ -1,6 +1,6 @@
 //! Parts of the text of a port: its name and its options.
 
-use octant_wire::can::Format;
+use octant_wire::can::CanVersion;
 
 /// Error of a text that names no port.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -138,10 +138,10 @@ impl<'a> Parts<'a> {
     }
 
     /// Format given by `fd`; `data_bitrate` requires `fd=1`.
-    pub(super) fn format(&self) -> Result<Format, UriError> {
+    pub(super) fn format(&self) -> Result<CanVersion, UriError> {
         let format = match self.get("fd") {
-            None | Some("0") => Format::Classic,
-            Some("1") => Format::Fd,
+            None | Some("0") => CanVersion::Classic,
+            Some("1") => CanVersion::Fd,
             Some(found) => {
                 return Err(UriError::Value {
                     option: "fd",
@@ -150,7 +150,7 @@ impl<'a> Parts<'a> {
                 });
             }
         };
-        if let (Format::Classic, Some(found)) = (format, self.get("data_bitrate")) {
+        if let (CanVersion::Classic, Some(found)) = (format, self.get("data_bitrate")) {
             return Err(UriError::Value {
                 option: "data_bitrate",
                 found: found.to_owned(),

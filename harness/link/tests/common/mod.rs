@@ -2,7 +2,7 @@
 #![cfg_attr(not(unix), allow(dead_code, reason = "most sessions are tested on Unix alone"))]
 
 use octant_link::device::{Device, Facts, Notice, Steps};
-use octant_link::harness::{Harness, Options, Patience};
+use octant_link::harness::{Harness, SessionOptions, Patience};
 use octant_link::{Uri, Wire, port};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -10,9 +10,9 @@ use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference, Sample,
 };
-use octant_wire::Role;
+use octant_wire::EndRole;
 use octant_wire::Text;
-use octant_wire::message::{Capabilities, Limits};
+use octant_wire::message::{Capabilities, EndLimits};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
@@ -89,17 +89,17 @@ pub(crate) fn facts() -> Facts {
         sample_period_ns: PERIOD_NS,
         configuration: [0; 32],
         // On a busy host, the line may be silent for long.
-        limits: Limits { window: 16, silence_ms: 60_000, shortest_period_ns: 0 },
+        limits: EndLimits { window: 16, silence_ms: 60_000, shortest_period_ns: 0 },
     }
 }
 
 /// Longer than any host needs: ends a test that hangs.
 pub(crate) const LONG: Duration = Duration::from_secs(60);
 
-pub(crate) fn options() -> Options {
-    Options {
+pub(crate) fn options() -> SessionOptions {
+    SessionOptions {
         patience: Patience { hello: LONG, answer: LONG, repeat: Duration::from_millis(50) },
-        ..Options::lock_step(PERIOD_NS)
+        ..SessionOptions::lock_step(PERIOD_NS)
     }
 }
 
@@ -185,9 +185,9 @@ impl Served {
     /// Serves an echoing core on the port of a URI; also returns the URI for the harness.
     pub(crate) fn on(uri: &str, facts: Facts) -> (Self, Uri) {
         let uri: Uri = uri.parse().unwrap();
-        let port = port::open(&uri, Role::Device).unwrap();
+        let port = port::open(&uri, EndRole::Device).unwrap();
         let reached = port::announcement(&uri, &port).parse().unwrap();
-        (Self::over(Wire::new(uri.to_string(), port, Role::Device), facts), reached)
+        (Self::over(Wire::new(uri.to_string(), port, EndRole::Device), facts), reached)
     }
 
     pub(crate) fn stop(&mut self) {
@@ -214,5 +214,5 @@ impl Drop for Served {
 
 /// Opens a session at a port.
 pub(crate) fn harness(uri: &Uri) -> Harness {
-    Harness::open(Wire::open(uri, Role::Harness).unwrap(), options()).unwrap()
+    Harness::open(Wire::open(uri, EndRole::Harness).unwrap(), options()).unwrap()
 }

@@ -10,15 +10,15 @@ use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_base::control::Control;
 use octant_base::number::counted;
-use octant_campaign::case::{self, Job};
+use octant_campaign::case::{self, CaseJob};
 use octant_campaign::execute::{ExecuteError, NOT_KEPT, Shard};
 use octant_campaign::merge::{self, MergeError};
-use octant_campaign::plan::{FILE_NAME, Plan, PlanError, Written};
+use octant_campaign::plan::{FILE_NAME, Plan, PlanError, PlanWritten};
 use octant_campaign::table::TableError;
 use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
 use octant_campaign::{emit, status};
 use octant_requirements::Verdict;
-use octant_requirements::trace::{Row, Unknown};
+use octant_requirements::trace::{TraceRow, UnknownRequirement};
 use planned::read;
 use std::path::{Path, PathBuf};
 
@@ -149,7 +149,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
             let plan = read(folder)?;
-            let job = emit::Job { plan: &plan, folder, shards: *shards, jobs: *jobs };
+            let job = emit::SchedulerJob { plan: &plan, folder, shards: *shards, jobs: *jobs };
             print(&match scheduler {
                 Scheduler::Slurm => emit::slurm(&job),
                 Scheduler::K8s => emit::kubernetes(&job, image, claim),
@@ -205,9 +205,9 @@ fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Fa
     let folder = out.map_or_else(|| Path::new("runs").join(stem.as_ref()), Path::to_owned);
     let written = plan.write(&folder, extend)?;
     let what = match written {
-        Written::New => String::new(),
-        Written::There => ", in a plan that exists already".to_owned(),
-        Written::Extended(new) => format!(", {new} of them new"),
+        PlanWritten::New => String::new(),
+        PlanWritten::There => ", in a plan that exists already".to_owned(),
+        PlanWritten::Extended(new) => format!(", {new} of them new"),
     };
     print(&format!(
         "{}{what}\n{}\n",
@@ -319,10 +319,10 @@ struct Traced<'a> {
     besides: Verdict,
     /// Cases without a result.
     open: usize,
-    requirements: &'a [Row],
+    requirements: &'a [TraceRow],
     without_case: &'a [String],
     without_requirement: &'a [String],
-    unknown: &'a [Unknown],
+    unknown: &'a [UnknownRequirement],
 }
 
 /// Runs one case as `octant run` does.
@@ -349,7 +349,7 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
 
 /// Runs the process of one case.
 fn one() -> Result<Verdict, Failure> {
-    let job: Job = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
+    let job: CaseJob = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
         Failure::input(format!(
             "failed to read a case on standard input: {error} (octant campaign run starts this)"
         ))

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::signing::signing_key;
 use crate::terminal::{print, write};
 use clap::Args;
-use octant_campaign::report::{Report, ReportError, evidence};
+use octant_campaign::report::{CampaignReport, ReportError, evidence};
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::DispositionError;
 use octant_requirements::Verdict;
@@ -28,7 +28,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let plan = read(folder)?;
     // An invalid key is reported before anything is written.
     let key = if arguments.out.is_none() { signing_key()? } else { None };
-    let mut report = Report::of(&plan, folder)?;
+    let mut report = CampaignReport::of(&plan, folder)?;
     let path = match &arguments.out {
         Some(path) => {
             write(path, octant_campaign::page::render(&report, false))?;

@@ -8,9 +8,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::interrupt;
 use octant_base::number::counted;
-use octant_campaign::execute::{Done, Event, ExecuteError, Options, Outcome, Shard, execute};
+use octant_campaign::execute::{CaseDone, ExecutionEvent, ExecuteError, ExecuteOptions, ExecutionSummary, Shard, execute};
 use octant_campaign::plan::Plan;
-use octant_campaign::stop::Decision;
+use octant_campaign::stop::StopDecision;
 use octant_campaign::{merge, results, status};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let mut options = Options {
+    let mut options = ExecuteOptions {
         folder: &arguments.folder,
         program: &program,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
@@ -62,9 +62,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         // Above the bar on a terminal, as a plain line elsewhere.
         if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
     };
-    let tell = |event: &Event| match event {
-        Event::There(count) => bar.inc(*count as u64),
-        Event::Done(done) => {
+    let tell = |event: &ExecutionEvent| match event {
+        ExecutionEvent::There(count) => bar.inc(*count as u64),
+        ExecutionEvent::Done(done) => {
             bar.inc(1);
             if let Some(line) = failure(&plan.cases[done.index].id, done) {
                 told(line);
@@ -82,21 +82,21 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 /// needed.
 pub(crate) fn in_rounds(
     plan: &Plan,
-    options: &mut Options<'_>,
-    tell: &(dyn Fn(&Event) + Sync),
-) -> Result<Outcome, ExecuteError> {
+    options: &mut ExecuteOptions<'_>,
+    tell: &(dyn Fn(&ExecutionEvent) + Sync),
+) -> Result<ExecutionSummary, ExecuteError> {
     let Some(rule) = plan.stop.as_ref().filter(|_| options.shard == Shard::WHOLE) else {
         return execute(plan, options, tell);
     };
-    let mut all = Outcome::default();
+    let mut all = ExecutionSummary::default();
     let mut told = 0;
     let decide = || status::decide(plan, options.folder, rule).map_err(ExecuteError::Result);
-    while let Decision::Open { next } = decide()? {
+    while let StopDecision::Open { next } = decide()? {
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Cases of earlier rounds were reported already.
-            Event::There(count) => tell(&Event::There(count.saturating_sub(told))),
-            Event::Done(_) => tell(event),
+            ExecutionEvent::There(count) => tell(&ExecutionEvent::There(count.saturating_sub(told))),
+            ExecutionEvent::Done(_) => tell(event),
         })?;
         // A case that ends as an error again isn't run a third time.
         options.again = false;
@@ -113,7 +113,7 @@ pub(crate) fn in_rounds(
 }
 
 /// Describes a case as it ends; `None` if it passes.
-fn failure(id: &str, done: &Done) -> Option<String> {
+fn failure(id: &str, done: &CaseDone) -> Option<String> {
     let differs = done.differs.as_ref().map(|path| {
         format!(
             "case {id}: found another result than the stored one, kept beside it in {}",
@@ -129,7 +129,7 @@ fn conclude(
     arguments: &Arguments,
     plan: &Plan,
     shard: Shard,
-    outcome: &Outcome,
+    outcome: &ExecutionSummary,
 ) -> Result<Verdict, Failure> {
     let mut text = format!(
         "{} run, {} with a result already",

@@ -5,9 +5,9 @@ use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_fmu_check::load::load;
 use octant_fmu_check::rules::Severity;
-use octant_fmu_check::{Report, check, show};
+use octant_fmu_check::{CheckReport, check, show};
 use octant_fmu_host::archive::ArchiveError;
-use octant_fmu_host::instance::Options;
+use octant_fmu_host::instance::OpenOptions;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -49,7 +49,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 "--time-limit: found {found}, expected a positive number of seconds"
             ))
         })?;
-    let options = Options { start_limit: limit, time_limit: limit, ..Options::default() };
+    let options = OpenOptions { start_limit: limit, time_limit: limit, ..OpenOptions::default() };
     let mut results = Vec::new();
     for file in &arguments.files {
         results.push((file, one(file, arguments, &options)));
@@ -76,7 +76,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 /// Checks one file.
-fn one(file: &Path, arguments: &Arguments, options: &Options) -> Result<Report, ArchiveError> {
+fn one(file: &Path, arguments: &Arguments, options: &OpenOptions) -> Result<CheckReport, ArchiveError> {
     let mut checked = check(file)?;
     if !arguments.no_load && checked.can_be_loaded() {
         load(&mut checked, options, arguments.step);
@@ -85,7 +85,7 @@ fn one(file: &Path, arguments: &Arguments, options: &Options) -> Result<Report, 
 }
 
 /// Collects all reports, and the number of their findings.
-fn json(results: &[(&PathBuf, Result<Report, ArchiveError>)]) -> serde_json::Value {
+fn json(results: &[(&PathBuf, Result<CheckReport, ArchiveError>)]) -> serde_json::Value {
     let count = |severity| -> usize {
         results.iter().flat_map(|(_, result)| result).map(|report| report.count(severity)).sum()
     };

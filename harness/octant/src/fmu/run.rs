@@ -8,12 +8,12 @@ use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use octant_base::control::Control;
 use octant_base::number::counted;
-use octant_cosim::single::input::{InputError, Inputs};
+use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink};
 use octant_cosim::single::{Finished, SimulateError, Span, simulate};
-use octant_fmu_host::OpenError;
-use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options, Place};
-use octant_mapping::settings::{Settings, Starts};
+use octant_fmu_host::FmuOpenError;
+use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace};
+use octant_mapping::settings::{ValueSettings, Starts};
 use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, setting_argument};
 use serde::Serialize;
@@ -56,7 +56,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let mut inputs = match &arguments.input {
         Some(path) => Some(Inputs::read(path, &description).map_err(|error| match error {
             // The place comes first, as in messages about scenarios.
-            InputError::Content { .. } => Failure::input(error),
+            InputFileError::Content { .. } => Failure::input(error),
             _ => bad(&error),
         })?),
         None => None,
@@ -98,25 +98,25 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
-    let options = Options {
+    let options = OpenOptions {
         interface: match arguments.interface {
             None => InterfaceKind::Any,
             Some(Interface::CoSimulation) => InterfaceKind::CoSimulation,
             Some(Interface::ModelExchange) => InterfaceKind::ModelExchange,
         },
         place: match arguments.process {
-            Process::Own => Place::OwnProcess,
-            Process::Shared => Place::ThisProcess,
+            Process::Own => ProcessPlace::OwnProcess,
+            Process::Shared => ProcessPlace::ThisProcess,
         },
         time_limit: Duration::from_secs_f64(
             seconds("--time-limit", &arguments.time_limit)?.max(0.0),
         ),
-        ..Options::default()
+        ..OpenOptions::default()
     };
     octant_fmu_host::open(&arguments.fmu, &options).map_err(|error| {
         let message = format!("failed to open {}: {error}", arguments.fmu.display());
         match error {
-            OpenError::Instance(InstanceError::Process { .. }) => Failure::bench(message),
+            FmuOpenError::Instance(InstanceError::Process { .. }) => Failure::bench(message),
             _ => Failure::input(message),
         }
     })
@@ -124,7 +124,7 @@ fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
 
 /// Collects the start values of `--set`.
 fn starts(arguments: &Arguments, instance: &dyn Instance) -> Result<Starts, Failure> {
-    let mut settings = Settings::new(instance.description());
+    let mut settings = ValueSettings::new(instance.description());
     let mut problems = Vec::new();
     for argument in &arguments.set {
         let set = setting_argument(argument).and_then(|setting| {

@@ -8,7 +8,7 @@ use octant_base::control::Control;
 use octant_base::number::counted;
 use octant_requirements::Verdict;
 use octant_run::method::run_as_far_as_it_goes;
-use octant_run::{Ended, Recording};
+use octant_run::{Ended, StreamKeeping};
 use octant_scenario::{Method, Scenario, setting_argument};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -45,9 +45,9 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
                     Failure::input(format!("failed to replace {}: {error}", path.display()))
                 })?;
             }
-            Recording::File(path)
+            StreamKeeping::File(path)
         }
-        None => Recording::Hash,
+        None => StreamKeeping::Hash,
     };
     let scenario = Scenario::load(scenario, &overrides(arguments)?).map_err(Failure::input)?;
     let control = Control::default();

@@ -5,7 +5,7 @@ use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use octant_base::number::{counted, significant};
-use octant_campaign::against::{Against, Comparison, Selection, against};
+use octant_campaign::against::{Against, EnsembleComparison, Selection, against};
 use octant_campaign::plan::{FILE_NAME, Plan};
 use octant_observe::ensemble::{Ensemble, ensemble};
 use octant_requirements::Verdict;
@@ -79,7 +79,7 @@ fn hold(arguments: &ScenarioArguments, folder: &Path, json: bool) -> Result<Verd
 
 /// Returns the verdict of the comparison; inconclusive if nothing was compared.
 fn verdict(found: &Against) -> Verdict {
-    let of = |comparison: &Comparison| match comparison.stands {
+    let of = |comparison: &EnsembleComparison| match comparison.stands {
         Some(true) => Verdict::Pass,
         Some(false) => Verdict::Fail,
         None => Verdict::Inconclusive,
@@ -139,7 +139,7 @@ fn text(ensemble: &Ensemble) -> String {
     out
 }
 
-fn compared(comparison: &Comparison) -> String {
+fn compared(comparison: &EnsembleComparison) -> String {
     let figure = |value: f64| significant(value, 4);
     let mut out = format!("{}, {}", comparison.scenario, comparison.method);
     if !comparison.set.is_empty() {

@@ -1,7 +1,7 @@
 //! Dispositions of discrepancies.
 
 use super::bench::{Bench, CAMPAIGN, check, files, put, synthetic, troubled};
-use octant_campaign::report::Report;
+use octant_campaign::report::CampaignReport;
 
 #[test]
 fn dispositions_survive_to_the_letter_and_change_no_verdict() {
@@ -10,7 +10,7 @@ fn dispositions_survive_to_the_letter_and_change_no_verdict() {
     let written = bench.read("dispositions.toml");
     assert_eq!(written.matches("[[discrepancies]]").count(), 5);
     // A user fills in a disposition, in a form of their own.
-    let fault = Report::of(&plan, &out).unwrap().statistics.discrepancies.pop().unwrap();
+    let fault = CampaignReport::of(&plan, &out).unwrap().statistics.discrepancies.pop().unwrap();
     assert_eq!(fault.kind, "fault");
     let (head, tail) = written.split_once(&format!("id = \"{}\"", fault.id)).unwrap();
     let tail = tail

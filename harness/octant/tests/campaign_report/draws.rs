@@ -3,7 +3,7 @@
 
 use super::bench::{Bench, SCENARIO, check};
 use octant_campaign::plan::{Case, Plan};
-use octant_campaign::stop::Decision;
+use octant_campaign::stop::StopDecision;
 use octant_campaign::{merge, results, status};
 use octant_requirements::Verdict;
 use serde_json::{Value, json};
@@ -222,9 +222,9 @@ fn a_stopping_rule_and_its_tables_count_alike() {
         assert_eq!(end, by_results.end(plan.cases.len()));
         // 3 evaluations share 10 %: 0.8^n falls below a thirtieth at 16 draws, of three cases each.
         match refused {
-            0 => assert_eq!(by_results, Decision::Shown { end: 60 }),
-            1 => assert_eq!(by_results, Decision::Shown { end: 90 }),
-            _ => assert_eq!(by_results, Decision::Open { next: 90 }),
+            0 => assert_eq!(by_results, StopDecision::Shown { end: 60 }),
+            1 => assert_eq!(by_results, StopDecision::Shown { end: 90 }),
+            _ => assert_eq!(by_results, StopDecision::Open { next: 90 }),
         }
         let status = status::of(&plan, &folder, octant_campaign::execute::Shard::WHOLE).unwrap();
         assert_eq!(status.stopped.is_some(), refused < 2);

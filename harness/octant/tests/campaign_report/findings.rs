@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, SCENARIO, files, put, synthetic, troubled};
 use octant_campaign::case;
 use octant_campaign::plan::Plan;
-use octant_campaign::report::Report;
+use octant_campaign::report::CampaignReport;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_requirements::Verdict;
 use serde_json::{Value, json};
@@ -59,7 +59,7 @@ fn what_is_wrong_with_cases_is_told_with_the_line_that_runs_them_again() {
         assert!(page.contains(&line), "case {index}");
     }
     assert!(page.contains("it took &lt;more&gt; than its 2 s"));
-    let found: Vec<Discrepancy> = Report::of(&plan, &out).unwrap().statistics.discrepancies;
+    let found: Vec<Discrepancy> = CampaignReport::of(&plan, &out).unwrap().statistics.discrepancies;
     let kinds: Vec<(&str, Verdict, usize)> =
         found.iter().map(|d| (d.kind, d.verdict, d.cases.len())).collect();
     assert_eq!(
@@ -155,7 +155,7 @@ fn nothing_looks_like_a_pass_that_is_none() {
     shows(&bench, "no requirement is checked: nothing is shown");
     let empty = Plan { cases: Vec::new(), ..Bench::new(CAMPAIGN).plan() };
     let folder = tempfile::tempdir().unwrap();
-    let report = Report::of(&empty, folder.path()).unwrap();
+    let report = CampaignReport::of(&empty, folder.path()).unwrap();
     assert_eq!(report.statistics.verdict, Verdict::Inconclusive);
     assert!(octant_campaign::page::render(&report, true).contains("there is no case"));
     assert!(report.open() > 0);

@@ -4,12 +4,12 @@ use super::program::OCTANT;
 use octant_instruments::{AnyEncoder, Protocol, Reading};
 use octant_link::port::{Bytes, Pty};
 use octant_plant::Plant;
-use octant_plant::config::Turntable;
+use octant_plant::config::TurntableConfig;
 use octant_sample::{GimbalAngles, GimbalCommand, Status};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
-use octant_turntable::simulate::{Controller, Server};
-use octant_turntable::{Axis, Dialect};
+use octant_turntable::simulate::{Controller, SimulatedServer};
+use octant_turntable::{TableAxis, Dialect};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -29,8 +29,8 @@ pub fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
     }
 }
 
-fn moves(rate_deg: f64, acceleration_deg: f64) -> Turntable {
-    Turntable {
+fn moves(rate_deg: f64, acceleration_deg: f64) -> TurntableConfig {
+    TurntableConfig {
         rate_radps: rate_deg.to_radians(),
         acceleration_radps2: acceleration_deg.to_radians(),
         encoder_sigma_rad: 0.0,
@@ -41,7 +41,7 @@ fn moves(rate_deg: f64, acceleration_deg: f64) -> Turntable {
 
 /// Simulated table, and an instrument on it that sends the plant's measurements at 200 Hz.
 pub struct Stage {
-    pub server: Arc<Server>,
+    pub server: Arc<SimulatedServer>,
     pub port: String,
     pub instrument: Instrument,
 }
@@ -50,25 +50,25 @@ impl Stage {
     pub fn new() -> Self {
         let dialect = Dialect::aerotech_ensemble().unwrap();
         let controller = Controller::new(dialect, &moves(10.0, 10.0), 400f64.to_radians());
-        let server = Arc::new(Server::tcp(controller, "127.0.0.1:0", 1.0).unwrap());
+        let server = Arc::new(SimulatedServer::tcp(controller, "127.0.0.1:0", 1.0).unwrap());
         let port = format!("tcp:{}", server.address().unwrap());
         let instrument = Instrument::new(Arc::clone(&server));
         Self { server, port, instrument }
     }
 
     /// Returns the true angle of the table, degrees.
-    pub fn angle(&self, axis: Axis) -> f64 {
+    pub fn angle(&self, axis: TableAxis) -> f64 {
         self.server.with(|controller, now| controller.motion(axis, now).angle_rad.to_degrees())
     }
 
     pub fn rests(&self) -> bool {
         let turns = |axis| self.server.with(|c, now| c.motion(axis, now).rate_radps != 0.0);
-        !Axis::ALL.into_iter().any(turns)
+        !TableAxis::ALL.into_iter().any(turns)
     }
 
     /// Waits until the table is in the middle of a long move.
     pub fn wait_for_the_way(&self) {
-        wait_for("the move", || self.angle(Axis::Roll) > 5.0);
+        wait_for("the move", || self.angle(TableAxis::Roll) > 5.0);
     }
 }
 
@@ -81,7 +81,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    fn new(table: Arc<Server>) -> Self {
+    fn new(table: Arc<SimulatedServer>) -> Self {
         let line = Pty::open("").unwrap();
         let uri = format!("serial:{}?baud=921600", line.name());
         let (silent, ends) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
@@ -105,7 +105,7 @@ impl Drop for Instrument {
 
 /// Runs the plant on the table, by the clock. The plant's own gimbals are fast, so that they follow
 /// the table.
-fn play(mut line: Pty, table: &Server, silent: &AtomicBool, ends: &AtomicBool) {
+fn play(mut line: Pty, table: &SimulatedServer, silent: &AtomicBool, ends: &AtomicBool) {
     let text = "schema = 1\n[procedure.navigation]\nduration = \"1 h\"\nrotation = \"none\"\n";
     let scenario = Scenario::parse(text, "instrument", Path::new(""), &[]).unwrap();
     let (mut config, ..) = configurations(&scenario, Method::Primary, 1).unwrap();
@@ -122,7 +122,7 @@ fn play(mut line: Pty, table: &Server, silent: &AtomicBool, ends: &AtomicBool) {
         }
         // Angles of the table at the stamp, however late this thread is.
         let stamp_ns = start_ns + number * PERIOD_NS;
-        let [azimuth, roll] = Axis::ALL
+        let [azimuth, roll] = TableAxis::ALL
             .map(|axis| table.with(|controller, _| controller.motion(axis, stamp_ns).angle_rad));
         let target = GimbalAngles::from_rad(azimuth, roll);
         plant.step_into(&GimbalCommand { target }, &mut sample, &mut aiding);

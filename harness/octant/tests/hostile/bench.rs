@@ -4,7 +4,7 @@ use super::unit::{SCENARIO, check, scenario, summary_of};
 use super::{Ends, Row, open};
 use octant_base::control::Control;
 use octant_run::assemble;
-use octant_run::method::{Recording, run_as_far_as_it_goes};
+use octant_run::method::{StreamKeeping, run_as_far_as_it_goes};
 use octant_scenario::{Method, Scenario};
 use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ fn recorded(folder: &Path, seconds: u32, thousandths: usize) -> PathBuf {
     let text = text.split("[[requirements]]").next().unwrap().to_owned();
     let text = text + "[record]\nsamples = \"full\"\n";
     let full = Scenario::parse(&text, "full.toml", Path::new(""), &[]).unwrap();
-    let recording = Recording::File(&path);
+    let recording = StreamKeeping::File(&path);
     run_as_far_as_it_goes(&full, Method::Primary, full.seed, recording, &Control::default())
         .unwrap();
     let bytes = std::fs::read(&path).unwrap();
@@ -83,7 +83,7 @@ fn an_interrupted_run_says_what_it_did() {
     let mut scenario = scenario;
     scenario.realtime.by_clock = true;
     let run =
-        run_as_far_as_it_goes(&scenario, Method::Primary, 3, Recording::None, &control).unwrap();
+        run_as_far_as_it_goes(&scenario, Method::Primary, 3, StreamKeeping::None, &control).unwrap();
     let summary = assemble(&scenario, 3, run, None).unwrap().summary;
     assert_eq!(summary.calibration.as_ref().unwrap().duration_h, 0.0, "what was done, not planned");
     check("interrupted", &INTERRUPTED, Ok(summary));

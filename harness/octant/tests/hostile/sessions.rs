@@ -9,7 +9,7 @@ use octant_run::method::core_of;
 use octant_sample::Output;
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::*;
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
 use std::net::UdpSocket;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,14 +43,14 @@ struct Peer {
     aiding: Option<AidingMessage>,
     revision: Option<u32>,
     /// Answers to the last sample, for repeated requests.
-    last: Option<(Step, Vec<Message>)>,
+    last: Option<(StepNumber, Vec<Message>)>,
 }
 
 impl Peer {
     fn new(scenario: &Scenario) -> Self {
         let config = core_of(scenario, Method::Primary, scenario.seed).unwrap();
         let hello = Hello {
-            role: Role::Device,
+            role: EndRole::Device,
             capabilities: Capabilities::all(),
             sample_period_ns: config.sample_period_ns,
             configuration: configuration(&config),
@@ -109,13 +109,13 @@ fn run(script: Script) -> Result<octant_score::summary::Summary, String> {
     let until = Arc::clone(&stop);
     let mut peer = Peer::new(&clean);
     let thread = std::thread::spawn(move || {
-        let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+        let (mut encoder, mut decoder) = (SerialEncoder::new(), SerialDecoder::new());
         let mut bytes = [0; 2000];
         while !until.load(Ordering::Relaxed) {
             let Ok((count, from)) = socket.recv_from(&mut bytes) else { continue };
             let mut rest = &bytes[..count];
             while let Some(event) = decoder.next(&mut rest) {
-                let Event::Received(received) = event else { continue };
+                let DecodeEvent::Received(received) = event else { continue };
                 let honest = peer.answers(&received.message);
                 for say in script(&received.message, honest) {
                     // The harness may be gone.
@@ -195,7 +195,7 @@ sessions! {
     };
     another_role: "says that it is a harness itself", breaks("one of the two has to be the harness"), |_, answers| {
         as_it_is(answers.into_iter().map(|message| match message {
-            Message::Hello(hello) => Message::Hello(Hello { role: Role::Harness, ..hello }),
+            Message::Hello(hello) => Message::Hello(Hello { role: EndRole::Harness, ..hello }),
             other => other,
         }).collect())
     };
@@ -218,7 +218,7 @@ sessions! {
     };
     starts_anew: "starts anew in the middle, and says hello", breaks("session"), |message, answers| {
         if number(message) < 1200 { return as_it_is(answers); }
-        as_it_is(vec![Message::Hello(Hello { role: Role::Device, session: 0, ..Hello::default() })])
+        as_it_is(vec![Message::Hello(Hello { role: EndRole::Device, session: 0, ..Hello::default() })])
     };
 }
 

@@ -6,12 +6,12 @@ use octant_link::device::{Device, Notice, Steps};
 use octant_link::port::{self, Bytes as _, Pty};
 use octant_link::{Uri, Wire};
 use octant_run::assemble;
-use octant_run::method::{Recording, core_of, run_as_far_as_it_goes};
+use octant_run::method::{StreamKeeping, core_of, run_as_far_as_it_goes};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_score::summary::Summary;
-use octant_wire::Role;
+use octant_wire::EndRole;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -142,9 +142,9 @@ impl Served {
                 (far.parse().unwrap(), Some(near))
             }
         };
-        let port = port::open(&uri, Role::Device).unwrap();
+        let port = port::open(&uri, EndRole::Device).unwrap();
         let reached = reached.unwrap_or_else(|| port::announcement(&uri, &port));
-        let wire = Wire::new(uri.to_string(), port, Role::Device);
+        let wire = Wire::new(uri.to_string(), port, EndRole::Device);
         let until = Arc::clone(&stop);
         threads.push(std::thread::spawn(move || {
             let mut steps = Twisted::new(core, twist);
@@ -216,7 +216,7 @@ pub fn run_of(scenario: &Scenario, over: Over, twist: Twist) -> Result<Summary, 
     ];
     let text = scenario.to_resolved_toml(
         scenario.seed,
-        &octant_scenario::resolve::Draws::of(
+        &octant_scenario::resolve::DrawnValues::of(
             scenario,
             &octant_scenario::resolve::Seeded(scenario.seed),
         ),
@@ -229,7 +229,7 @@ pub fn run_of(scenario: &Scenario, over: Over, twist: Twist) -> Result<Summary, 
 pub fn summary_of(scenario: &Scenario) -> Result<Summary, String> {
     let control = Control::default();
     let run =
-        run_as_far_as_it_goes(scenario, Method::Primary, scenario.seed, Recording::None, &control)
+        run_as_far_as_it_goes(scenario, Method::Primary, scenario.seed, StreamKeeping::None, &control)
             .map_err(|error| error.to_string())?;
     Ok(assemble(scenario, scenario.seed, run, None).unwrap().summary)
 }

@@ -6,14 +6,14 @@ use self::toy::{Toy, describe, done, refused};
 use octant_cosim::error::MasterError;
 use octant_cosim::faults::{Faulting, looked_at};
 use octant_cosim::flat::Flat;
-use octant_cosim::order::Order;
-use octant_cosim::simulation::{Abilities, Settings, Simulation};
-use octant_cosim::solve::Limits;
+use octant_cosim::order::SteppingOrder;
+use octant_cosim::simulation::{Abilities, SteppingSettings, Simulation};
+use octant_cosim::solve::IterationLimits;
 use octant_cosim::ssp::package::Package;
-use octant_cosim::ssp::structure::Structure;
+use octant_cosim::ssp::structure::SystemStructure;
 use octant_cosim::system::System;
 use octant_fmu_host::description::Description;
-use octant_fmu_host::instance::{Instance, Outcome, Stepped};
+use octant_fmu_host::instance::{Instance, StepOutcome, Stepped};
 use octant_scenario::connection_faults;
 use std::sync::{Arc, Mutex};
 
@@ -47,7 +47,7 @@ impl Bench {
     }
 
     /// Returns the system of the toys, with their names and descriptions.
-    fn system(&self) -> (Flat, Structure, Vec<Description>) {
+    fn system(&self) -> (Flat, SystemStructure, Vec<Description>) {
         let folder = tempfile::tempdir().unwrap();
         let mut components = String::new();
         for (name, toy) in &self.toys {
@@ -73,7 +73,7 @@ impl Bench {
         );
         std::fs::write(folder.path().join("SystemStructure.ssd"), text).unwrap();
         let package = Package::open(folder.path()).unwrap();
-        let structure = Structure::read(&package).unwrap_or_else(|error| panic!("{error}"));
+        let structure = SystemStructure::read(&package).unwrap_or_else(|error| panic!("{error}"));
         let flat = Flat::of(&structure).unwrap_or_else(|error| panic!("{error}"));
         let descriptions = self.toys.iter().map(|(_, toy)| toy.description().clone()).collect();
         (flat, structure, descriptions)
@@ -83,7 +83,7 @@ impl Bench {
     fn faulted(
         &self,
         flat: &Flat,
-        structure: &Structure,
+        structure: &SystemStructure,
         descriptions: &[&Description],
     ) -> Result<(System, Faulting), String> {
         const FILE: &str = "faults.toml";
@@ -115,15 +115,15 @@ impl Bench {
         let (system, faulting) = self
             .faulted(&flat, &structure, &descriptions)
             .unwrap_or_else(|error| panic!("{error}"));
-        let order: Order = self.order.parse().unwrap();
-        let settings = Settings {
+        let order: SteppingOrder = self.order.parse().unwrap();
+        let settings = SteppingSettings {
             order: order.of(&names).unwrap(),
-            jacobi: order == Order::Jacobi,
+            jacobi: order == SteppingOrder::Jacobi,
             start_s: 0.0,
             step_s: self.step_s,
             steps: self.steps,
             tolerance: None,
-            loops: Limits::default(),
+            loops: IterationLimits::default(),
             halvings: 10,
         };
         let abilities = descriptions
@@ -428,7 +428,7 @@ fn early_returns_are_gone_on_from_and_ends_are_obeyed() {
         let early = until < time_s + step_s;
         Stepped {
             time_s: until,
-            outcome: if early { Outcome::Early } else { Outcome::Done },
+            outcome: if early { StepOutcome::Early } else { StepOutcome::Done },
             event: early,
             terminate: until > end_s,
         }

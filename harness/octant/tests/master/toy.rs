@@ -2,7 +2,7 @@
 
 use octant_fmu_host::description::{Description, read};
 use octant_fmu_host::instance::{
-    Group, Instance, InstanceError, Message, Outcome, Stepped, Update,
+    VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update,
 };
 use std::collections::BTreeMap;
 
@@ -32,12 +32,12 @@ pub struct Toy {
 
 /// Returns a step that was done.
 pub fn done(time_s: f64, step_s: f64) -> Stepped {
-    Stepped { time_s: time_s + step_s, outcome: Outcome::Done, event: false, terminate: false }
+    Stepped { time_s: time_s + step_s, outcome: StepOutcome::Done, event: false, terminate: false }
 }
 
 /// Returns a step that was refused after a part of it.
 pub fn refused(reached_s: f64) -> Stepped {
-    Stepped { time_s: reached_s, outcome: Outcome::Discarded, event: false, terminate: false }
+    Stepped { time_s: reached_s, outcome: StepOutcome::Discarded, event: false, terminate: false }
 }
 
 /// Builds a description of FMI 2.0: inputs and outputs (`name:unit`, `name` for plain numbers),
@@ -135,7 +135,7 @@ impl Instance for Toy {
         Ok(false)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         if self.refuses_nan && values.iter().any(|value| !value.is_finite()) {
             return Err(InstanceError::Failed {
                 fmu: self.name().to_owned(),
@@ -150,7 +150,7 @@ impl Instance for Toy {
         Ok(())
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         (self.algebra)(&mut self.numbers);
         for (reference, value) in group.references.iter().zip(values) {
             *value = self.numbers[reference];
@@ -158,22 +158,22 @@ impl Instance for Toy {
         Ok(())
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
         self.note(format!("text {}", values[0]));
         self.texts.insert(group.references[0], values[0].clone());
         Ok(())
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         let number = self.numbers.values().next().copied().unwrap_or_default();
         Ok(vec![self.texts.get(&group.references[0]).cloned().unwrap_or(format!("is {number}"))])
     }
 
-    fn set_binaries(&mut self, _: &Group, _: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, _: &VariableGroup, _: &[Vec<u8>]) -> Result<(), InstanceError> {
         unreachable!("toys have no bytes")
     }
 
-    fn get_binaries(&mut self, _: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, _: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         unreachable!("toys have no bytes")
     }
 
@@ -236,8 +236,8 @@ impl Instance for Toy {
         Ok(())
     }
 
-    fn messages(&mut self) -> Vec<Message> {
-        vec![Message {
+    fn messages(&mut self) -> Vec<FmuMessage> {
+        vec![FmuMessage {
             status: "discard".into(),
             category: "step".into(),
             text: "too long for me".into(),

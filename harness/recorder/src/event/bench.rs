@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// A real instrument and the table under it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bench {
+pub struct BenchRecord {
     /// Relation of the clocks of instrument and host, where readings have stamps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clock: Option<BenchClock>,

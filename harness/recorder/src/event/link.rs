@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Device and traffic of a run over a wire.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Link {
+pub struct LinkRecord {
     /// Arbitrations lost on a bus.
     pub arbitration_lost: u64,
     /// Total time that the port was away, s.

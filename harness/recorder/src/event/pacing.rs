@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 /// Timing of a run against the host's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pacing {
+pub struct PacingRecord {
     /// Number of frames.
     pub frames: u64,
     /// Period of the frames, µs.
     pub period_us: f64,
     /// Lateness of the frames, µs.
-    pub lateness_us: Lateness,
+    pub lateness_us: LatenessQuantiles,
     /// Histogram of the lateness: an upper edge, ns, and the number of frames up to it and above the
     /// edge before.
     pub lateness_histogram_ns: Vec<[u64; 2]>,
@@ -25,7 +25,7 @@ pub struct Pacing {
     /// Part of the period that 99 % of the frames left unused at least, µs.
     pub slack_p1_us: f64,
     /// Time from sending a sample to receiving its answer, µs.
-    pub answer_us: Lateness,
+    pub answer_us: LatenessQuantiles,
     /// Number of frames that ended without their answer.
     pub late_answers: u64,
     /// Number of samples whose answer never came, while later ones were answered.
@@ -53,7 +53,7 @@ pub struct DeviceClock {
 
 /// Quantiles of a duration, µs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Lateness {
+pub struct LatenessQuantiles {
     /// Median.
     pub p50: f64,
     /// 99 % quantile.

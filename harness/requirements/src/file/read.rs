@@ -2,10 +2,10 @@
 
 use super::{Checker, SCHEMA};
 use crate::document::{Lines, Problems, Reader, describe};
-use crate::error::{Problem, RequirementsError};
+use crate::error::{RequirementsProblem, RequirementsError};
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
-    Attribute, Check, Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements,
+    ForeignAttribute, Check, Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements,
     Verification, probability,
 };
 use crate::verdict::Comparison;
@@ -51,7 +51,7 @@ pub fn read(
         Err(error) => {
             let at = problems.lines.place(error.span().map_or(text.len(), |span| span.start));
             let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-            return Err(RequirementsError::one(file, Problem::new(at, "", message)));
+            return Err(RequirementsError::one(file, RequirementsProblem::new(at, "", message)));
         }
     };
     let root = Reader::new(table.get_ref(), 0, "", &problems);
@@ -156,13 +156,13 @@ fn definition(table: &Reader<'_>) -> Option<Definition> {
         table.problem("options", format!("found options, and {kind} has none"));
     }
     let kind = match kind.as_str() {
-        "text" => Kind::Text,
-        "integer" => Kind::Integer,
-        "real" => Kind::Real,
-        "boolean" => Kind::Boolean,
-        "date" => Kind::Date,
-        "choice" => Kind::Choice(options),
-        "choices" => Kind::Choices(options),
+        "text" => AttributeKind::Text,
+        "integer" => AttributeKind::Integer,
+        "real" => AttributeKind::Real,
+        "boolean" => AttributeKind::Boolean,
+        "date" => AttributeKind::Date,
+        "choice" => AttributeKind::Choice(options),
+        "choices" => AttributeKind::Choices(options),
         other => {
             let known = crate::error::suggestion(other, &KINDS);
             table.problem("type", format!("found {other:?}, {known}"));
@@ -211,7 +211,7 @@ fn requirement(
             }
             let values = attributes.texts_of(name, value);
             fits(&attributes, name, &values, definitions);
-            read.attributes.push(Attribute { name: name.to_owned(), values });
+            read.attributes.push(ForeignAttribute { name: name.to_owned(), values });
         }
     }
     Some(read)
@@ -226,27 +226,27 @@ fn fits(table: &Reader<'_>, name: &str, values: &[String], definitions: &[Defini
 }
 
 /// Text of the expected values, if these don't fit a kind.
-pub(crate) fn misfit(kind: &Kind, values: &[String]) -> Option<String> {
+pub(crate) fn misfit(kind: &AttributeKind, values: &[String]) -> Option<String> {
     let all = |legal: &dyn Fn(&String) -> bool| values.iter().all(legal);
     let one_of = |options: &[String]| format!("of {}", options.join(", "));
     let (legal, expected) = match kind {
-        Kind::Text => (true, String::new()),
-        Kind::Integer => {
+        AttributeKind::Text => (true, String::new()),
+        AttributeKind::Integer => {
             (values.len() == 1 && all(&|v| v.parse::<i64>().is_ok()), "a whole number".to_owned())
         }
-        Kind::Real => {
+        AttributeKind::Real => {
             let legal = |v: &String| v.parse::<f64>().is_ok_and(f64::is_finite);
             (values.len() == 1 && all(&legal), "a number".to_owned())
         }
-        Kind::Boolean => {
+        AttributeKind::Boolean => {
             let legal = |v: &String| v == "true" || v == "false";
             (values.len() == 1 && all(&legal), "\"true\" or \"false\"".to_owned())
         }
-        Kind::Date => (values.len() == 1 && all(&|v| v.len() >= 10), "a date".to_owned()),
-        Kind::Choice(options) => {
+        AttributeKind::Date => (values.len() == 1 && all(&|v| v.len() >= 10), "a date".to_owned()),
+        AttributeKind::Choice(options) => {
             (values.len() == 1 && all(&|v| options.contains(v)), format!("one {}", one_of(options)))
         }
-        Kind::Choices(options) => {
+        AttributeKind::Choices(options) => {
             (all(&|v| options.contains(v)), format!("some {}", one_of(options)))
         }
     };
@@ -387,7 +387,7 @@ fn limit(table: &Reader<'_>) -> Option<Limit> {
     }
 }
 
-fn ensemble(table: &Reader<'_>) -> Option<Ensemble> {
+fn ensemble(table: &Reader<'_>) -> Option<EnsembleRequirement> {
     let part = |key: &str| {
         let text = table.line_of(key)?;
         probability(&text).map_err(|error| table.problem(key, error.to_string())).ok()
@@ -399,5 +399,5 @@ fn ensemble(table: &Reader<'_>) -> Option<Ensemble> {
             table.problem(other, message);
         }
     }
-    Some(Ensemble { pass: pass?, confidence: confidence? })
+    Some(EnsembleRequirement { pass: pass?, confidence: confidence? })
 }

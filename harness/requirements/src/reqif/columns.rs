@@ -2,12 +2,12 @@
 
 use super::{FOREIGN_ID, NAME, TEXT};
 use crate::fields::{ALL, own_fields};
-use crate::requirement::{Kind, Requirements};
+use crate::requirement::{AttributeKind, Requirements};
 
 /// A column of every object type.
 pub(super) struct Column {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: AttributeKind,
     /// True for a text that isn't one line of plain ASCII. StrictDoc reads and writes strings with
     /// escapes of its own, which would change such texts; it leaves XHTML unchanged.
     pub(super) formatted: bool,
@@ -16,14 +16,14 @@ pub(super) struct Column {
 pub(super) fn columns(requirements: &Requirements) -> Vec<Column> {
     let all = &requirements.requirements;
     let plain = |text: &str| text.chars().all(|c| (' '..='~').contains(&c) && c != '\\');
-    let column = |name: &str, kind: Kind, values: &[String]| {
-        let formatted = kind == Kind::Text && !values.iter().all(|text| plain(text));
+    let column = |name: &str, kind: AttributeKind, values: &[String]| {
+        let formatted = kind == AttributeKind::Text && !values.iter().all(|text| plain(text));
         Column { name: name.to_owned(), kind, formatted }
     };
     let mut columns = vec![
-        Column { name: FOREIGN_ID.to_owned(), kind: Kind::Text, formatted: false },
-        column(NAME, Kind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
-        Column { name: TEXT.to_owned(), kind: Kind::Text, formatted: true },
+        Column { name: FOREIGN_ID.to_owned(), kind: AttributeKind::Text, formatted: false },
+        column(NAME, AttributeKind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
+        Column { name: TEXT.to_owned(), kind: AttributeKind::Text, formatted: true },
     ];
     for field in ALL {
         let values: Vec<String> = all
@@ -32,7 +32,7 @@ pub(super) fn columns(requirements: &Requirements) -> Vec<Column> {
             .filter(|(name, _)| *name == field)
             .map(|(_, value)| value)
             .collect();
-        columns.push(column(field, Kind::Text, &values));
+        columns.push(column(field, AttributeKind::Text, &values));
     }
     for name in requirements.attribute_names() {
         let values: Vec<String> = all

@@ -3,10 +3,10 @@
 use super::types::{Types, Wrong, child, identifier, reference, within};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, xhtml};
 use crate::document::{control, normal};
-use crate::error::{Imported, Note, Problem, RequirementsError};
+use crate::error::{Imported, Note, RequirementsProblem, RequirementsError};
 use crate::fields;
 use crate::requirement::{
-    Attribute, Definition, Kind, Parent, Requirement, Requirements, Verification,
+    ForeignAttribute, Definition, AttributeKind, Parent, Requirement, Requirements, Verification,
 };
 use roxmltree::{Document, Node};
 use std::collections::{HashMap, HashSet};
@@ -25,7 +25,7 @@ const DEPTH: usize = 100;
 /// an id occurs twice.
 pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     let fail = |line: usize, column: usize, message: String| {
-        RequirementsError::one(file, Problem::new((line, column), "", message))
+        RequirementsError::one(file, RequirementsProblem::new((line, column), "", message))
     };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::parse(text).map_err(|error| {
@@ -36,7 +36,7 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
 }
 
 /// Name and kind of an attribute, its values, and its line.
-type Attributed = (String, Kind, Vec<String>, usize);
+type Attributed = (String, AttributeKind, Vec<String>, usize);
 
 /// An object of the file.
 #[derive(Default)]
@@ -357,11 +357,11 @@ impl<'a> Reader<'a> {
         };
         let mut attributes = Vec::new();
         for (name, kind, values, _) in object.values {
-            if kind != Kind::Text && !self.found.definitions.iter().any(|d| d.name == name) {
+            if kind != AttributeKind::Text && !self.found.definitions.iter().any(|d| d.name == name) {
                 let name = name.clone();
                 self.found.definitions.push(Definition { name, kind, field: None });
             }
-            attributes.push(Attribute { name, values });
+            attributes.push(ForeignAttribute { name, values });
         }
         let kind = (object.kind != crate::sdoc::REQUIREMENT).then_some(object.kind);
         // An identifier that this program made from the id adds nothing.

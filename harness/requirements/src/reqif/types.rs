@@ -1,6 +1,6 @@
 //! Types of a ReqIF file: enumerations, and attributes of objects.
 
-use crate::requirement::Kind;
+use crate::requirement::AttributeKind;
 use roxmltree::Node;
 use std::collections::HashMap;
 
@@ -25,7 +25,7 @@ pub(super) fn reference<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
 /// An attribute of an object type.
 pub(super) struct Definition {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: AttributeKind,
 }
 
 /// An object type.
@@ -104,11 +104,11 @@ impl Types {
             let name = attribute.attribute("LONG-NAME").unwrap_or(id).trim().to_owned();
             let tag = attribute.tag_name().name();
             let kind = match tag.strip_prefix("ATTRIBUTE-DEFINITION-") {
-                Some("STRING" | "XHTML") => Kind::Text,
-                Some("INTEGER") => Kind::Integer,
-                Some("REAL") => Kind::Real,
-                Some("BOOLEAN") => Kind::Boolean,
-                Some("DATE") => Kind::Date,
+                Some("STRING" | "XHTML") => AttributeKind::Text,
+                Some("INTEGER") => AttributeKind::Integer,
+                Some("REAL") => AttributeKind::Real,
+                Some("BOOLEAN") => AttributeKind::Boolean,
+                Some("DATE") => AttributeKind::Date,
                 Some("ENUMERATION") => {
                     let datatype = reference(attribute, "TYPE").unwrap_or_default();
                     let Some(options) = enumerations.get(datatype) else {
@@ -117,8 +117,8 @@ impl Types {
                         return Err((line(attribute), format!("{found} that isn't in the file")));
                     };
                     match attribute.attribute("MULTI-VALUED") {
-                        Some("true" | "1") => Kind::Choices(options.clone()),
-                        _ => Kind::Choice(options.clone()),
+                        Some("true" | "1") => AttributeKind::Choices(options.clone()),
+                        _ => AttributeKind::Choice(options.clone()),
                     }
                 }
                 _ => {

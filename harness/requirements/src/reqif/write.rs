@@ -6,7 +6,7 @@ use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL, XHTML, xhtml};
 use crate::error::ExportError;
 use crate::fields::own_fields;
 use crate::file::misfit;
-use crate::requirement::{Kind, Requirement, Requirements};
+use crate::requirement::{AttributeKind, Requirement, Requirements};
 use crate::sdoc::REQUIREMENT;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use quick_xml::writer::Writer;
@@ -219,7 +219,7 @@ impl File<'_> {
                 let element = format!("ATTRIBUTE-DEFINITION-{tag}");
                 let mut attributes = named(time, &id, &name).to_vec();
                 if tag == "ENUMERATION" {
-                    let multi = matches!(self.columns[index].kind, Kind::Choices(_));
+                    let multi = matches!(self.columns[index].kind, AttributeKind::Choices(_));
                     attributes.push(("MULTI-VALUED", if multi { "true" } else { "false" }));
                 }
                 self.open(&element, &attributes)?;
@@ -243,13 +243,13 @@ impl File<'_> {
     fn datatype(&self, index: usize) -> (&'static str, String) {
         let column = &self.columns[index];
         let (tag, id) = match &column.kind {
-            Kind::Text if column.formatted => ("XHTML", "octant-d-xhtml"),
-            Kind::Text => ("STRING", "octant-d-text"),
-            Kind::Integer => ("INTEGER", "octant-d-integer"),
-            Kind::Real => ("REAL", "octant-d-real"),
-            Kind::Boolean => ("BOOLEAN", "octant-d-boolean"),
-            Kind::Date => ("DATE", "octant-d-date"),
-            Kind::Choice(_) | Kind::Choices(_) => {
+            AttributeKind::Text if column.formatted => ("XHTML", "octant-d-xhtml"),
+            AttributeKind::Text => ("STRING", "octant-d-text"),
+            AttributeKind::Integer => ("INTEGER", "octant-d-integer"),
+            AttributeKind::Real => ("REAL", "octant-d-real"),
+            AttributeKind::Boolean => ("BOOLEAN", "octant-d-boolean"),
+            AttributeKind::Date => ("DATE", "octant-d-date"),
+            AttributeKind::Choice(_) | AttributeKind::Choices(_) => {
                 return ("ENUMERATION", format!("octant-d-{index}"));
             }
         };

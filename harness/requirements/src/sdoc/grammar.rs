@@ -1,6 +1,6 @@
 //! Grammar of a document: the fields of its nodes.
 
-use crate::requirement::{Definition, Kind};
+use crate::requirement::{Definition, AttributeKind};
 
 /// A field of the grammar.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub(super) struct Field {
     pub(super) title: String,
     /// Name for people.
     pub(super) human: Option<String>,
-    pub(super) kind: Kind,
+    pub(super) kind: AttributeKind,
 }
 
 impl Field {
@@ -20,7 +20,7 @@ impl Field {
 
     /// Definition that has to be kept for the field, if any.
     pub(super) fn definition(&self) -> Option<Definition> {
-        let plain = self.kind == Kind::Text;
+        let plain = self.kind == AttributeKind::Text;
         let field = self.human.as_ref().map(|_| self.title.clone());
         // A name from which this field follows needs no definition.
         let field = field.filter(|title| *title != field_of(self.name()));
@@ -46,18 +46,18 @@ pub(super) fn field_of(name: &str) -> String {
 }
 
 /// Kind of a `TYPE` in the grammar.
-pub(super) fn kind(text: &str) -> Option<Kind> {
+pub(super) fn kind(text: &str) -> Option<AttributeKind> {
     let options = |list: &str| -> Option<Vec<String>> {
         let inner = list.strip_prefix('(')?.strip_suffix(')')?;
         Some(inner.split(", ").map(|option| option.trim_matches('"').to_owned()).collect())
     };
     match text {
-        "String" => Some(Kind::Text),
+        "String" => Some(AttributeKind::Text),
         // Words separated by commas, from no fixed list.
-        "Tag" => Some(Kind::Text),
+        "Tag" => Some(AttributeKind::Text),
         _ => match (text.strip_prefix("SingleChoice"), text.strip_prefix("MultipleChoice")) {
-            (Some(list), _) => options(list).map(Kind::Choice),
-            (_, Some(list)) => options(list).map(Kind::Choices),
+            (Some(list), _) => options(list).map(AttributeKind::Choice),
+            (_, Some(list)) => options(list).map(AttributeKind::Choices),
             _ => None,
         },
     }

@@ -3,9 +3,9 @@
 use super::grammar::{Field, kind};
 use super::{HEAD, OPTIONS, REQUIREMENT};
 use crate::document::{control, normal};
-use crate::error::{Imported, Note, Problem, RequirementsError};
+use crate::error::{Imported, Note, RequirementsProblem, RequirementsError};
 use crate::fields as field;
-use crate::requirement::{Attribute, Kind, Parent, Requirement, Requirements, Verification};
+use crate::requirement::{ForeignAttribute, AttributeKind, Parent, Requirement, Requirements, Verification};
 use std::collections::HashMap;
 
 /// Reads an `.sdoc`.
@@ -29,7 +29,7 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     match parser.document() {
         Ok(()) => Ok(Imported { requirements: parser.found, notes: parser.notes }),
         Err((line, message)) => {
-            Err(RequirementsError::one(file, Problem::new((line, 1), "", message)))
+            Err(RequirementsError::one(file, RequirementsProblem::new((line, 1), "", message)))
         }
     }
 }
@@ -184,7 +184,7 @@ impl<'a> Parser<'a> {
             } else if let Some(title) = line.strip_prefix("  - TITLE: ") {
                 self.declare(&tag, field.take());
                 let title = title.trim().to_owned();
-                field = Some(Field { title, human: None, kind: Kind::Text });
+                field = Some(Field { title, human: None, kind: AttributeKind::Text });
             } else if let (Some(text), Some(field), false) =
                 (trimmed.strip_prefix("HUMAN_TITLE: "), &mut field, relations)
             {
@@ -395,17 +395,17 @@ impl<'a> Parser<'a> {
                 Verification::Open
             }
         };
-        let mut attributes: Vec<Attribute> = Vec::new();
+        let mut attributes: Vec<ForeignAttribute> = Vec::new();
         for written in fields {
             let known = self.fields.get(&(kind.to_owned(), written.name.clone()));
             let name = known.map_or(written.name.as_str(), Field::name).to_owned();
             let values = match known.map(|field| &field.kind) {
-                Some(Kind::Choices(_)) => written.value.split(", ").map(str::to_owned).collect(),
+                Some(AttributeKind::Choices(_)) => written.value.split(", ").map(str::to_owned).collect(),
                 _ => vec![written.value],
             };
             match attributes.iter_mut().find(|a| a.name == name) {
                 Some(attribute) => attribute.values.extend(values),
-                None => attributes.push(Attribute { name, values }),
+                None => attributes.push(ForeignAttribute { name, values }),
             }
         }
         let plain = |w: Option<Written>| w.map(|w| w.value);

@@ -4,7 +4,7 @@ use super::grammar::field_of;
 use super::{HEAD, OPTIONS, REQUIREMENT, legal_field, legal_kind, legal_uid};
 use crate::error::ExportError;
 use crate::fields::{ALL, OF_FORMATS, own_fields};
-use crate::requirement::{Kind, Requirement, Requirements};
+use crate::requirement::{AttributeKind, Requirement, Requirements};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
@@ -105,7 +105,7 @@ fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
 }
 
 /// Attributes with their fields.
-fn columns(requirements: &Requirements) -> Vec<(&str, String, Kind)> {
+fn columns(requirements: &Requirements) -> Vec<(&str, String, AttributeKind)> {
     let mut taken: Vec<String> = Vec::new();
     let mut columns = Vec::new();
     let reserved = |field: &str| OF_FORMATS.contains(&field);
@@ -127,7 +127,7 @@ fn columns(requirements: &Requirements) -> Vec<(&str, String, Kind)> {
     columns
 }
 
-fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, String, Kind)]) {
+fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, String, AttributeKind)]) {
     out.push_str("\n[GRAMMAR]\nELEMENTS:\n");
     out.push_str(
         "- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n  \
@@ -156,14 +156,14 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
     }
     for tag in kinds {
         _ = writeln!(out, "- TAG: {tag}\n  FIELDS:");
-        let mut field = |title: &str, human: Option<&str>, kind: &Kind, required: &str| {
+        let mut field = |title: &str, human: Option<&str>, kind: &AttributeKind, required: &str| {
             _ = writeln!(out, "  - TITLE: {title}");
             if let Some(human) = human {
                 _ = writeln!(out, "    HUMAN_TITLE: {human}");
             }
             let of = match kind {
-                Kind::Choice(options) => format!("SingleChoice({})", choices(options)),
-                Kind::Choices(options) => format!("MultipleChoice({})", choices(options)),
+                AttributeKind::Choice(options) => format!("SingleChoice({})", choices(options)),
+                AttributeKind::Choices(options) => format!("MultipleChoice({})", choices(options)),
                 _ => "String".to_owned(),
             };
             _ = writeln!(out, "    TYPE: {of}\n    REQUIRED: {required}");
@@ -171,11 +171,11 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
         for (title, required) in
             [("MID", "False"), ("UID", "True"), ("TITLE", "False"), ("STATEMENT", "True")]
         {
-            field(title, None, &Kind::Text, required);
+            field(title, None, &AttributeKind::Text, required);
         }
         for title in ALL {
             if !columns.iter().any(|(_, column, _)| column == title) {
-                field(title, None, &Kind::Text, "False");
+                field(title, None, &AttributeKind::Text, "False");
             }
         }
         for (name, column, kind) in columns {
@@ -209,7 +209,7 @@ fn choices(options: &[String]) -> String {
 fn node(
     out: &mut String,
     requirement: &Requirement,
-    columns: &[(&str, String, Kind)],
+    columns: &[(&str, String, AttributeKind)],
 ) -> Result<(), String> {
     if !legal_uid(&requirement.id) {
         return Err(format!(
@@ -240,7 +240,7 @@ fn node(
         let Some(attribute) = requirement.attributes.iter().find(|a| a.name == *name) else {
             continue;
         };
-        if matches!(kind, Kind::Choices(_)) {
+        if matches!(kind, AttributeKind::Choices(_)) {
             entry(out, column, &choices(&attribute.values))?;
         } else {
             for value in &attribute.values {

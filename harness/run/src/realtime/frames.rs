@@ -7,8 +7,8 @@ use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, Sent};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
-use octant_realtime::clock::{HostTime, now};
-use octant_realtime::lateness::Lateness;
+use octant_realtime::clock::{MonotonicTime, now};
+use octant_realtime::lateness::LatenessHistogram;
 use octant_realtime::pace::FrameClock;
 use octant_sample::{Output, Truth};
 use octant_source::{Epoch, Source};
@@ -30,7 +30,7 @@ const PACE_NS: u64 = 1_000_000_000;
 pub(super) struct Found {
     pub(super) clock: FrameClock,
     /// Times from sending a sample to its answer.
-    pub(super) answers: Lateness,
+    pub(super) answers: LatenessHistogram,
     pub(super) late_answers: u64,
     pub(super) missed_answers: u64,
     pub(super) not_sent: u64,
@@ -47,7 +47,7 @@ pub(super) struct Frames<'a> {
     silence_ns: u64,
     control: &'a Control,
     revision: u32,
-    frame_end: HostTime,
+    frame_end: MonotonicTime,
     /// Frames between messages about time keeping, and the largest lateness since the last one.
     pace_every: u64,
     latest_ns: u64,
@@ -80,7 +80,7 @@ impl<'a> Frames<'a> {
             stop,
             found: Found {
                 clock,
-                answers: Lateness::new(),
+                answers: LatenessHistogram::new(),
                 late_answers: 0,
                 missed_answers: 0,
                 not_sent: 0,
@@ -90,7 +90,7 @@ impl<'a> Frames<'a> {
             silence_ns,
             control,
             revision: 0,
-            frame_end: HostTime::default(),
+            frame_end: MonotonicTime::default(),
             pace_every: (PACE_NS / period_ns.max(1)).max(1),
             latest_ns: 0,
             overruns_max,
@@ -125,7 +125,7 @@ impl<'a> Frames<'a> {
     /// Takes the answer to the oldest epoch without one off the list, if it has come until then.
     fn take<E: Endpoint + ?Sized>(
         &mut self,
-        until: HostTime,
+        until: MonotonicTime,
         endpoint: &mut E,
         output: &mut Output,
     ) -> Result<Option<Owed>, RunError> {

@@ -1,7 +1,7 @@
 //! Records and watches the messages of the real-time thread.
 
 use super::entry::Entry;
-use super::kept::Kept;
+use super::kept::TimeKeeping;
 use crate::drive::{Books, InStep};
 use octant_recorder::event::Pace;
 use octant_recorder::{Event, RecorderError};
@@ -65,7 +65,7 @@ fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
 }
 
 /// Builds the event that ends the recording of a run by the clock.
-pub(crate) fn event(kept: &Kept) -> Event {
+pub(crate) fn event(kept: &TimeKeeping) -> Event {
     let pacing = Box::new(kept.pacing.clone());
     Event::Pacing { granted: kept.granted.clone(), pacing }
 }

@@ -13,7 +13,7 @@ mod frames;
 mod keep;
 mod kept;
 
-pub use kept::Kept;
+pub use kept::TimeKeeping;
 
 use super::drive::{Books, Line, NoFaults, drive};
 use super::ended::{Ended, RunError};
@@ -25,7 +25,7 @@ use octant_realtime::pace::FrameClock;
 use octant_realtime::schedule;
 use octant_recorder::Recorder;
 use octant_scenario::Realtime;
-use octant_score::summary::{DeviceClock, Lateness, Pacing};
+use octant_score::summary::{DeviceClock, LatenessQuantiles, PacingRecord};
 use octant_source::Source;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -42,7 +42,7 @@ pub fn drive_by_clock<S, E>(
     recorder: &mut Recorder,
     watcher: &mut Watcher,
     control: &Control,
-) -> (Result<Ended, RunError>, Kept)
+) -> (Result<Ended, RunError>, TimeKeeping)
 where
     S: Source + ?Sized,
     E: Endpoint + ?Sized,
@@ -77,7 +77,7 @@ where
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let last = faulted.map_or_else(Vec::new, |faulted| faulted.last_words());
-        let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
+        let time = TimeKeeping { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {
@@ -92,15 +92,15 @@ where
 }
 
 /// Builds the figures of a run for its summary.
-fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> Pacing {
+fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> PacingRecord {
     let report = found.clock.report();
-    let of = |figures: Figures| Lateness {
+    let of = |figures: Figures| LatenessQuantiles {
         p50: figures.p50_us,
         p99: figures.p99_us,
         p999: figures.p999_us,
         max: figures.max_us,
     };
-    Pacing {
+    PacingRecord {
         frames: report.frames,
         period_us: report.period_us,
         lateness_us: of(report.lateness),
@@ -128,7 +128,7 @@ fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>
 
 /// Creates the clock that paces the frames.
 fn clock(settings: &Realtime, period_ns: u64, is_realtime: bool) -> FrameClock {
-    FrameClock::start(octant_realtime::pace::Pacing {
+    FrameClock::start(octant_realtime::pace::FramePacing {
         period_ns,
         // Spinning without a real-time priority is worse than sleeping.
         spin_ns: if is_realtime { settings.spin_ns } else { 0 },

@@ -1,13 +1,13 @@
 //! Keys of the procedure: alignment, calibration, navigation, screening, baseline.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
+use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key, section};
 use super::table::{
     At, Keys, Of, Value, boolean, choice, integer, keys, number, si, si_array, si_list, table,
     tables, text, time, within,
 };
 use crate::error::Problem;
-use crate::quantity::Dimension;
-use crate::read::reader::Reader;
+use crate::quantity::UnitDimension;
+use crate::read::reader::TableReader;
 use octant_calibration::config::{ErrorModel, GyroReference};
 use octant_calibration::positions::SEQUENCES;
 use octant_calibration::sequence::STOPS_MAX;
@@ -61,17 +61,17 @@ keys! {
             }, "given",
             "How the initial attitude is found.";
         tilt: f64
-            = within(&[Dimension::SMALL_ANGLE], 0.0, 5.0 * DEG, "from 0 to 5 deg"), "60 arcsec",
+            = within(&[UnitDimension::SMALL_ANGLE], 0.0, 5.0 * DEG, "from 0 to 5 deg"), "60 arcsec",
             "Error of the tilt handed over, one standard deviation, about north and east.";
-        azimuth: f64 = within(&[Dimension::ANGLE], 0.0, 5.0 * DEG, "from 0 to 5 deg"), "0.1 deg",
+        azimuth: f64 = within(&[UnitDimension::ANGLE], 0.0, 5.0 * DEG, "from 0 to 5 deg"), "0.1 deg",
             "Error of the azimuth handed over, one standard deviation.";
-        velocity: f64 = si(&[Dimension::VELOCITY], Bounds::NotNegative), "0.02 m/s",
+        velocity: f64 = si(&[UnitDimension::VELOCITY], KeyBounds::NotNegative), "0.02 m/s",
             "Error of each velocity handed over, one standard deviation.";
         attitude_error: Option<[f64; 3]>
-            = si_array(Dimension::SMALL_ANGLE), absent("drawn from tilt and azimuth"),
+            = si_array(UnitDimension::SMALL_ANGLE), absent("drawn from tilt and azimuth"),
             "The attitude error itself, north, east, down: computed = (I − [φ×]) true.";
         velocity_error: Option<[f64; 3]>
-            = si_array(Dimension::VELOCITY), absent("drawn from velocity"),
+            = si_array(UnitDimension::VELOCITY), absent("drawn from velocity"),
             "The velocity error itself, north, east, down.";
         duration: At<f64> = duration(), "60 s", "Coarse alignment: how long to average.";
     }
@@ -83,24 +83,24 @@ keys! {
         table: At<Option<String>> = text(), absent("the groups below"),
             "Calibration table of an earlier run, such as runs/quick/calibration.octcal, relative to the \
          scenario's folder; stands in place of the groups.";
-        gyro_bias: At<Option<Vec<f64>>> = si_list(Dimension::GYRO_BIAS, 3), absent("zero"), "x, y, z.";
-        gyro_scale: At<Option<Vec<f64>>> = si_list(Dimension::RATIO, 3), absent("zero"), "x, y, z.";
+        gyro_bias: At<Option<Vec<f64>>> = si_list(UnitDimension::GYRO_BIAS, 3), absent("zero"), "x, y, z.";
+        gyro_scale: At<Option<Vec<f64>>> = si_list(UnitDimension::RATIO, 3), absent("zero"), "x, y, z.";
         gyro_misalignment: At<Option<Vec<f64>>>
-            = si_list(Dimension::SMALL_ANGLE, 6), absent("zero"),
+            = si_list(UnitDimension::SMALL_ANGLE, 6), absent("zero"),
             "xy, xz, yx, yz, zx, zy.";
-        g_dependent: At<Option<Vec<f64>>> = si_list(Dimension::G_DEPENDENT, 9), absent("zero"),
+        g_dependent: At<Option<Vec<f64>>> = si_list(UnitDimension::G_DEPENDENT, 9), absent("zero"),
             "By rows.";
-        accel_bias: At<Option<Vec<f64>>> = si_list(Dimension::ACCEL_BIAS, 3), absent("zero"), "x, y, z.";
-        accel_scale: At<Option<Vec<f64>>> = si_list(Dimension::RATIO, 3), absent("zero"), "x, y, z.";
+        accel_bias: At<Option<Vec<f64>>> = si_list(UnitDimension::ACCEL_BIAS, 3), absent("zero"), "x, y, z.";
+        accel_scale: At<Option<Vec<f64>>> = si_list(UnitDimension::RATIO, 3), absent("zero"), "x, y, z.";
         accel_misalignment: At<Option<Vec<f64>>>
-            = si_list(Dimension::SMALL_ANGLE, 3), absent("zero"),
+            = si_list(UnitDimension::SMALL_ANGLE, 3), absent("zero"),
             "yx, zx, zy.";
     }
 }
 
 const fn angle() -> Of<f64> {
     const WORDS: &str = "within ±15.9 rad (±911 deg), the range of the encoders";
-    within(&[Dimension::ANGLE], -15.9, 15.9, WORDS)
+    within(&[UnitDimension::ANGLE], -15.9, 15.9, WORDS)
 }
 
 const fn stops() -> Of<Vec<StopKeys>> {
@@ -112,7 +112,7 @@ keys! {
     pub(crate) struct StopKeys {
         azimuth: f64 = angle(), "0 deg", "Cumulative angle of the inner gimbal, about body z.";
         roll: f64 = angle(), "0 deg", "Cumulative angle of the outer gimbal, about case x.";
-        weight: f64 = number(Bounds::Positive), "1.0", "Dwell relative to the other stops.";
+        weight: f64 = number(KeyBounds::Positive), "1.0", "Dwell relative to the other stops.";
     }
 }
 
@@ -153,7 +153,7 @@ keys! {
     /// `[procedure.calibration]`.
     pub(crate) struct CalibrationKeys {
         positions: At<Option<String>>
-            = Of::<String>::kind(Kind::Choice(POSITIONS)), derived("\"eight\", unless stops are given"),
+            = Of::<String>::kind(KeyKind::Choice(POSITIONS)), derived("\"eight\", unless stops are given"),
             "Named sequence of positions.";
         stops: At<Option<Vec<StopKeys>>> = stops(), absent("positions are used"), "A sequence of one's own.";
         passes: u32 = integer(1, 1000), "1", "How often the sequence is walked within the duration.";
@@ -172,9 +172,9 @@ keys! {
             }, "phi",
             "Form of the filter's system error model.";
         g_states: bool = boolean(), "true", "Whether the filter estimates the g-dependent biases.";
-        not_estimated: Vec<String> = Of::kind(Kind::Choices(GROUPS)), "[]",
+        not_estimated: Vec<String> = Of::kind(KeyKind::Choices(GROUPS)), "[]",
             "Further parameter groups that the filter does not estimate.";
-        refuse_above_mean_nis: f64 = number(Bounds::Positive), "9.0",
+        refuse_above_mean_nis: f64 = number(KeyBounds::Positive), "9.0",
             "Mean normalized innovation squared (three axes) above which the calibration is refused.";
         prior: PriorKeys = table(), section, "Standard deviations that the filter starts from.";
         aiding: AidingKeys = table(), section, "The reference that the filter measures against.";
@@ -187,26 +187,26 @@ keys! {
     /// `[procedure.calibration.prior]`.
     pub(crate) struct PriorKeys {
         attitude: At<[f64; 3]>
-            = si_array(Dimension::SMALL_ANGLE), r#"["60 arcsec", "60 arcsec", "0.1 deg"]"#,
+            = si_array(UnitDimension::SMALL_ANGLE), r#"["60 arcsec", "60 arcsec", "0.1 deg"]"#,
             "Attitude error north, east, down.";
-        velocity: f64 = si(&[Dimension::VELOCITY], Bounds::Positive), "0.02 m/s",
+        velocity: f64 = si(&[UnitDimension::VELOCITY], KeyBounds::Positive), "0.02 m/s",
             "Velocity, each axis.";
-        position: f64 = si(&[Dimension::LENGTH], Bounds::Positive), "1 m", "Position, each axis.";
-        gyro_bias: f64 = si(&[Dimension::GYRO_BIAS], Bounds::Positive), "0.005 deg/h",
+        position: f64 = si(&[UnitDimension::LENGTH], KeyBounds::Positive), "1 m", "Position, each axis.";
+        gyro_bias: f64 = si(&[UnitDimension::GYRO_BIAS], KeyBounds::Positive), "0.005 deg/h",
             "Gyro biases.";
-        gyro_scale: f64 = si(&[Dimension::RATIO], Bounds::Positive), "30 ppm",
+        gyro_scale: f64 = si(&[UnitDimension::RATIO], KeyBounds::Positive), "30 ppm",
             "Gyro scale factors.";
-        gyro_misalignment: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "40 arcsec",
+        gyro_misalignment: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::Positive), "40 arcsec",
             "Gyro misalignments.";
         g_dependent: f64
-            = si(&[Dimension::G_DEPENDENT], Bounds::Positive),
+            = si(&[UnitDimension::G_DEPENDENT], KeyBounds::Positive),
             derived("the standard deviation from which imu.g_dependent is drawn, else 0.0005 deg/h/g"),
             "g-dependent gyro biases.";
-        accel_bias: f64 = si(&[Dimension::ACCEL_BIAS], Bounds::Positive), "100 ug",
+        accel_bias: f64 = si(&[UnitDimension::ACCEL_BIAS], KeyBounds::Positive), "100 ug",
             "Accelerometer biases.";
-        accel_scale: f64 = si(&[Dimension::RATIO], Bounds::Positive), "30 ppm",
+        accel_scale: f64 = si(&[UnitDimension::RATIO], KeyBounds::Positive), "30 ppm",
             "Accelerometer scale factors.";
-        accel_misalignment: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "40 arcsec",
+        accel_misalignment: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::Positive), "40 arcsec",
             "Accelerometer misalignments.";
     }
 }
@@ -223,11 +223,11 @@ keys! {
         period: At<f64> = time(1e-4, 3600.0, "above 0, up to 1 h"), "1 s",
             "Time between measurements: a multiple of the sample period.";
         sigma: At<f64>
-            = si(&[Dimension::VELOCITY, Dimension::LENGTH], Bounds::Positive),
+            = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], KeyBounds::Positive),
             derived("velocities: 1 mm/s; dock-position: 0.15 m"),
             "Standard deviation of each axis, as the filter believes it.";
         noise: At<f64>
-            = si(&[Dimension::VELOCITY, Dimension::LENGTH], Bounds::NotNegative),
+            = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], KeyBounds::NotNegative),
             derived("velocities: 1 mm/s; dock-position: 0.01 m"),
             "Standard deviation of the white noise that the reference really has.";
     }
@@ -237,7 +237,7 @@ keys! {
     /// `[procedure.calibration.least_squares]`.
     pub(crate) struct LeastSquaresKeys {
         gravity: Option<f64>
-            = within(&[Dimension::ACCELERATION], 9.0, 11.0, "from 9 to 11 m/s^2"),
+            = within(&[UnitDimension::ACCELERATION], 9.0, 11.0, "from 9 to 11 m/s^2"),
             absent("normal gravity at the site"),
             "Local gravity.";
         gyro: GyroReference = choice! {
@@ -254,7 +254,7 @@ keys! {
         initial: f64 = duration(), "50 s",
             "Detected: length of the first interval, known to be static.";
         window: f64 = duration(), "1 s", "Detected: window of the standard deviation.";
-        threshold: f64 = number(Bounds::Positive), "5.0",
+        threshold: f64 = number(KeyBounds::Positive), "5.0",
             "Detected: multiple of the first interval's standard deviation.";
         shortest: f64 = duration(), "2 s", "Detected: shortest interval to use.";
     }
@@ -269,19 +269,19 @@ pub(crate) enum Rotation {
 }
 
 impl Value for Rotation {
-    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn read(table: &TableReader<'_>, key: &str) -> Result<Option<Self>, Problem> {
         Vec::read(table, key).map(|stops| stops.map(Self::Stops))
     }
 }
 
 const fn rotation() -> Of<Rotation> {
-    const STOPS: Kind = Kind::Tables(StopKeys::SECTION, 1, STOPS_MAX);
-    const NAMES: Kind = Kind::Choice(&[
+    const STOPS: KeyKind = KeyKind::Tables(StopKeys::SECTION, 1, STOPS_MAX);
+    const NAMES: KeyKind = KeyKind::Choice(&[
         ("sixteen", "sixteen moves of 180° about both gimbals, that average out most drifts"),
         ("none", "gimbals stand at zero"),
     ]);
     Of::or_choice(
-        const { Kind::Either(&[NAMES, STOPS]) },
+        const { KeyKind::Either(&[NAMES, STOPS]) },
         const { &[Rotation::Sixteen, Rotation::None] },
     )
 }
@@ -300,7 +300,7 @@ keys! {
 }
 
 /// Key of the baseline: one of the calibration, with its kind.
-const fn as_primary(name: &'static str, doc: &'static str) -> Key {
+const fn as_primary(name: &'static str, doc: &'static str) -> KeyDefinition {
     let keys = CalibrationKeys::SECTION.keys;
     let mut index = 0;
     while !same(keys[index].name, name) {

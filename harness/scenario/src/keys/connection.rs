@@ -1,6 +1,6 @@
 //! Keys of faults on connections of FMUs: a file of its own, or a part of a system structure.
 
-use super::definition::{Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
+use super::definition::{Default, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants, key, section};
 use super::faults::{
     AFTER, AFTER_FAULT, AT, EVERY, MANUAL, POISSON, SAMPLE, lasting, leak, leak_all, named,
     parameter,
@@ -10,10 +10,10 @@ use std::sync::LazyLock;
 
 /// A list of faults on connections.
 pub static CONNECTIONS: Section = section(&[
-    key("schema", Kind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format: 1."),
+    key("schema", KeyKind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format: 1."),
     key(
         "faults",
-        Kind::VariantTables(&FAULT, 10_000),
+        KeyKind::VariantTables(&FAULT, 10_000),
         Default::Absent("none"),
         "Faults, in the order in which they act on a connection.",
     ),
@@ -29,20 +29,20 @@ pub fn connection_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }
 
-fn fault(kind: &'static kinds::Kind) -> Section {
-    let mut keys: Vec<Key> = vec![
-        key("id", Kind::Text, Default::Required, "Name of the fault, unique in the system."),
+fn fault(kind: &'static kinds::ConnectionFaultKind) -> Section {
+    let mut keys: Vec<KeyDefinition> = vec![
+        key("id", KeyKind::Text, Default::Required, "Name of the fault, unique in the system."),
         named(kind.name, kind.summary),
         key(
             "connection",
-            Kind::Text,
+            KeyKind::Text,
             Default::Required,
             "The input that it acts on, such as calibrator.gyro.delta_theta[1]; the name of an array \
              stands for all its elements.",
         ),
     ];
     keys.extend(kind.parameters.iter().map(parameter));
-    keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
+    keys.push(key("trigger", KeyKind::Variants(&TRIGGER), Default::Required, "When it sets in."));
     keys.extend(lasting(kind.lasts));
     Section { keys: leak_all(keys), one_of: false }
 }
@@ -67,7 +67,7 @@ static TRIGGER: Variants = Variants {
 static WHEN: Section = section(&[
     key(
         "when",
-        Kind::Text,
+        KeyKind::Text,
         Default::Required,
         "An output goes above or below a value: \"plant.truth.gimbal.roll above 45 deg\".",
     ),

@@ -1,9 +1,9 @@
 //! Definition of keys: their kinds, defaults and bounds.
 
 use crate::channel::Channel;
-use crate::document::{Table, Value, join};
+use crate::document::{DocumentTable, DocumentValue, join};
 use crate::error::{Place, Problem};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 use octant_base::names::{nearest, suggestion};
 
 /// Version of the format that this program reads.
@@ -11,11 +11,11 @@ pub const SCHEMA: i64 = 1;
 
 /// Definition of a key.
 #[derive(Debug)]
-pub struct Key {
+pub struct KeyDefinition {
     /// Name.
     pub name: &'static str,
     /// Kind of its values.
-    pub kind: Kind,
+    pub kind: KeyKind,
     /// Default.
     pub default: Default,
     /// Meaning, in one sentence, shown in the schema.
@@ -39,7 +39,7 @@ pub enum Default {
 
 /// Kind of a key's values.
 #[derive(Clone, Copy, Debug)]
-pub enum Kind {
+pub enum KeyKind {
     /// Any text.
     Text,
     /// A text of the form `scheme` or `scheme:FILE`, with one of these schemes.
@@ -53,15 +53,15 @@ pub enum Kind {
     /// A whole number within these limits.
     Integer(i64, i64),
     /// A plain number.
-    Number(Bounds),
+    Number(KeyBounds),
     /// This many plain numbers.
     Numbers(usize),
     /// A quantity of this dimension, or of one of several (depending on another key).
-    Quantity(&'static [Dimension], Bounds),
+    Quantity(&'static [UnitDimension], KeyBounds),
     /// This many quantities.
-    Quantities(Dimension, usize),
+    Quantities(UnitDimension, usize),
     /// A quantity for each of x, y, z, all of one of these dimensions.
-    Vector(&'static [Dimension]),
+    Vector(&'static [UnitDimension]),
     /// A quantity of any dimension, or a plain number.
     Limit,
     /// An array of times of the run.
@@ -93,12 +93,12 @@ pub enum Kind {
     /// An array of such tables, with a largest number.
     VariantTables(&'static Variants, usize),
     /// One of these kinds, distinguished by the type of the TOML value.
-    Either(&'static [Kind]),
+    Either(&'static [KeyKind]),
     /// A known key that isn't possible in this version, with the reason.
     Refused(&'static str),
 }
 
-impl Kind {
+impl KeyKind {
     /// Keys of a table, if a table can be given.
     pub fn section(&self) -> Option<&'static Section> {
         match self {
@@ -111,7 +111,7 @@ impl Kind {
 
 /// Bounds of a number, or of a quantity in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bounds {
+pub enum KeyBounds {
     /// Every finite number.
     Any,
     /// Every finite number except zero.
@@ -124,7 +124,7 @@ pub enum Bounds {
     Within(f64, f64, &'static str),
 }
 
-impl Bounds {
+impl KeyBounds {
     /// True if a value lies within the bounds; never for NaN.
     pub fn contain(self, value: f64) -> bool {
         value.is_finite()
@@ -153,20 +153,20 @@ impl Bounds {
 #[derive(Debug)]
 pub struct Section {
     /// Keys.
-    pub keys: &'static [Key],
+    pub keys: &'static [KeyDefinition],
     /// True if exactly one of the keys must be given.
     pub one_of: bool,
 }
 
 impl Section {
     /// Key of a name.
-    pub fn key(&self, name: &str) -> Option<&Key> {
+    pub fn key(&self, name: &str) -> Option<&KeyDefinition> {
         self.keys.iter().find(|key| key.name == name)
     }
 
     /// Names of all keys that can be given.
     pub fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
-        let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
+        let possible = |key: &&KeyDefinition| !matches!(key.kind, KeyKind::Refused(_));
         self.keys.iter().filter(possible).map(|key| key.name)
     }
 }
@@ -201,10 +201,10 @@ impl Variants {
     }
 
     /// Keys of a table, by its content.
-    pub fn section(&self, table: &Table) -> Option<&'static Section> {
+    pub fn section(&self, table: &DocumentTable) -> Option<&'static Section> {
         match self.tag {
             Tag::Value(key) => match &table.get(key)?.value {
-                Value::Text(name) => self.form(name),
+                DocumentValue::Text(name) => self.form(name),
                 _ => None,
             },
             Tag::Key(_) => {
@@ -215,7 +215,7 @@ impl Variants {
     }
 
     /// Problem of a table without a form.
-    pub fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
+    pub fn problem(&self, table: &DocumentTable, path: &str, place: &Place) -> Problem {
         let problem = |place: &Place, path: String, message: String| Problem {
             place: place.clone(),
             path,
@@ -229,7 +229,7 @@ impl Variants {
                     return problem(place, path, format!("missing, expected one of {names}"));
                 };
                 let found = node.value.describe();
-                let text = if let Value::Text(text) = &node.value { text } else { "" };
+                let text = if let DocumentValue::Text(text) = &node.value { text } else { "" };
                 let known = suggestion(text, self.names(), "possible");
                 problem(&node.place, path, format!("found {found}, {known}"))
             }
@@ -265,15 +265,15 @@ impl Variants {
     }
 }
 
-pub(super) const fn section(keys: &'static [Key]) -> Section {
+pub(super) const fn section(keys: &'static [KeyDefinition]) -> Section {
     Section { keys, one_of: false }
 }
 
 pub(super) const fn key(
     name: &'static str,
-    kind: Kind,
+    kind: KeyKind,
     default: Default,
     doc: &'static str,
-) -> Key {
-    Key { name, kind, default, doc }
+) -> KeyDefinition {
+    KeyDefinition { name, kind, default, doc }
 }

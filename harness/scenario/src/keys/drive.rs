@@ -1,8 +1,8 @@
 //! Keys of a real table.
 
-use super::definition::Bounds;
+use super::definition::KeyBounds;
 use super::table::{At, Of, boolean, keys, si, si_array, text, time};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 
 const fn wait() -> Of<f64> {
     time(1e-3, 3600.0, "from 1 ms to 1 h")
@@ -19,14 +19,14 @@ keys! {
             "Port of its controller: tcp:HOST:PORT or serial:DEVICE?baud=RATE.";
         dialect: String = text(), "aerotech-ensemble",
             "What the controller speaks: aerotech-ensemble, or a file with a table of patterns.";
-        azimuth: At<[f64; 2]> = si_array(Dimension::ANGLE), required,
+        azimuth: At<[f64; 2]> = si_array(UnitDimension::ANGLE), required,
             "Least and greatest angle to which azimuth may turn. How fast both may turn is turntable.rate and turntable.acceleration.";
-        roll: At<[f64; 2]> = si_array(Dimension::ANGLE), required,
+        roll: At<[f64; 2]> = si_array(UnitDimension::ANGLE), required,
             "Least and greatest angle to which roll may turn.";
         home: bool = boolean(), "false", "Whether both axes find their reference before the run.";
         start: f64 = time(1.0, 3600.0, "from 1 s to 1 h"), "2 min",
             "How long homing may take, and the way to zero, where every run begins.";
-        tolerance: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "36 arcsec",
+        tolerance: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::Positive), "36 arcsec",
             "How far from zero a gimbal may rest at the start.";
         look: f64 = wait(), "20 ms",
             "Pause from one look at the table to the next; set points are told with a look.";

@@ -1,8 +1,8 @@
 //! Keys of faults: common keys, and the keys of each kind, made from the catalogue.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key, section};
-use crate::quantity::Dimension;
-use octant_faults::catalogue::{self, Lasts, Parameter, Takes};
+use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, Tag, Variants, key, section};
+use crate::quantity::UnitDimension;
+use octant_faults::catalogue::{self, Lasts, FaultParameter, Takes};
 use octant_faults::kinds;
 use std::sync::LazyLock;
 
@@ -26,29 +26,29 @@ pub(super) fn leak_all<T>(values: Vec<T>) -> &'static [T] {
     Box::leak(values.into_boxed_slice())
 }
 
-fn fault(kind: &'static catalogue::Kind) -> Section {
+fn fault(kind: &'static catalogue::FaultKind) -> Section {
     let mut keys = vec![
-        key("id", Kind::Text, Default::Required, "Name of the fault, unique in the scenario."),
+        key("id", KeyKind::Text, Default::Required, "Name of the fault, unique in the scenario."),
         named(kind.name, kind.summary),
     ];
     keys.extend(kind.parameters.iter().map(parameter));
-    keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
+    keys.push(key("trigger", KeyKind::Variants(&TRIGGER), Default::Required, "When it sets in."));
     keys.extend(lasting(kind.lasts));
     Section { keys: leak_all(keys), one_of: false }
 }
 
 /// The key `kind`, in the form of one kind.
-pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
+pub(super) fn named(name: &'static str, summary: &'static str) -> KeyDefinition {
     key(
         "kind",
-        Kind::Choice(leak_all(vec![(name, summary)])),
+        KeyKind::Choice(leak_all(vec![(name, summary)])),
         Default::Required,
         "What happens: the name of a kind of fault.",
     )
 }
 
 /// Keys of a fault's duration, recovery and repetition.
-pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
+pub(super) fn lasting(lasts: Lasts) -> [KeyDefinition; 3] {
     let duration = match lasts {
         Lasts::Instant => refused("duration", "this kind is over in an instant"),
         Lasts::Span | Lasts::Fading => key(
@@ -61,7 +61,7 @@ pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
     let recovery = match lasts {
         Lasts::Fading => key(
             "recovery",
-            Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative),
+            KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::NotNegative),
             Default::Value("0 s"),
             "How long it fades after that, down a straight line.",
         ),
@@ -70,31 +70,31 @@ pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
     };
     let repeat = key(
         "repeat",
-        Kind::Either(&OFTEN),
+        KeyKind::Either(&OFTEN),
         Default::Absent("once, or as often as a periodic or random trigger says"),
         "How often it comes back: so many times in all at this distance, or every time.",
     );
     [duration, recovery, repeat]
 }
 
-const fn refused(name: &'static str, reason: &'static str) -> Key {
-    key(name, Kind::Refused(reason), Default::Absent("none"), "Not for this kind.")
+const fn refused(name: &'static str, reason: &'static str) -> KeyDefinition {
+    key(name, KeyKind::Refused(reason), Default::Absent("none"), "Not for this kind.")
 }
 
 /// Key of a parameter of the catalogue.
-pub(super) fn parameter(parameter: &'static Parameter) -> Key {
+pub(super) fn parameter(parameter: &'static FaultParameter) -> KeyDefinition {
     let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
     let kind = match parameter.takes {
-        Takes::Quantity(all, limits) => Kind::Quantity(dimensions(all), bounds(limits)),
-        Takes::Vector(all) => Kind::Vector(dimensions(all)),
-        Takes::Integer(from, to) => Kind::Integer(from, to),
-        Takes::Flag => Kind::Boolean,
-        Takes::Choice(choices) => Kind::Choice(choices),
-        Takes::Channels => Kind::Channels,
-        Takes::Number(limits) => Kind::Number(bounds(limits)),
-        Takes::Value => Kind::Either(&VALUE),
+        Takes::Quantity(all, limits) => KeyKind::Quantity(dimensions(all), bounds(limits)),
+        Takes::Vector(all) => KeyKind::Vector(dimensions(all)),
+        Takes::Integer(from, to) => KeyKind::Integer(from, to),
+        Takes::Flag => KeyKind::Boolean,
+        Takes::Choice(choices) => KeyKind::Choice(choices),
+        Takes::Channels => KeyKind::Channels,
+        Takes::Number(limits) => KeyKind::Number(bounds(limits)),
+        Takes::Value => KeyKind::Either(&VALUE),
         // The bounds are checked when the unit of the connection is known.
-        Takes::Difference(_) => Kind::Limit,
+        Takes::Difference(_) => KeyKind::Limit,
     };
     let default = parameter.default.map_or(Default::Required, |text| {
         // A text stays a text even if it looks like another value: `nan`, `1`.
@@ -113,66 +113,66 @@ pub(super) fn parameter(parameter: &'static Parameter) -> Key {
 }
 
 /// Kinds of a value that an input can have.
-static VALUE: [Kind; 3] = [Kind::Text, Kind::Number(Bounds::Any), Kind::Boolean];
+static VALUE: [KeyKind; 3] = [KeyKind::Text, KeyKind::Number(KeyBounds::Any), KeyKind::Boolean];
 
-fn bounds(bounds: catalogue::Bounds) -> Bounds {
+fn bounds(bounds: catalogue::ParameterBounds) -> KeyBounds {
     match bounds {
-        catalogue::Bounds::NotZero => Bounds::NotZero,
-        catalogue::Bounds::Any => Bounds::Any,
-        catalogue::Bounds::Positive => Bounds::Positive,
-        catalogue::Bounds::NotNegative => Bounds::NotNegative,
-        catalogue::Bounds::Within(from, to, words) => Bounds::Within(from, to, words),
+        catalogue::ParameterBounds::NotZero => KeyBounds::NotZero,
+        catalogue::ParameterBounds::Any => KeyBounds::Any,
+        catalogue::ParameterBounds::Positive => KeyBounds::Positive,
+        catalogue::ParameterBounds::NotNegative => KeyBounds::NotNegative,
+        catalogue::ParameterBounds::Within(from, to, words) => KeyBounds::Within(from, to, words),
     }
 }
 
 /// Scenario dimension of a dimension in the catalogue.
-pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
+pub(crate) fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
     use catalogue::Dimension as Of;
     match dimension {
-        Of::Time => Dimension::TIME,
-        Of::Samples => Dimension::SAMPLES,
-        Of::Frequency => Dimension::FREQUENCY,
-        Of::Angle => Dimension::ANGLE,
-        Of::SmallAngle => Dimension::SMALL_ANGLE,
-        Of::AngularRate => Dimension::ANGULAR_RATE,
-        Of::GyroBias => Dimension::GYRO_BIAS,
-        Of::AngularAcceleration => Dimension::ANGULAR_ACCELERATION,
-        Of::AngleRandomWalk => Dimension::ANGLE_RANDOM_WALK,
-        Of::RateRandomWalk => Dimension::RATE_RANDOM_WALK,
-        Of::GDependent => Dimension::G_DEPENDENT,
-        Of::Length => Dimension::LENGTH,
-        Of::Velocity => Dimension::VELOCITY,
-        Of::Acceleration => Dimension::ACCELERATION,
-        Of::AccelBias => Dimension::ACCEL_BIAS,
-        Of::VelocityRandomWalk => Dimension::VELOCITY_RANDOM_WALK,
-        Of::AccelRandomWalk => Dimension::ACCEL_RANDOM_WALK,
-        Of::Ratio => Dimension::RATIO,
-        Of::Temperature => Dimension::TEMPERATURE,
-        Of::TemperatureRate => Dimension::TEMPERATURE_RATE,
-        Of::GyroBiasPerK => Dimension::GYRO_BIAS_PER_K,
-        Of::AccelBiasPerK => Dimension::ACCEL_BIAS_PER_K,
-        Of::ScalePerK => Dimension::SCALE_PER_K,
-        Of::AccelerationPsd => Dimension::ACCELERATION_PSD,
+        Of::Time => UnitDimension::TIME,
+        Of::Samples => UnitDimension::SAMPLES,
+        Of::Frequency => UnitDimension::FREQUENCY,
+        Of::Angle => UnitDimension::ANGLE,
+        Of::SmallAngle => UnitDimension::SMALL_ANGLE,
+        Of::AngularRate => UnitDimension::ANGULAR_RATE,
+        Of::GyroBias => UnitDimension::GYRO_BIAS,
+        Of::AngularAcceleration => UnitDimension::ANGULAR_ACCELERATION,
+        Of::AngleRandomWalk => UnitDimension::ANGLE_RANDOM_WALK,
+        Of::RateRandomWalk => UnitDimension::RATE_RANDOM_WALK,
+        Of::GDependent => UnitDimension::G_DEPENDENT,
+        Of::Length => UnitDimension::LENGTH,
+        Of::Velocity => UnitDimension::VELOCITY,
+        Of::Acceleration => UnitDimension::ACCELERATION,
+        Of::AccelBias => UnitDimension::ACCEL_BIAS,
+        Of::VelocityRandomWalk => UnitDimension::VELOCITY_RANDOM_WALK,
+        Of::AccelRandomWalk => UnitDimension::ACCEL_RANDOM_WALK,
+        Of::Ratio => UnitDimension::RATIO,
+        Of::Temperature => UnitDimension::TEMPERATURE,
+        Of::TemperatureRate => UnitDimension::TEMPERATURE_RATE,
+        Of::GyroBiasPerK => UnitDimension::GYRO_BIAS_PER_K,
+        Of::AccelBiasPerK => UnitDimension::ACCEL_BIAS_PER_K,
+        Of::ScalePerK => UnitDimension::SCALE_PER_K,
+        Of::AccelerationPsd => UnitDimension::ACCELERATION_PSD,
     }
 }
 
-const SPAN: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::Positive);
+const SPAN: KeyKind = KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::Positive);
 /// Kind of a delay: a time, or a number of samples, from 0.
-const DELAY: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative);
-pub(super) const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
-const STOP: Kind = Kind::Integer(1, u16::MAX as i64);
-const PHASE: Key = key(
+const DELAY: KeyKind = KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::NotNegative);
+pub(super) const AFTER: KeyDefinition = key("after", DELAY, Default::Value("0 s"), "How long after that.");
+const STOP: KeyKind = KeyKind::Integer(1, u16::MAX as i64);
+const PHASE: KeyDefinition = key(
     "phase",
-    Kind::Choice(&[
+    KeyKind::Choice(&[
         ("calibration", "the positions of the calibration"),
         ("navigation", "those of the rotation in navigation"),
     ]),
     Default::Value("calibration"),
     "Which positions are counted.",
 );
-const FROM: Key =
+const FROM: KeyDefinition =
     key("from", DELAY, Default::Value("0 s"), "Time of the run before which it waits.");
-const UNTIL: Key = key(
+const UNTIL: KeyDefinition = key(
     "until",
     SPAN,
     Default::Absent("the end of the run"),
@@ -207,7 +207,7 @@ pub(super) static AT: Section = section(&[key(
 )]);
 pub(super) static SAMPLE: Section = section(&[key(
     "sample",
-    Kind::Integer(1, i64::MAX),
+    KeyKind::Integer(1, i64::MAX),
     Default::Required,
     "Number of the first sample that it alters, from 1.",
 )]);
@@ -234,7 +234,7 @@ static MOVING_TO: Section = section(&[
 static MODE: Section = section(&[
     key(
         "mode",
-        Kind::Choice(&[
+        KeyKind::Choice(&[
             ("aligning", "it looks for its attitude"),
             ("calibrating", "it turns through positions"),
             ("navigating", "it navigates"),
@@ -245,7 +245,7 @@ static MODE: Section = section(&[
     AFTER,
 ]);
 static WHEN: Section =
-    section(&[key("when", Kind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
+    section(&[key("when", KeyKind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
 pub(super) static EVERY: Section = section(&[
     key("every", SPAN, Default::Required, "Again and again, onsets so far apart."),
     FROM,
@@ -254,7 +254,7 @@ pub(super) static EVERY: Section = section(&[
 pub(super) static POISSON: Section = section(&[
     key(
         "poisson",
-        Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive),
+        KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::FREQUENCY], KeyBounds::Positive),
         Default::Required,
         "At random: the mean time from its end to its next onset, or how often it comes a second.",
     ),
@@ -262,22 +262,22 @@ pub(super) static POISSON: Section = section(&[
     UNTIL,
 ]);
 pub(super) static AFTER_FAULT: Section = section(&[
-    key("after_fault", Kind::Text, Default::Required, "The fault of this id has ended."),
+    key("after_fault", KeyKind::Text, Default::Required, "The fault of this id has ended."),
     AFTER,
 ]);
 pub(super) static MANUAL: Section = section(&[
-    key("manual", Kind::Boolean, Default::Required, "By hand."),
+    key("manual", KeyKind::Boolean, Default::Required, "By hand."),
     key(
         "fire",
-        Kind::Times,
+        KeyKind::Times,
         Default::Absent("only with `octant run --fire ID=TIME`"),
         "Times of the run at which it is fired; `octant run --fire ID=TIME` adds one.",
     ),
 ]);
 
-static OFTEN: [Kind; 2] = [
-    Kind::Choice(&[("every time", "whenever the trigger comes true again")]),
-    Kind::Variants(&REPEAT),
+static OFTEN: [KeyKind; 2] = [
+    KeyKind::Choice(&[("every time", "whenever the trigger comes true again")]),
+    KeyKind::Variants(&REPEAT),
 ];
 
 /// Forms of a repetition.
@@ -290,6 +290,6 @@ static REPEAT: Variants = Variants {
 };
 
 static TIMES: Section = section(&[
-    key("times", Kind::Integer(2, u32::MAX as i64), Default::Required, "Onsets in all."),
+    key("times", KeyKind::Integer(2, u32::MAX as i64), Default::Required, "Onsets in all."),
     key("every", SPAN, Default::Required, "Distance of the onsets."),
 ]);

@@ -1,10 +1,10 @@
 //! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
+use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key, section};
 use super::table::{At, Of, Raw, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
 use crate::model::{InterfaceChoice, Process};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 use octant_sample::Mode;
 
 /// Keys of every FMU.
@@ -40,12 +40,12 @@ macro_rules! fmu {
                     derived("\"10 s\" in a process of its own; in the shared one nothing can end a call"),
                     "Wall time that one call of the FMU may take; longer, and it counts as hung.";
                 $($step)*
-                tolerance: Option<f64> = number(Bounds::Within(1e-14, 1e-1, "from 1e-14 to 0.1")),
+                tolerance: Option<f64> = number(KeyBounds::Within(1e-14, 1e-1, "from 1e-14 to 0.1")),
                     absent("that of the FMU's default experiment"),
                     "Relative tolerance of the FMU's solver, or of Octant's in model exchange.";
-                parameters: Option<Raw> = Of::<Raw>::kind(Kind::Settings), absent("nothing is set"),
+                parameters: Option<Raw> = Of::<Raw>::kind(KeyKind::Settings), absent("nothing is set"),
                     "Values of the FMU's parameters, and of inputs that are held: a number is in the variable's own unit, a quantity is converted into it.";
-                map: Option<Raw> = Of::<Raw>::kind(Kind::Table(&$map)), absent(BY_NAME),
+                map: Option<Raw> = Of::<Raw>::kind(KeyKind::Table(&$map)), absent(BY_NAME),
                     "Which variable of the FMU is what. Units are converted as the FMU's description says; a name after a minus sign is negated.";
                 $($modes)*
             }
@@ -69,7 +69,7 @@ macro_rules! fmu {
 fmu! {
     /// `[source.fmu]`.
     SourceFmuKeys, SOURCE_MAP, [
-        step: At<Option<f64>> = si(&[Dimension::TIME], Bounds::Positive), derived("the sample period"),
+        step: At<Option<f64>> = si(&[UnitDimension::TIME], KeyBounds::Positive), derived("the sample period"),
             "Communication step: a whole part of the sample period, or of a ship a multiple of it, between which its motion is interpolated.";
     ], []
 }
@@ -77,7 +77,7 @@ fmu! {
 fmu! {
     /// `[endpoint.fmu]`.
     EndpointFmuKeys, ENDPOINT_MAP, [], [
-        modes: Option<Raw> = Of::<Raw>::kind(Kind::Table(&MODES)),
+        modes: Option<Raw> = Of::<Raw>::kind(KeyKind::Table(&MODES)),
             absent("0, 1, 2, 3, 4 in the order aligning, calibrating, refused, navigating, done"),
             "Which values of the variable of map.mode mean what.";
     ]
@@ -86,12 +86,12 @@ fmu! {
 const BY_NAME: &str = "the variable of the channel's own name, where the FMU has it";
 
 /// Key of a channel, with the last part of its name.
-const fn port(name: &'static str, channel: &'static Channel) -> Key {
-    key(name, Kind::Port(channel), Default::Absent(BY_NAME), channel.doc)
+const fn port(name: &'static str, channel: &'static Channel) -> KeyDefinition {
+    key(name, KeyKind::Port(channel), Default::Absent(BY_NAME), channel.doc)
 }
 
-const fn group(name: &'static str, keys: &'static Section, doc: &'static str) -> Key {
-    key(name, Kind::Table(keys), Default::Absent(BY_NAME), doc)
+const fn group(name: &'static str, keys: &'static Section, doc: &'static str) -> KeyDefinition {
+    key(name, KeyKind::Table(keys), Default::Absent(BY_NAME), doc)
 }
 
 pub(crate) static SOURCE_MAP: Section = section(&[
@@ -227,7 +227,7 @@ static MODES: Section = section(&[
     mode(Mode::Done),
 ]);
 
-const fn mode(mode: Mode) -> Key {
+const fn mode(mode: Mode) -> KeyDefinition {
     const DOC: &str = "Values that mean this mode.";
-    key(mode.name(), Kind::Codes, Default::Absent("no value means it"), DOC)
+    key(mode.name(), KeyKind::Codes, Default::Absent("no value means it"), DOC)
 }

@@ -1,10 +1,10 @@
 //! Keys of the sensors and of the turntable.
 
-use super::definition::Bounds;
+use super::definition::KeyBounds;
 use super::drive::DriveKeys;
 use super::table::{At, choice, keys, si, si_array, si_list, table, time, within};
-use crate::model::Distribution;
-use crate::quantity::Dimension;
+use crate::model::ParameterDistribution;
+use crate::quantity::UnitDimension;
 use octant_earth::units::DEG;
 
 /// Keys of one parameter group: a distribution to draw from, or the values.
@@ -13,9 +13,9 @@ macro_rules! group {
         keys! {
             /// A parameter group.
             pub(crate) one of $name {
-                normal: Option<f64> = si(&[$dimension], Bounds::NotNegative),
+                normal: Option<f64> = si(&[$dimension], KeyBounds::NotNegative),
                     "Drawn from a normal distribution of this standard deviation, each entry alone.";
-                uniform: Option<f64> = si(&[$dimension], Bounds::NotNegative),
+                uniform: Option<f64> = si(&[$dimension], KeyBounds::NotNegative),
                     "Drawn evenly within plus and minus this half width, each entry alone.";
                 constant: Option<Vec<f64>> = si_list($dimension, $count),
                     concat!("The values themselves: ", $order, ".");
@@ -24,22 +24,22 @@ macro_rules! group {
 
         impl $name {
             /// Distribution of the group.
-            pub(crate) fn distribution(&self) -> Distribution {
-                let spread = self.normal.map(Distribution::Normal);
-                let spread = spread.or(self.uniform.map(Distribution::Uniform));
+            pub(crate) fn distribution(&self) -> ParameterDistribution {
+                let spread = self.normal.map(ParameterDistribution::Normal);
+                let spread = spread.or(self.uniform.map(ParameterDistribution::Uniform));
                 spread.unwrap_or_else(|| {
-                    Distribution::Constant(self.constant.clone().unwrap_or_default())
+                    ParameterDistribution::Constant(self.constant.clone().unwrap_or_default())
                 })
             }
         }
     };
 }
-group!(GyroBiasKeys, Dimension::GYRO_BIAS, 3, "x, y, z");
-group!(ScaleKeys, Dimension::RATIO, 3, "x, y, z");
-group!(GyroMisalignmentKeys, Dimension::SMALL_ANGLE, 6, "xy, xz, yx, yz, zx, zy");
-group!(GDependentKeys, Dimension::G_DEPENDENT, 9, "by rows xx, xy, xz, yx, yy, yz, zx, zy, zz");
-group!(AccelBiasKeys, Dimension::ACCEL_BIAS, 3, "x, y, z");
-group!(AccelMisalignmentKeys, Dimension::SMALL_ANGLE, 3, "yx, zx, zy");
+group!(GyroBiasKeys, UnitDimension::GYRO_BIAS, 3, "x, y, z");
+group!(ScaleKeys, UnitDimension::RATIO, 3, "x, y, z");
+group!(GyroMisalignmentKeys, UnitDimension::SMALL_ANGLE, 6, "xy, xz, yx, yz, zx, zy");
+group!(GDependentKeys, UnitDimension::G_DEPENDENT, 9, "by rows xx, xy, xz, yx, yy, yz, zx, zy, zz");
+group!(AccelBiasKeys, UnitDimension::ACCEL_BIAS, 3, "x, y, z");
+group!(AccelMisalignmentKeys, UnitDimension::SMALL_ANGLE, 3, "yx, zx, zy");
 
 keys! {
     /// `[imu]`.
@@ -49,13 +49,13 @@ keys! {
                 "table-1" => (), "the reference instrument of the paper (Zheng, Han and Zheng, 2015, Table 1)";
             }, "table-1",
             "Instrument whose values stand where no others are given.";
-        rate: At<f64> = within(&[Dimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"), "200 Hz",
+        rate: At<f64> = within(&[UnitDimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"), "200 Hz",
             "Samples per second; the period is a whole number of nanoseconds.";
         angle_random_walk: f64
-            = si(&[Dimension::ANGLE_RANDOM_WALK], Bounds::NotNegative), "0.0007 deg/sqrt(h)",
+            = si(&[UnitDimension::ANGLE_RANDOM_WALK], KeyBounds::NotNegative), "0.0007 deg/sqrt(h)",
             "Angle random walk of each gyro.";
         velocity_random_walk: f64
-            = si(&[Dimension::VELOCITY_RANDOM_WALK], Bounds::NotNegative), "50 ug/sqrt(Hz)",
+            = si(&[UnitDimension::VELOCITY_RANDOM_WALK], KeyBounds::NotNegative), "50 ug/sqrt(Hz)",
             "Noise density of each accelerometer.";
         gyro_bias: GyroBiasKeys = table(), r#"{ normal = "0.005 deg/h" }"#, "Constant gyro biases.";
         gyro_scale: ScaleKeys = table(), r#"{ uniform = "30 ppm" }"#, "Gyro scale factor errors.";
@@ -84,15 +84,15 @@ keys! {
             = table::<AccelGaussMarkovKeys>(), absent("none"),
             "First-order Gauss-Markov accelerometer bias.";
         gyro_rate_random_walk: f64
-            = si(&[Dimension::RATE_RANDOM_WALK], Bounds::NotNegative), "0 deg/h/sqrt(h)",
+            = si(&[UnitDimension::RATE_RANDOM_WALK], KeyBounds::NotNegative), "0 deg/h/sqrt(h)",
             "Rate random walk of each gyro.";
-        gyro_quantization: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::NotNegative), "0 arcsec",
+        gyro_quantization: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::NotNegative), "0 arcsec",
             "Angle of one gyro count, where coarser than the format's 3e-6 arcsec; 0: none.";
-        accel_quantization: f64 = si(&[Dimension::VELOCITY], Bounds::NotNegative), "0 m/s",
+        accel_quantization: f64 = si(&[UnitDimension::VELOCITY], KeyBounds::NotNegative), "0 m/s",
             "Velocity of one accelerometer count, where coarser than the format's 1e-9 m/s; 0: none.";
-        gyro_range: f64 = si(&[Dimension::ANGULAR_RATE], Bounds::NotNegative), "300 deg/s",
+        gyro_range: f64 = si(&[UnitDimension::ANGULAR_RATE], KeyBounds::NotNegative), "300 deg/s",
             "Rate at which the gyros saturate; 0: the format's own range.";
-        accel_range: f64 = si(&[Dimension::ACCELERATION], Bounds::NotNegative), "40 g",
+        accel_range: f64 = si(&[UnitDimension::ACCELERATION], KeyBounds::NotNegative), "40 g",
             "Specific force at which the accelerometers saturate; 0: the format's own range.";
         temperature: Option<TemperatureKeys>
             = table::<TemperatureKeys>(), absent("constant temperature"),
@@ -109,9 +109,9 @@ keys! {
 keys! {
     /// `[imu.extensions.gyro_gauss_markov]`.
     pub(crate) struct GyroGaussMarkovKeys {
-        sigma: f64 = si(&[Dimension::GYRO_BIAS], Bounds::NotNegative), required,
+        sigma: f64 = si(&[UnitDimension::GYRO_BIAS], KeyBounds::NotNegative), required,
             "Stationary standard deviation.";
-        correlation_time: f64 = si(&[Dimension::TIME], Bounds::Positive), required,
+        correlation_time: f64 = si(&[UnitDimension::TIME], KeyBounds::Positive), required,
             "Correlation time.";
     }
 }
@@ -119,9 +119,9 @@ keys! {
 keys! {
     /// `[imu.extensions.accel_gauss_markov]`.
     pub(crate) struct AccelGaussMarkovKeys {
-        sigma: f64 = si(&[Dimension::ACCEL_BIAS], Bounds::NotNegative), required,
+        sigma: f64 = si(&[UnitDimension::ACCEL_BIAS], KeyBounds::NotNegative), required,
             "Stationary standard deviation.";
-        correlation_time: f64 = si(&[Dimension::TIME], Bounds::Positive), required,
+        correlation_time: f64 = si(&[UnitDimension::TIME], KeyBounds::Positive), required,
             "Correlation time.";
     }
 }
@@ -129,21 +129,21 @@ keys! {
 keys! {
     /// `[imu.extensions.temperature]`.
     pub(crate) struct TemperatureKeys {
-        ramp: At<f64> = si(&[Dimension::TEMPERATURE_RATE], Bounds::Any), required,
+        ramp: At<f64> = si(&[UnitDimension::TEMPERATURE_RATE], KeyBounds::Any), required,
             "Change per time, negative when cooling.";
-        plateau: At<f64> = si(&[Dimension::TEMPERATURE], Bounds::Any), required,
+        plateau: At<f64> = si(&[UnitDimension::TEMPERATURE], KeyBounds::Any), required,
             "Change at which the ramp ends, of the ramp's sign.";
         gyro_bias: [f64; 3]
-            = si_array(Dimension::GYRO_BIAS_PER_K), r#"["0 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#,
+            = si_array(UnitDimension::GYRO_BIAS_PER_K), r#"["0 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#,
             "Gyro bias per kelvin, x, y, z.";
         accel_bias: [f64; 3]
-            = si_array(Dimension::ACCEL_BIAS_PER_K), r#"["0 ug/K", "0 ug/K", "0 ug/K"]"#,
+            = si_array(UnitDimension::ACCEL_BIAS_PER_K), r#"["0 ug/K", "0 ug/K", "0 ug/K"]"#,
             "Accelerometer bias per kelvin, x, y, z.";
         gyro_scale: [f64; 3]
-            = si_array(Dimension::SCALE_PER_K), r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#,
+            = si_array(UnitDimension::SCALE_PER_K), r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#,
             "Gyro scale factor per kelvin, x, y, z.";
         accel_scale: [f64; 3]
-            = si_array(Dimension::SCALE_PER_K), r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#,
+            = si_array(UnitDimension::SCALE_PER_K), r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#,
             "Accelerometer scale factor per kelvin, x, y, z.";
     }
 }
@@ -151,13 +151,13 @@ keys! {
 keys! {
     /// `[imu.extensions.vibration]`.
     pub(crate) struct VibrationKeys {
-        frequency: f64 = si(&[Dimension::FREQUENCY], Bounds::Positive), required, "Frequency.";
-        displacement: [f64; 3] = si_array(Dimension::LENGTH), r#"["0 m", "0 m", "0 m"]"#,
+        frequency: f64 = si(&[UnitDimension::FREQUENCY], KeyBounds::Positive), required, "Frequency.";
+        displacement: [f64; 3] = si_array(UnitDimension::LENGTH), r#"["0 m", "0 m", "0 m"]"#,
             "Amplitude of the linear motion in body axes x, y, z.";
         angle: [f64; 3]
-            = si_array(Dimension::SMALL_ANGLE), r#"["0 arcsec", "0 arcsec", "0 arcsec"]"#,
+            = si_array(UnitDimension::SMALL_ANGLE), r#"["0 arcsec", "0 arcsec", "0 arcsec"]"#,
             "Amplitude of the angular motion about body axes x, y, z.";
-        phase: f64 = si(&[Dimension::ANGLE], Bounds::Any), "0 deg",
+        phase: f64 = si(&[UnitDimension::ANGLE], KeyBounds::Any), "0 deg",
             "Phase of the angular motion against the linear one.";
     }
 }
@@ -167,9 +167,9 @@ const ARM: &str = r#"["0 m", "0 m", "0 m"]"#;
 keys! {
     /// `[imu.extensions.lever_arm]`.
     pub(crate) struct LeverArmKeys {
-        x: [f64; 3] = si_array(Dimension::LENGTH), ARM, "Of the x accelerometer.";
-        y: [f64; 3] = si_array(Dimension::LENGTH), ARM, "Of the y accelerometer.";
-        z: [f64; 3] = si_array(Dimension::LENGTH), ARM, "Of the z accelerometer.";
+        x: [f64; 3] = si_array(UnitDimension::LENGTH), ARM, "Of the x accelerometer.";
+        y: [f64; 3] = si_array(UnitDimension::LENGTH), ARM, "Of the y accelerometer.";
+        z: [f64; 3] = si_array(UnitDimension::LENGTH), ARM, "Of the z accelerometer.";
     }
 }
 
@@ -177,17 +177,17 @@ keys! {
     /// `[turntable]`.
     pub(crate) struct TurntableKeys {
         rate: f64
-            = within(&[Dimension::ANGULAR_RATE], 0.01 * DEG, 350.0 * DEG, "from 0.01 deg/s to 350 deg/s"),
+            = within(&[UnitDimension::ANGULAR_RATE], 0.01 * DEG, 350.0 * DEG, "from 0.01 deg/s to 350 deg/s"),
             "10 deg/s",
             "Largest rate of a move.";
-        acceleration: f64 = si(&[Dimension::ANGULAR_ACCELERATION], Bounds::Positive), "10 deg/s^2",
+        acceleration: f64 = si(&[UnitDimension::ANGULAR_ACCELERATION], KeyBounds::Positive), "10 deg/s^2",
             "Acceleration of a move.";
-        encoder_error: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::NotNegative), "18 arcsec",
+        encoder_error: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::NotNegative), "18 arcsec",
             "Error of the angle encoders, one standard deviation: a fixed curve over the angle.";
         non_orthogonality: f64
-            = within(&[Dimension::SMALL_ANGLE], -DEG, DEG, "within ±1 deg"), "0 arcsec",
+            = within(&[UnitDimension::SMALL_ANGLE], -DEG, DEG, "within ±1 deg"), "0 arcsec",
             "Angle by which the two gimbal axes miss a right angle.";
-        backlash: f64 = within(&[Dimension::SMALL_ANGLE], 0.0, DEG, "from 0 to 1 deg"), "0 arcsec",
+        backlash: f64 = within(&[UnitDimension::SMALL_ANGLE], 0.0, DEG, "from 0 to 1 deg"), "0 arcsec",
             "Play of each gear.";
         drive: Option<DriveKeys>
             = table::<DriveKeys>(),

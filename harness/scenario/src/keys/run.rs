@@ -1,7 +1,7 @@
 //! Keys of the root, the site, the motion, and the use of the results.
 
 use super::calibration::{BASELINE, ProcedureKeys};
-use super::definition::{Bounds, Kind, SCHEMA};
+use super::definition::{KeyBounds, KeyKind, SCHEMA};
 use super::faults::FAULT;
 use super::fmu::EndpointFmuKeys;
 use super::instrument::{ImuKeys, TurntableKeys};
@@ -11,11 +11,11 @@ use super::source::SourceKeys;
 use super::table::{
     At, Of, Raw, boolean, choice, integer, keys, si, si_array, table, tables, text, time, within,
 };
-use crate::model::Component;
-use crate::quantity::Dimension;
+use crate::model::MotionComponent;
+use crate::quantity::UnitDimension;
 use octant_earth::units::DEG;
 use octant_requirements::Comparison;
-use octant_requirements::decision::Rule;
+use octant_requirements::decision::DecisionRule;
 
 keys! {
     /// A scenario.
@@ -33,7 +33,7 @@ keys! {
             "What the core does: align, calibrate, navigate.";
         screening: ScreeningKeys = table(), section,
             "Screens and gates of the core.";
-        baseline: At<Option<Raw>> = Of::<Raw>::kind(Kind::Table(&BASELINE)), absent("no second method"),
+        baseline: At<Option<Raw>> = Of::<Raw>::kind(KeyKind::Table(&BASELINE)), absent("no second method"),
             "A second method, run on the same seed and noise and compared: what it does differently.";
         requirements: Option<Vec<RequirementKeys>>
             = tables::<RequirementKeys>(0, 1000), absent("no requirement is checked"),
@@ -44,7 +44,7 @@ keys! {
         decision: DecisionKeys = table(), section,
             "What a value near its limit comes to, by how uncertain its reference is.";
         faults: At<Option<Vec<Raw>>>
-            = Of::<Vec<Raw>>::kind(Kind::VariantTables(&FAULT, 1000)), absent("no fault is injected"),
+            = Of::<Vec<Raw>>::kind(KeyKind::VariantTables(&FAULT, 1000)), absent("no fault is injected"),
             "Faults that are injected on the way from the instrument to the core, in the order in which \
          they act. Beside the keys that all have there are those of the kind: `octant faults list` \
          names all kinds, `octant faults describe KIND` tells what one does and takes.";
@@ -60,14 +60,14 @@ keys! {
     /// `[site]`.
     pub(crate) struct SiteKeys {
         latitude: f64
-            = within(&[Dimension::ANGLE], -89.3 * DEG, 89.3 * DEG, "within ±89.3 deg: at the poles east has no direction"),
+            = within(&[UnitDimension::ANGLE], -89.3 * DEG, 89.3 * DEG, "within ±89.3 deg: at the poles east has no direction"),
             "30.5 deg",
             "Geodetic latitude, north positive.";
         longitude: f64
-            = within(&[Dimension::ANGLE], -180.0 * DEG, 180.0 * DEG, "within ±180 deg"),
+            = within(&[UnitDimension::ANGLE], -180.0 * DEG, 180.0 * DEG, "within ±180 deg"),
             "114.4 deg",
             "Longitude, east positive.";
-        height: f64 = within(&[Dimension::LENGTH], -10e3, 100e3, "from -10 km to 100 km"), "0 m",
+        height: f64 = within(&[UnitDimension::LENGTH], -10e3, 100e3, "from -10 km to 100 km"), "0 m",
             "Height above the ellipsoid.";
     }
 }
@@ -93,7 +93,7 @@ keys! {
 }
 
 const fn angle(limit_deg: f64, words: &'static str) -> Of<f64> {
-    within(&[Dimension::ANGLE], -limit_deg * DEG, limit_deg * DEG, words)
+    within(&[UnitDimension::ANGLE], -limit_deg * DEG, limit_deg * DEG, words)
 }
 
 /// Motion of the case.
@@ -136,7 +136,7 @@ keys! {
             "Vertical motion, positive down.";
         spectrum: Option<SpectrumKeys> = table::<SpectrumKeys>(), absent("sinusoids alone"),
             "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.";
-        mooring_offset: [f64; 3] = si_array(Dimension::LENGTH), "[\"0 m\", \"0 m\", \"0 m\"]",
+        mooring_offset: [f64; 3] = si_array(UnitDimension::LENGTH), "[\"0 m\", \"0 m\", \"0 m\"]",
             "Constant offset from the dock's reference position: north, east, down.";
     }
 }
@@ -148,13 +148,13 @@ macro_rules! component {
             pub(crate) struct $name {
                 amplitude: f64 = $amplitude, required, "Amplitude.";
                 period: f64 = time(0.5, 86400.0, "from 0.5 s to 24 h"), required, "Period.";
-                phase: Option<f64> = si(&[Dimension::ANGLE], Bounds::Any),
+                phase: Option<f64> = si(&[UnitDimension::ANGLE], KeyBounds::Any),
                     absent("drawn from the seed"),
                     "Phase at time 0 of amplitude · sin(2π t / period + phase).";
             }
         }
 
-        impl From<&$name> for Component {
+        impl From<&$name> for MotionComponent {
             fn from(keys: &$name) -> Self {
                 let $name { amplitude, period: period_s, phase: phase_rad } = *keys;
                 Self { amplitude, period_s, phase_rad }
@@ -162,8 +162,8 @@ macro_rules! component {
         }
     };
 }
-component!(AngularKeys, within(&[Dimension::ANGLE], 0.0, 45.0 * DEG, "from 0 to 45 deg"));
-component!(LinearKeys, within(&[Dimension::LENGTH], 0.0, 100.0, "from 0 to 100 m"));
+component!(AngularKeys, within(&[UnitDimension::ANGLE], 0.0, 45.0 * DEG, "from 0 to 45 deg"));
+component!(LinearKeys, within(&[UnitDimension::LENGTH], 0.0, 100.0, "from 0 to 100 m"));
 
 keys! {
     /// `[motion.ship.spectrum]`.
@@ -181,23 +181,23 @@ keys! {
 }
 
 const fn rms_angle() -> Of<f64> {
-    within(&[Dimension::ANGLE], 0.0, 20.0 * DEG, "from 0 to 20 deg")
+    within(&[UnitDimension::ANGLE], 0.0, 20.0 * DEG, "from 0 to 20 deg")
 }
 
 const fn rms_length() -> Of<f64> {
-    within(&[Dimension::LENGTH], 0.0, 50.0, "from 0 to 50 m")
+    within(&[UnitDimension::LENGTH], 0.0, 50.0, "from 0 to 50 m")
 }
 
 keys! {
     /// `[decision]`.
     pub(crate) struct DecisionKeys {
-        rule: Option<Rule> = choice! {
-                "guard-band" => Rule::GuardBand, "within the uncertainty of its limit it is inconclusive";
-                "simple-acceptance" => Rule::SimpleAcceptance, "it is held against its limit as it is";
+        rule: Option<DecisionRule> = choice! {
+                "guard-band" => DecisionRule::GuardBand, "within the uncertainty of its limit it is inconclusive";
+                "simple-acceptance" => DecisionRule::SimpleAcceptance, "it is held against its limit as it is";
             }, absent("guard-band; of simulated truth the band is zero"),
             "What a value comes to that its reference can't tell from its limit (JCGM 106).";
         position: Option<f64>
-            = si(&[Dimension::LENGTH], Bounds::NotNegative),
+            = si(&[UnitDimension::LENGTH], KeyBounds::NotNegative),
             absent("not stated: exact where it is simulated"),
             "Expanded uncertainty (95 %) of the reference position, in each direction.";
         uncertainties: Option<Vec<UncertaintyKeys>>
@@ -221,7 +221,7 @@ keys! {
     /// One of the uncertainties of `[decision]`.
     pub(crate) struct UncertaintyKeys {
         measure: At<String> = text(), required, "The measure, as in a requirement, without bars.";
-        uncertainty: At<f64> = Of::<f64>::kind(Kind::Limit), required,
+        uncertainty: At<f64> = Of::<f64>::kind(KeyKind::Limit), required,
             "Its uncertainty: a quantity, or a number in the measure's unit.";
     }
 }
@@ -233,7 +233,7 @@ keys! {
         text: String = text(), required, "What is required, as a sentence.";
         measure: At<String> = text(), required,
             "What is compared: a dotted path into summary.json, such as navigation.longitude_error_arcmin.max.";
-        limit: At<f64> = Of::<f64>::kind(Kind::Limit), required,
+        limit: At<f64> = Of::<f64>::kind(KeyKind::Limit), required,
             "The limit: a quantity, or a number in the measure's unit.";
         comparison: Comparison = choice! {
                 "<=" => Comparison::AtMost, "at most the limit";
@@ -250,14 +250,14 @@ keys! {
 keys! {
     /// `[record]`.
     pub(crate) struct RecordKeys {
-        rate: At<f64> = si(&[Dimension::FREQUENCY], Bounds::Positive), "1 Hz",
+        rate: At<f64> = si(&[UnitDimension::FREQUENCY], KeyBounds::Positive), "1 Hz",
             "Rate of truth, output and decimated samples; a whole number of samples apart.";
         samples: bool = choice! {
                 "decimated" => false, "samples at the record rate";
                 "full" => true, "every sample: can be replayed";
             }, "decimated",
             "Which samples are kept.";
-        parameters: f64 = si(&[Dimension::TIME], Bounds::Positive), "10 s",
+        parameters: f64 = si(&[UnitDimension::TIME], KeyBounds::Positive), "10 s",
             "Shortest time between two records of the estimated parameters.";
     }
 }
@@ -270,22 +270,22 @@ keys! {
                 "clock" => true, "a sample leaves when its time has come; `octant run --realtime`";
             }, "free",
             "What a run goes by. What is computed is the same.";
-        overrun: f64 = si(&[Dimension::TIME], Bounds::Positive), "1 ms",
+        overrun: f64 = si(&[UnitDimension::TIME], KeyBounds::Positive), "1 ms",
             "A sample that leaves later than this is an overrun.";
         overruns: u64 = integer(0, i64::MAX), "0",
             "Overruns that are allowed; beyond, the run is inconclusive.";
-        lateness_p99: Option<f64> = si(&[Dimension::TIME], Bounds::Positive), absent("no limit"),
+        lateness_p99: Option<f64> = si(&[UnitDimension::TIME], KeyBounds::Positive), absent("no limit"),
             "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.";
         late_answers: u64 = integer(0, i64::MAX), "0",
             "Periods that may end without their answer; beyond, the run is inconclusive.";
-        silence: f64 = si(&[Dimension::TIME], Bounds::Positive), "1 s",
+        silence: f64 = si(&[UnitDimension::TIME], KeyBounds::Positive), "1 s",
             "An endpoint that owes an answer for longer is gone, which ends the run.";
         priority: u8 = integer(0, 99), "80",
             "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.";
         cpu: Option<u16> = integer::<u16>(0, 1023), absent("any"),
             "The only processor that the thread of the samples runs on.";
         lock_memory: bool = boolean(), "true", "All memory of the program stays in place.";
-        spin: f64 = si(&[Dimension::TIME], Bounds::NotNegative), "0 s",
+        spin: f64 = si(&[UnitDimension::TIME], KeyBounds::NotNegative), "0 s",
             "The last part of each wait that is spent looking at the clock, where a real-time priority \
          was granted.";
     }
@@ -294,7 +294,7 @@ keys! {
 keys! {
     /// `[endpoint]`.
     pub(crate) struct EndpointKeys {
-        uri: At<String> = Of::<String>::kind(Kind::Uri(&crate::choices::ENDPOINTS)), "in-process",
+        uri: At<String> = Of::<String>::kind(KeyKind::Uri(&crate::choices::ENDPOINTS)), "in-process",
             "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.";
         fmu: Option<EndpointFmuKeys>
             = table::<EndpointFmuKeys>(), derived("fmu: the defaults of its keys"),

@@ -1,16 +1,16 @@
 //! Keys of the screening.
 
-use super::definition::{Bounds, Kind};
+use super::definition::{KeyBounds, KeyKind};
 use super::table::{Of, choice, integer, keys, number, or_text, si};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 
 keys! {
     /// `[screening]`.
     pub(crate) struct ScreeningKeys {
         gate: Option<GateKeys>
-            = or_text!("off", "every measurement is used", Kind::Table(GateKeys::SECTION)), "{}",
+            = or_text!("off", "every measurement is used", KeyKind::Table(GateKeys::SECTION)), "{}",
             "Innovation gate.";
-        stuck_samples: Option<u32> = or_text!("off", "no test", Kind::Integer(2, 1_000_000)), "8",
+        stuck_samples: Option<u32> = or_text!("off", "no test", KeyKind::Integer(2, 1_000_000)), "8",
             "Identical counts in a row that make a channel stuck.";
         jumps: bool = on_off(), derived("recordings as text: \"off\"; else \"on\""),
             "Samples that jump as no motion of turntable and base can are not believed.";
@@ -19,7 +19,7 @@ keys! {
              off: used as they are.";
         gimbals: bool = on_off(), "on",
             "Turns by gyros and by encoders are compared, and encoders with the set point.";
-        drift: Option<f64> = or_text!("off", "no test", Kind::Number(Bounds::Positive)),
+        drift: Option<f64> = or_text!("off", "no test", KeyKind::Number(KeyBounds::Positive)),
             derived("static: 6; dockside: 8"),
             "Correction of a parameter over a stretch of the calibration, in its standard deviations, \
              above which the calibration is refused.";
@@ -37,13 +37,13 @@ const fn on_off() -> Of<bool> {
 keys! {
     /// `[screening.gate]`.
     pub(crate) struct GateKeys {
-        nis: f64 = number(Bounds::Positive), "36.0",
+        nis: f64 = number(KeyBounds::Positive), "36.0",
             "Normalized innovation squared (three axes) above which a measurement is rejected.";
         rejections: u32 = integer(1, 1_000_000), "5", "Rejections in a row that start a recovery.";
         recovery: Option<ResetKeys> = or_text!(
                 "widening",
                 "attitude, velocity, position re-open as wide as the innovation says",
-                Kind::Table(ResetKeys::SECTION)
+                KeyKind::Table(ResetKeys::SECTION)
             ), "widening",
             "What a recovery does: widening, or a reset to given standard deviations.";
     }
@@ -52,11 +52,11 @@ keys! {
 keys! {
     /// `[screening.gate.recovery]`.
     pub(crate) struct ResetKeys {
-        attitude: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "600 arcsec",
+        attitude: f64 = si(&[UnitDimension::SMALL_ANGLE], KeyBounds::Positive), "600 arcsec",
             "Attitude after a reset.";
-        velocity: f64 = si(&[Dimension::VELOCITY], Bounds::Positive), "1 m/s",
+        velocity: f64 = si(&[UnitDimension::VELOCITY], KeyBounds::Positive), "1 m/s",
             "Velocity after a reset.";
-        position: f64 = si(&[Dimension::LENGTH], Bounds::Positive), "10 m",
+        position: f64 = si(&[UnitDimension::LENGTH], KeyBounds::Positive), "10 m",
             "Position after a reset.";
     }
 }

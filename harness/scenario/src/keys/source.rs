@@ -1,19 +1,19 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
-use super::definition::Kind;
+use super::definition::KeyKind;
 use super::fmu::SourceFmuKeys;
 use super::table::{
     At, Of, Value, boolean, choice, integer, keys, numbers, table, text, time, within,
 };
 use crate::error::Problem;
-use crate::quantity::Dimension;
-use crate::read::reader::Reader;
-use crate::recorded::{Column, Delimiter, Quantity, SPLIT_MAX, TimeUnit};
+use crate::quantity::UnitDimension;
+use crate::read::reader::TableReader;
+use crate::recorded::{RecordedColumn, Delimiter, RecordedQuantity, SPLIT_MAX, TimeUnit};
 
 keys! {
     /// `[source]`.
     pub(crate) struct SourceKeys {
-        uri: At<String> = Of::<String>::kind(Kind::Uri(&[
+        uri: At<String> = Of::<String>::kind(KeyKind::Uri(&[
             ("plant", "simulated"),
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
@@ -48,7 +48,7 @@ keys! {
 keys! {
     /// `[source.live]`.
     pub(crate) struct SourceLiveKeys {
-        protocol: At<String> = Of::<String>::kind(Kind::Choice(&crate::choices::PROTOCOLS)), derived("\"octant\"; on a CAN bus \"dbc\""),
+        protocol: At<String> = Of::<String>::kind(KeyKind::Choice(&crate::choices::PROTOCOLS)), derived("\"octant\"; on a CAN bus \"dbc\""),
             "What the instrument speaks.";
         database: At<Option<String>> = text(), absent("needed by protocol = \"dbc\""),
             "The maker's CAN database, a DBC file. Relative to the scenario.";
@@ -65,7 +65,7 @@ keys! {
     /// `[source.text]`.
     pub(crate) struct TextKeys {
         rate: At<f64>
-            = within(&[Dimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
+            = within(&[UnitDimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
             derived("imu.rate divided by split"),
             "Nominal rate of the rows: times split, it is imu.rate.";
         split: u32 = integer(1, SPLIT_MAX as i64), "1", SPLIT_DOC;
@@ -80,7 +80,7 @@ keys! {
         header: bool = boolean(), "false",
             "Whether the first line after those skipped names the columns.";
         comment: String = text(), "#", "Lines that start with this are skipped.";
-        time_column: At<Column> = column(), "1", "Column of the time stamp.";
+        time_column: At<RecordedColumn> = column(), "1", "Column of the time stamp.";
         time_unit: TimeUnit = time_unit(), "s", "Unit of the time stamp.";
         gyro: GyroKeys = table(), required, "Columns of the gyros.";
         accelerometer: AccelerometerKeys = table(), required, "Columns of the accelerometers.";
@@ -93,8 +93,8 @@ keys! {
 const SPLIT_DOC: &str = "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).";
 const FILE_DOC: &str = "File of these columns, where it isn't that of source.uri.";
 
-impl Value for Column {
-    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+impl Value for RecordedColumn {
+    fn read(table: &TableReader<'_>, key: &str) -> Result<Option<Self>, Problem> {
         Ok(match String::read(table, key)? {
             Some(name) => Some(Self::Name(name)),
             None => usize::read(table, key)?.map(Self::Number),
@@ -102,8 +102,8 @@ impl Value for Column {
     }
 }
 
-const fn column() -> Of<Column> {
-    Of::kind(Kind::Column)
+const fn column() -> Of<RecordedColumn> {
+    Of::kind(KeyKind::Column)
 }
 
 const fn time_unit() -> Of<TimeUnit> {
@@ -118,7 +118,7 @@ const fn time_unit() -> Of<TimeUnit> {
 /// Conversion of a sensor's raw numbers, whatever they come from.
 pub(crate) struct SignalKeys<'a> {
     pub(crate) unit: &'a At<String>,
-    pub(crate) quantity: &'a At<Quantity>,
+    pub(crate) quantity: &'a At<RecordedQuantity>,
     pub(crate) scale: &'a At<[f64; 3]>,
     pub(crate) offset: &'a [f64; 3],
     pub(crate) axes: &'a At<Vec<String>>,
@@ -132,15 +132,15 @@ macro_rules! sensor {
             $(#[$attribute])*
             pub(crate) struct $name {
                 $($columns)+
-                unit: At<String> = Of::<String>::kind(Kind::Choice(&[$(($units, "")),+])), $unit, $unit_doc;
-                quantity: At<Quantity> = choice! {
-                        "rate" => Quantity::Rates, "a rate or specific force";
-                        "increment" => Quantity::Increments, "its integral over the sample's interval";
+                unit: At<String> = Of::<String>::kind(KeyKind::Choice(&[$(($units, "")),+])), $unit, $unit_doc;
+                quantity: At<RecordedQuantity> = choice! {
+                        "rate" => RecordedQuantity::Rates, "a rate or specific force";
+                        "increment" => RecordedQuantity::Increments, "its integral over the sample's interval";
                     }, "rate", $quantity_doc;
                 scale: At<[f64; 3]> = numbers(), "[1.0, 1.0, 1.0]",
                     "Unit per raw number, x, y, z, before axes are exchanged: value = (raw − offset) · scale.";
                 offset: [f64; 3] = numbers(), "[0.0, 0.0, 0.0]", "Raw number of zero, x, y, z.";
-                axes: At<Vec<String>> = Of::<Vec<String>>::kind(Kind::Choices(&["x", "-x", "y", "-y", "z", "-z"])),
+                axes: At<Vec<String>> = Of::<Vec<String>>::kind(KeyKind::Choices(&["x", "-x", "y", "-y", "z", "-z"])),
                     r#"["x", "y", "z"]"#,
                     "Which instrument axis, with its sign, lies along body x, y and z.";
             }
@@ -158,9 +158,9 @@ sensor! {
     /// `[source.text.gyro]`.
     GyroKeys {
         file: Option<String> = text(), absent("the file of source.uri"), FILE_DOC;
-        x: At<Column> = column(), required, "Column of x: its number from 1, or its name.";
-        y: At<Column> = column(), required, "Column of y.";
-        z: At<Column> = column(), required, "Column of z.";
+        x: At<RecordedColumn> = column(), required, "Column of x: its number from 1, or its name.";
+        y: At<RecordedColumn> = column(), required, "Column of y.";
+        z: At<RecordedColumn> = column(), required, "Column of z.";
     }
     "rad/s" ["rad/s" "deg/s" "deg/h" "rad" "deg" "arcsec"]
         "Unit after scaling: of a rate, or of an angle for increments.", "Rates or increments."
@@ -170,9 +170,9 @@ sensor! {
     /// `[source.text.accelerometer]`.
     AccelerometerKeys {
         file: Option<String> = text(), absent("the file of source.uri"), FILE_DOC;
-        x: At<Column> = column(), required, "Column of x: its number from 1, or its name.";
-        y: At<Column> = column(), required, "Column of y.";
-        z: At<Column> = column(), required, "Column of z.";
+        x: At<RecordedColumn> = column(), required, "Column of x: its number from 1, or its name.";
+        y: At<RecordedColumn> = column(), required, "Column of y.";
+        z: At<RecordedColumn> = column(), required, "Column of z.";
     }
     "m/s^2" ["m/s^2" "g" "mg" "m/s" "mm/s"]
         "Unit after scaling: of specific force, or of a velocity for increments.", "Specific force or increments."
@@ -181,10 +181,10 @@ sensor! {
 keys! {
     /// `[source.text.gimbal]`.
     pub(crate) struct GimbalKeys {
-        azimuth: At<Column> = column(), required, "Column of the inner gimbal.";
-        roll: At<Column> = column(), required, "Column of the outer gimbal.";
+        azimuth: At<RecordedColumn> = column(), required, "Column of the inner gimbal.";
+        roll: At<RecordedColumn> = column(), required, "Column of the outer gimbal.";
         unit: At<String>
-            = Of::<String>::kind(Kind::Choice(&[("deg", ""), ("rad", ""), ("arcsec", "")])), "deg",
+            = Of::<String>::kind(KeyKind::Choice(&[("deg", ""), ("rad", ""), ("arcsec", "")])), "deg",
             "Unit of both.";
     }
 }
@@ -199,7 +199,7 @@ keys! {
             "Dotted name of a field with nanoseconds to add, as stamps of ROS have them.";
         time_unit: TimeUnit = time_unit(), "ns", "Unit of the time stamp.";
         rate: At<f64>
-            = within(&[Dimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
+            = within(&[UnitDimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
             derived("imu.rate divided by split"),
             "Nominal rate of the messages: times split, it is imu.rate.";
         split: u32 = integer(1, SPLIT_MAX as i64), "1", SPLIT_DOC;

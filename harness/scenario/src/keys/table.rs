@@ -3,11 +3,11 @@
 //!
 //! A field that nobody takes is a warning of the compiler, and a key that isn't declared has no field.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, key};
-use crate::document::Table;
+use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key};
+use crate::document::DocumentTable;
 use crate::error::{Place, Problem};
-use crate::quantity::Dimension;
-use crate::read::reader::Reader;
+use crate::quantity::UnitDimension;
+use crate::read::reader::TableReader;
 use std::ops::Deref;
 
 /// Declares a table of a scenario, its keys in the order of the schema:
@@ -49,7 +49,7 @@ macro_rules! keys {
             };
 
             fn of(
-                table: &$crate::read::reader::Reader<'_>,
+                table: &$crate::read::reader::TableReader<'_>,
             ) -> Result<Self, $crate::error::Problem> {
                 Ok(Self {
                     $( $field: $crate::keys::table::field(table, stringify!($field), &$kind)?, )+
@@ -59,7 +59,7 @@ macro_rules! keys {
 
         impl $crate::keys::table::Value for $name {
             fn read(
-                table: &$crate::read::reader::Reader<'_>,
+                table: &$crate::read::reader::TableReader<'_>,
                 key: &str,
             ) -> Result<Option<Self>, $crate::error::Problem> {
                 use $crate::keys::table::Keys;
@@ -69,7 +69,7 @@ macro_rules! keys {
 
         impl $crate::keys::table::Value for Vec<$name> {
             fn read(
-                table: &$crate::read::reader::Reader<'_>,
+                table: &$crate::read::reader::TableReader<'_>,
                 key: &str,
             ) -> Result<Option<Self>, $crate::error::Problem> {
                 use $crate::keys::table::Keys;
@@ -107,7 +107,7 @@ pub(crate) use default;
 macro_rules! choice {
     ($($text:literal => $value:expr, $doc:literal;)+) => {
         $crate::keys::table::Of::choice(
-            $crate::keys::Kind::Choice(&[$(($text, $doc)),+]),
+            $crate::keys::KeyKind::Choice(&[$(($text, $doc)),+]),
             const { &[$($value),+] },
         )
     };
@@ -119,8 +119,8 @@ macro_rules! or_text {
     ($text:literal, $doc:literal, $kind:expr) => {
         $crate::keys::table::Of::or_choice(
             const {
-                $crate::keys::Kind::Either(&[
-                    $crate::keys::Kind::Choice(&[($text, $doc)]),
+                $crate::keys::KeyKind::Either(&[
+                    $crate::keys::KeyKind::Choice(&[($text, $doc)]),
                     $kind,
                 ])
             },
@@ -136,41 +136,41 @@ pub(crate) trait Keys: Sized {
     const SECTION: &'static Section;
 
     /// Reads a checked and completed table.
-    fn of(table: &Reader<'_>) -> Result<Self, Problem>;
+    fn of(table: &TableReader<'_>) -> Result<Self, Problem>;
 }
 
 /// A value under a key.
 pub(crate) trait Value: Sized {
     /// Reads it; `None`: there is none, or one of another kind.
-    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem>;
+    fn read(table: &TableReader<'_>, key: &str) -> Result<Option<Self>, Problem>;
 }
 
 /// A table that is read as a whole, by what else is known of its keys.
 #[derive(Clone, Debug)]
 pub(crate) struct Raw {
-    pub(crate) table: Table,
+    pub(crate) table: DocumentTable,
     pub(crate) path: String,
     place: Place,
 }
 
 impl Raw {
-    fn of(table: &Reader<'_>) -> Self {
+    fn of(table: &TableReader<'_>) -> Self {
         Self { table: table.table.clone(), path: table.path.clone(), place: table.place.clone() }
     }
 
-    pub(crate) fn reader(&self) -> Reader<'_> {
-        Reader::new(&self.table, &self.path, &self.place)
+    pub(crate) fn reader(&self) -> TableReader<'_> {
+        TableReader::new(&self.table, &self.path, &self.place)
     }
 }
 
 macro_rules! values {
     ($($type:ty $([$count:ident])?: $read:expr;)+) => { $(
         impl$(<const $count: usize>)? Value for $type {
-            fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+            fn read(table: &TableReader<'_>, key: &str) -> Result<Option<Self>, Problem> {
                 if table.node(key).is_none() {
                     return Ok(None);
                 }
-                let read: fn(&Reader<'_>, &str) -> Result<Option<Self>, Problem> = $read;
+                let read: fn(&TableReader<'_>, &str) -> Result<Option<Self>, Problem> = $read;
                 read(table, key)
             }
         }
@@ -199,22 +199,22 @@ values! {
 }
 
 impl<T: Value> Value for Option<T> {
-    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn read(table: &TableReader<'_>, key: &str) -> Result<Option<Self>, Problem> {
         T::read(table, key).map(|value| value.map(Some))
     }
 }
 
 /// Kind of a key's values and their type.
 pub(crate) struct Of<T: 'static> {
-    kind: Kind,
+    kind: KeyKind,
     /// Meanings of the texts of a choice.
     choices: &'static [T],
-    read: fn(&Reader<'_>, &str) -> Result<Option<T>, Problem>,
+    read: fn(&TableReader<'_>, &str) -> Result<Option<T>, Problem>,
 }
 
 impl<T> Of<T> {
     /// Values of a type that has one reading.
-    pub(crate) const fn kind(kind: Kind) -> Self
+    pub(crate) const fn kind(kind: KeyKind) -> Self
     where
         T: Value,
     {
@@ -222,24 +222,24 @@ impl<T> Of<T> {
     }
 
     /// Texts and their meanings.
-    pub(crate) const fn choice(kind: Kind, choices: &'static [T]) -> Self {
+    pub(crate) const fn choice(kind: KeyKind, choices: &'static [T]) -> Self {
         Self { kind, choices, read: |_, _| Ok(None) }
     }
 
     /// Texts and their meanings, or another value.
-    pub(crate) const fn or_choice(kind: Kind, choices: &'static [T]) -> Self
+    pub(crate) const fn or_choice(kind: KeyKind, choices: &'static [T]) -> Self
     where
         T: Value,
     {
         Self { kind, choices, read: T::read }
     }
 
-    fn of(&self, table: &Reader<'_>, key: &str) -> Result<Option<T>, Problem>
+    fn of(&self, table: &TableReader<'_>, key: &str) -> Result<Option<T>, Problem>
     where
         T: Clone,
     {
         let texts = match &self.kind {
-            Kind::Choice(texts) | Kind::Either([Kind::Choice(texts), ..]) => *texts,
+            KeyKind::Choice(texts) | KeyKind::Either([KeyKind::Choice(texts), ..]) => *texts,
             _ => &[],
         };
         let text = table.optional_text(key);
@@ -256,13 +256,13 @@ pub(crate) trait Field<T>: Sized {
     /// True if there can be no value.
     const OPTIONAL: bool;
 
-    fn field(found: Option<T>, table: &Reader<'_>, key: &str) -> Result<Self, Problem>;
+    fn field(found: Option<T>, table: &TableReader<'_>, key: &str) -> Result<Self, Problem>;
 }
 
 impl<T> Field<T> for T {
     const OPTIONAL: bool = false;
 
-    fn field(found: Option<T>, table: &Reader<'_>, key: &str) -> Result<Self, Problem> {
+    fn field(found: Option<T>, table: &TableReader<'_>, key: &str) -> Result<Self, Problem> {
         found.ok_or_else(|| table.problem(key, "missing"))
     }
 }
@@ -270,7 +270,7 @@ impl<T> Field<T> for T {
 impl<T> Field<T> for Option<T> {
     const OPTIONAL: bool = true;
 
-    fn field(found: Option<T>, _: &Reader<'_>, _: &str) -> Result<Self, Problem> {
+    fn field(found: Option<T>, _: &TableReader<'_>, _: &str) -> Result<Self, Problem> {
         Ok(found)
     }
 }
@@ -288,7 +288,7 @@ pub(crate) struct At<T> {
 }
 
 impl<T> At<T> {
-    fn new(value: T, table: &Reader<'_>, key: &str) -> Self {
+    fn new(value: T, table: &TableReader<'_>, key: &str) -> Self {
         let Problem { place, path, .. } = table.problem(key, "");
         let text = table.optional_text(key).map(str::to_owned);
         let text = text.unwrap_or_else(|| table.texts(key).join(" to "));
@@ -312,7 +312,7 @@ impl<T> Deref for At<T> {
 impl<T> Field<T> for At<T> {
     const OPTIONAL: bool = false;
 
-    fn field(found: Option<T>, table: &Reader<'_>, key: &str) -> Result<Self, Problem> {
+    fn field(found: Option<T>, table: &TableReader<'_>, key: &str) -> Result<Self, Problem> {
         Ok(Self::new(T::field(found, table, key)?, table, key))
     }
 }
@@ -320,7 +320,7 @@ impl<T> Field<T> for At<T> {
 impl<T> Field<T> for At<Option<T>> {
     const OPTIONAL: bool = true;
 
-    fn field(found: Option<T>, table: &Reader<'_>, key: &str) -> Result<Self, Problem> {
+    fn field(found: Option<T>, table: &TableReader<'_>, key: &str) -> Result<Self, Problem> {
         Ok(Self::new(found, table, key))
     }
 }
@@ -331,7 +331,7 @@ pub(crate) const fn row<T, F: Field<T>>(
     of: Of<T>,
     default: Default,
     doc: &'static str,
-) -> Key {
+) -> KeyDefinition {
     let fits = match default {
         Default::Required | Default::Value(_) | Default::Section => !F::OPTIONAL,
         Default::Absent(_) => F::OPTIONAL,
@@ -343,7 +343,7 @@ pub(crate) const fn row<T, F: Field<T>>(
 
 /// Value of a field.
 pub(crate) fn field<T: Clone, F: Field<T>>(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     key: &str,
     of: &Of<T>,
 ) -> Result<F, Problem> {
@@ -351,58 +351,58 @@ pub(crate) fn field<T: Clone, F: Field<T>>(
 }
 
 pub(super) const fn text() -> Of<String> {
-    Of::kind(Kind::Text)
+    Of::kind(KeyKind::Text)
 }
 
 pub(super) const fn boolean() -> Of<bool> {
-    Of::kind(Kind::Boolean)
+    Of::kind(KeyKind::Boolean)
 }
 
 pub(super) const fn integer<T: Value>(from: i64, to: i64) -> Of<T> {
-    Of::kind(Kind::Integer(from, to))
+    Of::kind(KeyKind::Integer(from, to))
 }
 
-pub(super) const fn number(bounds: Bounds) -> Of<f64> {
-    Of::kind(Kind::Number(bounds))
+pub(super) const fn number(bounds: KeyBounds) -> Of<f64> {
+    Of::kind(KeyKind::Number(bounds))
 }
 
 pub(super) const fn numbers<const N: usize>() -> Of<[f64; N]> {
-    Of::kind(Kind::Numbers(N))
+    Of::kind(KeyKind::Numbers(N))
 }
 
-pub(super) const fn si(dimensions: &'static [Dimension], bounds: Bounds) -> Of<f64> {
-    Of::kind(Kind::Quantity(dimensions, bounds))
+pub(super) const fn si(dimensions: &'static [UnitDimension], bounds: KeyBounds) -> Of<f64> {
+    Of::kind(KeyKind::Quantity(dimensions, bounds))
 }
 
 pub(super) const fn within(
-    dimensions: &'static [Dimension],
+    dimensions: &'static [UnitDimension],
     from: f64,
     to: f64,
     words: &'static str,
 ) -> Of<f64> {
-    si(dimensions, Bounds::Within(from, to, words))
+    si(dimensions, KeyBounds::Within(from, to, words))
 }
 
 pub(super) const fn time(from_s: f64, to_s: f64, words: &'static str) -> Of<f64> {
-    within(&[Dimension::TIME], from_s, to_s, words)
+    within(&[UnitDimension::TIME], from_s, to_s, words)
 }
 
-pub(super) const fn si_array<const N: usize>(dimension: Dimension) -> Of<[f64; N]> {
-    Of::kind(Kind::Quantities(dimension, N))
+pub(super) const fn si_array<const N: usize>(dimension: UnitDimension) -> Of<[f64; N]> {
+    Of::kind(KeyKind::Quantities(dimension, N))
 }
 
 /// A list whose length differs between groups of parameters.
-pub(super) const fn si_list(dimension: Dimension, count: usize) -> Of<Vec<f64>> {
-    Of::kind(Kind::Quantities(dimension, count))
+pub(super) const fn si_list(dimension: UnitDimension, count: usize) -> Of<Vec<f64>> {
+    Of::kind(KeyKind::Quantities(dimension, count))
 }
 
 pub(super) const fn table<T: Keys + Value>() -> Of<T> {
-    Of::kind(Kind::Table(T::SECTION))
+    Of::kind(KeyKind::Table(T::SECTION))
 }
 
 pub(super) const fn tables<T: Keys>(at_least: usize, at_most: usize) -> Of<Vec<T>>
 where
     Vec<T>: Value,
 {
-    Of::kind(Kind::Tables(T::SECTION, at_least, at_most))
+    Of::kind(KeyKind::Tables(T::SECTION, at_least, at_most))
 }

@@ -1,7 +1,7 @@
 //! A real table that is moved by the core's set points.
 
 use super::file_name::FileName;
-use octant_turntable::{Dialect, Error, Plan, Settings};
+use octant_turntable::{Dialect, Error, TablePlan, DriverSettings};
 use std::path::Path;
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub struct Drive {
     /// Dialect, by its built-in name or its file: see [`Drive::plan`].
     pub dialect: FileName,
     /// Limits, time limits and watchdog.
-    pub settings: Settings,
+    pub settings: DriverSettings,
     /// Interval between two looks at the table.
     pub look: Duration,
     /// Longest time from a sample to the nearest look.
@@ -33,7 +33,7 @@ impl Drive {
     ///
     /// # Errors
     /// If the file can't be read, or has no table of patterns.
-    pub fn plan(&self, folder: &Path) -> Result<Plan, Error> {
+    pub fn plan(&self, folder: &Path) -> Result<TablePlan, Error> {
         let file = match self.dialect.0.as_str() {
             Dialect::BUILT_IN => Dialect::BUILT_IN.into(),
             _ => self.dialect.path(folder).map_err(|error| Error::Dialect {
@@ -41,7 +41,7 @@ impl Drive {
                 what: error.to_string(),
             })?,
         };
-        Ok(Plan {
+        Ok(TablePlan {
             port: self.port.clone(),
             dialect: Dialect::load(&file)?,
             settings: self.settings,

@@ -5,7 +5,7 @@ use octant_link::Uri;
 
 /// Place where the core runs.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Endpoint {
+pub enum EndpointSpec {
     /// In this process.
     InProcess,
     /// In an FMU.
@@ -14,7 +14,7 @@ pub enum Endpoint {
     Live(Box<Live>),
 }
 
-impl Endpoint {
+impl EndpointSpec {
     /// True if the core is called directly.
     #[must_use]
     pub fn is_in_process(&self) -> bool {

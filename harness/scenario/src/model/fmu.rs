@@ -1,7 +1,7 @@
 //! An FMU of a scenario, as source or as endpoint.
 
 use super::file_name::FileName;
-use super::port::{Code, Port, Setting, Written};
+use super::port::{Code, ChannelElement, Setting, EntryPlace};
 use crate::channel::Channel;
 use octant_sample::Mode;
 
@@ -27,7 +27,7 @@ pub struct Fmu {
     /// Values of the mode's variable by mode; empty: the codes of [`Mode`].
     pub modes: Vec<(Mode, Vec<Code>)>,
     /// Place where the FMU is named.
-    pub at: Written,
+    pub at: EntryPlace,
 }
 
 /// Interface of an FMU to use.
@@ -58,9 +58,9 @@ pub struct Mapped {
     /// The channel.
     pub channel: &'static Channel,
     /// One port for all elements, or one for each.
-    pub ports: Vec<Port>,
+    pub ports: Vec<ChannelElement>,
     /// Place of the entry.
-    pub at: Written,
+    pub at: EntryPlace,
 }
 
 impl Fmu {

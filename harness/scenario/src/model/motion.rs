@@ -9,20 +9,20 @@ pub(crate) const MOTIONS: [&str; 6] = ["roll", "pitch", "yaw", "surge", "sway", 
 /// Motion of the case; phases that aren't given are drawn.
 #[allow(clippy::large_enum_variant, reason = "one of it in a scenario")]
 #[derive(Clone, Debug, PartialEq)]
-pub enum Motion {
+pub enum MotionSpec {
     /// No motion relative to the ground.
     Static(plant::CaseAttitude),
     /// Motion of a moored ship.
-    Dockside(Dockside),
+    Dockside(DocksideSpec),
 }
 
 /// Components of a moored ship's motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dockside {
+pub struct DocksideSpec {
     /// Mean attitude.
     pub mean: plant::CaseAttitude,
     /// Roll, pitch, yaw (rad), surge, sway, heave (m).
-    pub components: [Vec<Component>; 6],
+    pub components: [Vec<MotionComponent>; 6],
     /// Sinusoids of a spectrum, drawn, in addition.
     pub spectrum: Option<ShipSpectrum>,
     /// Offset from the dock's reference, north, east, down, m.
@@ -31,7 +31,7 @@ pub struct Dockside {
 
 /// One sinusoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Component {
+pub struct MotionComponent {
     /// Amplitude, rad or m.
     pub amplitude: f64,
     /// Period, s.

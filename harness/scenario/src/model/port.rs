@@ -6,26 +6,26 @@ use crate::error::{Place, Problem};
 ///
 /// Two scenarios that differ only in it are equal.
 #[derive(Clone)]
-pub struct Written {
+pub struct EntryPlace {
     /// Place.
     pub place: Place,
     /// Dotted path of the key.
     pub path: String,
 }
 
-impl PartialEq for Written {
+impl PartialEq for EntryPlace {
     fn eq(&self, _other: &Self) -> bool {
         true
     }
 }
 
-impl std::fmt::Debug for Written {
+impl std::fmt::Debug for EntryPlace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Written")
     }
 }
 
-impl Written {
+impl EntryPlace {
     /// Makes a problem of this entry.
     #[must_use]
     pub fn problem(&self, message: impl Into<String>) -> Problem {
@@ -35,11 +35,11 @@ impl Written {
 
 /// One or all elements of a channel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Port {
+pub struct ChannelElement {
     /// Variable or constant.
     pub what: Made,
     /// Place of the entry.
-    pub at: Written,
+    pub at: EntryPlace,
 }
 
 /// Origin of a channel's element.
@@ -66,7 +66,7 @@ pub struct Setting {
     /// Values of the elements; one for a scalar.
     pub values: Vec<Set>,
     /// Place of the entry.
-    pub at: Written,
+    pub at: EntryPlace,
 }
 
 /// One value.

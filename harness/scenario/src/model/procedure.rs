@@ -1,7 +1,7 @@
 //! Procedure of the core: alignment and the methods of calibration.
 
 use octant_calibration::config as core;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// One of the two methods of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +14,7 @@ pub enum Method {
 
 /// Alignment of the core, which gives its initial attitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Alignment {
+pub enum AlignmentSpec {
     /// The attitude is given with an error.
     Given {
         /// 1σ of the tilt about north and east, rad.
@@ -37,7 +37,7 @@ pub enum Alignment {
 
 /// One method of calibration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Calibration {
+pub struct CalibrationSpec {
     /// Name of the sequence, or `own stops`.
     pub name: String,
     /// Stops.
@@ -50,11 +50,11 @@ pub struct Calibration {
     pub estimator: core::Estimator,
 }
 
-impl Calibration {
+impl CalibrationSpec {
     /// True if the filter estimates a group of parameters; always true for other estimators, which have
     /// no such choice.
     #[must_use]
-    pub fn estimates(&self, group: Group) -> bool {
+    pub fn estimates(&self, group: ParameterGroup) -> bool {
         match &self.estimator {
             core::Estimator::Kalman(kalman) => kalman.estimated[group as usize],
             core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => true,

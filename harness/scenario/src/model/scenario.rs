@@ -1,19 +1,19 @@
 //! A checked scenario, in SI.
 
 use super::drive::Drive;
-use super::endpoint::Endpoint;
+use super::endpoint::EndpointSpec;
 use super::fault::Fault;
-use super::motion::Motion;
-use super::procedure::{Alignment, Calibration};
-use super::source::Source;
-use crate::document::{Node, Table, Value};
+use super::motion::MotionSpec;
+use super::procedure::{AlignmentSpec, CalibrationSpec};
+use super::source::SourceSpec;
+use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
-use octant_faults::station::Spec;
-use octant_faults::{BuildError, Setup, Station};
+use octant_faults::station::FaultSpec;
+use octant_faults::{FaultBuildError, Setup, Station};
 use octant_plant::config as plant;
 #[cfg(doc)]
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use std::path::PathBuf;
 
 /// A checked scenario, in SI. Random values are still distributions: see [`resolve`](crate::resolve).
@@ -26,26 +26,26 @@ pub struct Scenario {
     /// Sample period, ns.
     pub sample_period_ns: u64,
     /// Place of the instrument.
-    pub site: plant::Site,
+    pub site: plant::PlantSite,
     /// Motion of the case.
-    pub motion: Motion,
+    pub motion: MotionSpec,
     /// Noise densities and errors that the filter doesn't model; the parameters in it are zero until
     /// they are drawn.
     pub imu: plant::Imu,
-    /// Distribution of each group of true parameters, in the order of [`Group::ALL`].
-    pub parameters: [Distribution; 7],
+    /// Distribution of each group of true parameters, in the order of [`ParameterGroup::ALL`].
+    pub parameters: [ParameterDistribution; 7],
     /// The two gimbals.
-    pub turntable: plant::Turntable,
+    pub turntable: plant::TurntableConfig,
     /// Real table with these gimbals, if there is one.
     pub drive: Option<Drive>,
     /// Alignment of the core.
-    pub alignment: Alignment,
+    pub alignment: AlignmentSpec,
     /// Initial parameters of the core.
     pub initial_parameters: octant_sample::Parameters,
     /// Calibration, if there is one.
-    pub calibration: Option<Calibration>,
+    pub calibration: Option<CalibrationSpec>,
     /// Second method, if there is one.
-    pub baseline: Option<Calibration>,
+    pub baseline: Option<CalibrationSpec>,
     /// Reference during calibration.
     pub aiding: plant::AidingSource,
     /// Navigation after the calibration, if there is one.
@@ -55,17 +55,17 @@ pub struct Scenario {
     /// Faults, in the order in which they act.
     pub faults: Vec<Fault>,
     /// Limits that the results have to keep.
-    pub requirements: Vec<Requirement>,
+    pub requirements: Vec<RequirementSpec>,
     /// Decision rule for values near a limit.
     pub decision: octant_requirements::decision::Decision,
     /// Equipment of the bench.
     pub equipment: Vec<octant_requirements::equipment::Equipment>,
     /// Recording.
-    pub record: Record,
+    pub record: RecordSpec,
     /// Source of the samples.
-    pub source: Source,
+    pub source: SourceSpec,
     /// Place of the core.
-    pub endpoint: Endpoint,
+    pub endpoint: EndpointSpec,
     /// Pacing by the clock.
     pub realtime: Realtime,
     /// Name of the scenario's file, for messages.
@@ -73,12 +73,12 @@ pub struct Scenario {
     /// Folder of the scenario, from which relative file names start.
     pub folder: PathBuf,
     /// Document with all defaults.
-    pub(crate) document: Table,
+    pub(crate) document: DocumentTable,
 }
 
 /// Distribution of the true values of a parameter group, SI.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Distribution {
+pub enum ParameterDistribution {
     /// Normal with this standard deviation, independent for each entry.
     Normal(f64),
     /// Uniform between plus and minus this half width, independent for each entry.
@@ -89,7 +89,7 @@ pub enum Distribution {
 
 /// A limit on a result, with its description in the scenario.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Requirement {
+pub struct RequirementSpec {
     /// Check of the limit.
     pub check: octant_requirements::verdict::LimitCheck,
     /// Statement of the requirement, a sentence.
@@ -102,7 +102,7 @@ pub struct Requirement {
 
 /// Recording of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record {
+pub struct RecordSpec {
     /// Number of samples between two records of truth, output and decimated samples.
     pub every_samples: u64,
     /// True if every sample is kept.
@@ -164,7 +164,7 @@ impl Scenario {
         some.faults.retain(|_| numbers.next().is_some_and(&keep));
         if some.faults.is_empty() {
             some.document.remove("faults");
-        } else if let Some(Node { value: Value::Array(entries), .. }) =
+        } else if let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) =
             some.document.get_mut("faults")
         {
             let mut numbers = 0..;
@@ -225,11 +225,11 @@ impl Scenario {
     ///
     /// # Errors
     /// If a fault can't be built, which doesn't happen for a scenario that was read.
-    pub fn station(&self, seed: u64) -> Result<Option<Station>, (String, BuildError)> {
+    pub fn station(&self, seed: u64) -> Result<Option<Station>, (String, FaultBuildError)> {
         if self.faults.is_empty() {
             return Ok(None);
         }
-        let specs: Vec<Spec> = self.faults.iter().map(|fault| fault.spec.clone()).collect();
+        let specs: Vec<FaultSpec> = self.faults.iter().map(|fault| fault.spec.clone()).collect();
         Station::new(&specs, &self.fault_setup(seed)).map(Some)
     }
 

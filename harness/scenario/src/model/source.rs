@@ -7,7 +7,7 @@ use crate::recorded::{McapMapping, TextMapping};
 
 /// Source of the samples.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Source {
+pub enum SourceSpec {
     /// Simulated.
     Plant,
     /// An MCAP file: written by this program, or by another one, with a mapping of its channel.
@@ -25,7 +25,7 @@ pub enum Source {
     Live(Instrument),
 }
 
-impl Source {
+impl SourceSpec {
     /// True for a recording, whose samples don't follow gimbal commands.
     #[must_use]
     pub fn is_recorded(&self) -> bool {

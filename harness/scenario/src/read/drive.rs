@@ -3,17 +3,17 @@
 use crate::error::Problem;
 use crate::keys::{At, DriveKeys};
 use crate::model::{Drive, FileName, Scenario};
-use octant_plant::config::Turntable;
-use octant_turntable::{Axis, AxisLimits, Limits, Settings};
+use octant_plant::config::TurntableConfig;
+use octant_turntable::{TableAxis, AxisLimits, TableLimits, DriverSettings};
 use std::time::Duration;
 
 /// Reads `[turntable.drive]`.
-pub(super) fn drive(keys: &DriveKeys, moves: &Turntable) -> Result<Drive, Problem> {
+pub(super) fn drive(keys: &DriveKeys, moves: &TurntableConfig) -> Result<Drive, Problem> {
     octant_turntable::check_port(&keys.port)
         .map_err(|error| keys.port.problem(error.to_string()))?;
     let time = Duration::from_secs_f64;
     let some = |time_s: f64| Some(time(time_s)).filter(|time| !time.is_zero());
-    let limits = |axis: Axis| -> Result<AxisLimits, Problem> {
+    let limits = |axis: TableAxis| -> Result<AxisLimits, Problem> {
         let range = range(keys, axis);
         let [least_rad, most_rad] = **range;
         let limits = AxisLimits {
@@ -22,7 +22,7 @@ pub(super) fn drive(keys: &DriveKeys, moves: &Turntable) -> Result<Drive, Proble
             rate_radps: moves.rate_radps,
             acceleration_radps2: moves.acceleration_radps2,
         };
-        let both = Limits { axes: [limits; 2] };
+        let both = TableLimits { axes: [limits; 2] };
         if both.check().is_err() || both.angle(axis, 0.0).is_err() {
             return Err(range.problem(format!(
                 "found {}, expected a least and a greatest angle with zero between them, where \
@@ -32,8 +32,8 @@ pub(super) fn drive(keys: &DriveKeys, moves: &Turntable) -> Result<Drive, Proble
         }
         Ok(limits)
     };
-    let settings = Settings {
-        limits: Limits { axes: [limits(Axis::Azimuth)?, limits(Axis::Roll)?] },
+    let settings = DriverSettings {
+        limits: TableLimits { axes: [limits(TableAxis::Azimuth)?, limits(TableAxis::Roll)?] },
         reply_within: time(keys.reply),
         watchdog: some(*keys.watchdog),
     };
@@ -62,10 +62,10 @@ pub(super) fn drive(keys: &DriveKeys, moves: &Turntable) -> Result<Drive, Proble
     Ok(drive)
 }
 
-fn range(keys: &DriveKeys, axis: Axis) -> &At<[f64; 2]> {
+fn range(keys: &DriveKeys, axis: TableAxis) -> &At<[f64; 2]> {
     match axis {
-        Axis::Azimuth => &keys.azimuth,
-        Axis::Roll => &keys.roll,
+        TableAxis::Azimuth => &keys.azimuth,
+        TableAxis::Roll => &keys.roll,
     }
 }
 
@@ -78,7 +78,7 @@ pub(super) fn check_reach(keys: &DriveKeys, scenario: &Scenario) -> Result<(), P
     for (phase, sequence) in sequences {
         for (number, stop) in (1..).zip(sequence.stops()) {
             for (axis, angle_rad) in
-                [(Axis::Azimuth, stop.azimuth_rad), (Axis::Roll, stop.roll_rad)]
+                [(TableAxis::Azimuth, stop.azimuth_rad), (TableAxis::Roll, stop.roll_rad)]
             {
                 // A set point is a whole count: up to half a count beyond the limit still keeps it.
                 let slack = if angle_rad < 0.0 { 1e-8 } else { -1e-8 };

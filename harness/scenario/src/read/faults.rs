@@ -6,16 +6,16 @@ mod grid;
 mod schedule;
 mod value;
 
-use super::reader::Reader;
+use super::reader::TableReader;
 use crate::error::Problem;
 use crate::keys::{At, Raw};
-use crate::model::{Endpoint, Fault, Scenario, Source};
+use crate::model::{EndpointSpec, Fault, Scenario, SourceSpec};
 use grid::{Waiting, check_chains};
-use octant_faults::catalogue::{Acts, Kind};
+use octant_faults::catalogue::{Acts, FaultKind};
 use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
-use octant_faults::station::Spec;
-use octant_faults::{BuildError, Setup, Station, Values, kinds};
+use octant_faults::station::FaultSpec;
+use octant_faults::{FaultBuildError, Setup, Station, Values, kinds};
 use schedule::Timing;
 use value::value;
 
@@ -24,7 +24,7 @@ pub(super) fn read(
     faults: &At<Option<Vec<Raw>>>,
     scenario: &Scenario,
 ) -> Result<Vec<Fault>, Problem> {
-    let tables: Vec<Reader<'_>> = faults.iter().flatten().map(Raw::reader).collect();
+    let tables: Vec<TableReader<'_>> = faults.iter().flatten().map(Raw::reader).collect();
     let timing = Timing::of(scenario);
     let mut all: Vec<Fault> = Vec::with_capacity(tables.len());
     for table in &tables {
@@ -54,7 +54,7 @@ pub(super) fn read(
         let setup = Setup { id: fault.spec.id.clone(), ..scenario.fault_setup(scenario.seed) };
         (fault.spec.kind.build)(&fault.spec.values, &setup).map_err(|e| build(table, &e))?;
     }
-    let specs: Vec<Spec> = all.iter().map(|fault| fault.spec.clone()).collect();
+    let specs: Vec<FaultSpec> = all.iter().map(|fault| fault.spec.clone()).collect();
     match Station::new(&specs, &scenario.fault_setup(scenario.seed)) {
         Ok(_) => Ok(all),
         Err((id, error)) => {
@@ -67,14 +67,14 @@ pub(super) fn read(
 }
 
 /// Problem of a kind's refusal, at the parameter that it names.
-fn build(table: &Reader<'_>, error: &BuildError) -> Problem {
+fn build(table: &TableReader<'_>, error: &FaultBuildError) -> Problem {
     match error {
-        BuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
+        FaultBuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
         other => table.problem("id", other.to_string()),
     }
 }
 
-fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fault, Problem> {
+fn fault(table: &TableReader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fault, Problem> {
     let id = table.text("id")?;
     if id.trim().is_empty() {
         return Err(table.problem("id", "found an empty text, expected a name"));
@@ -107,14 +107,14 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     }
     let (schedule, fires) = timing.schedule(table, kind)?;
     Ok(Fault {
-        spec: Spec { id: id.to_owned(), kind, values, schedule },
+        spec: FaultSpec { id: id.to_owned(), kind, values, schedule },
         fires,
         place: table.place.clone(),
     })
 }
 
 /// Reason why a kind can't act on a source.
-fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
+fn impossible(kind: &FaultKind, source: &SourceSpec) -> Option<&'static str> {
     match kind.acts {
         Acts::Plant if source.has_plant() => None,
         Acts::Plant if source.fmu().is_some() => Some(
@@ -137,7 +137,7 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
 }
 
 /// Reason why a kind can't act on the way to an endpoint.
-fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
+fn without_wire(kind: &FaultKind, endpoint: &EndpointSpec) -> Option<String> {
     if kind.acts != Acts::Wire {
         return None;
     }
@@ -154,9 +154,9 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
 
 /// Reason why a kind that acts on the host would have no effect, with its key.
 fn on_this_host(
-    kind: &Kind,
+    kind: &FaultKind,
     scenario: &Scenario,
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
 ) -> Option<(&'static str, &'static str)> {
     if kind.name == STARVED.name && !scenario.realtime.by_clock {
         return Some((

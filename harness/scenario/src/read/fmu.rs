@@ -4,12 +4,12 @@
 //! files.
 
 use super::live;
-use super::reader::Reader;
+use super::reader::TableReader;
 use crate::error::Problem;
 use crate::keys::{
-    At, ENDPOINT_MAP, EndpointKeys, FmuKeys, Kind, Raw, SOURCE_MAP, Section, SourceKeys,
+    At, ENDPOINT_MAP, EndpointKeys, FmuKeys, KeyKind, Raw, SOURCE_MAP, Section, SourceKeys,
 };
-use crate::model::{Code, Endpoint, FileName, Fmu, Mapped, Written};
+use crate::model::{Code, EndpointSpec, FileName, Fmu, Mapped, EntryPlace};
 use crate::ports;
 use octant_sample::Mode;
 
@@ -50,18 +50,18 @@ pub(super) fn source(
 }
 
 /// Reads `[endpoint]`.
-pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<Endpoint, Problem> {
+pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<EndpointSpec, Problem> {
     let uri = keys.uri.as_str();
     match uri.split_once(':') {
-        None if uri == "in-process" => Ok(Endpoint::InProcess),
+        None if uri == "in-process" => Ok(EndpointSpec::InProcess),
         Some(("fmu", file)) if !file.is_empty() => {
             let of_fmu = keys.fmu.as_ref();
             let of_fmu = of_fmu.ok_or_else(|| keys.uri.problem("endpoint.fmu is missing"))?;
             let mut fmu = fmu(&keys.uri, of_fmu.common(), file, &ENDPOINT_MAP, sample_period_ns)?;
             fmu.modes = of_fmu.modes.as_ref().map(modes).unwrap_or_default();
-            Ok(Endpoint::Fmu(Box::new(fmu)))
+            Ok(EndpointSpec::Fmu(Box::new(fmu)))
         }
-        Some(_) if octant_link::Uri::is_one(uri) => Ok(Endpoint::Live(Box::new(live::live(keys)?))),
+        Some(_) if octant_link::Uri::is_one(uri) => Ok(EndpointSpec::Live(Box::new(live::live(keys)?))),
         _ => {
             Err(keys.uri.problem(format!("found {uri:?}, expected in-process, fmu:FILE or a port")))
         }
@@ -91,27 +91,27 @@ fn fmu(
         settings: settings.unwrap_or_default(),
         map: mapped,
         modes: Vec::new(),
-        at: Written { place: uri.place.clone(), path: uri.path.clone() },
+        at: EntryPlace { place: uri.place.clone(), path: uri.path.clone() },
     })
 }
 
 /// Reads the channels given in a map's tables.
 fn channels(
-    table: &Reader<'_>,
+    table: &TableReader<'_>,
     section: &'static Section,
     all: &mut Vec<Mapped>,
 ) -> Result<(), Problem> {
     for key in section.keys {
         match (&key.kind, table.node(key.name)) {
-            (Kind::Port(channel), Some(node)) => {
+            (KeyKind::Port(channel), Some(node)) => {
                 let path = table.join(key.name);
                 all.push(Mapped {
                     channel,
                     ports: ports::ports(node, channel, &path)?,
-                    at: Written { place: node.place.clone(), path },
+                    at: EntryPlace { place: node.place.clone(), path },
                 });
             }
-            (Kind::Table(inner), Some(_)) => channels(&table.table(key.name)?, inner, all)?,
+            (KeyKind::Table(inner), Some(_)) => channels(&table.table(key.name)?, inner, all)?,
             _ => {}
         }
     }

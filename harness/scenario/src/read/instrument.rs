@@ -2,7 +2,7 @@
 
 use crate::error::Problem;
 use crate::keys::{At, ExtensionsKeys, ImuKeys, MotionKeys, MotionKind, TurntableKeys};
-use crate::model::{Component, Distribution, Dockside, Motion, ShipSpectrum};
+use crate::model::{MotionComponent, ParameterDistribution, DocksideSpec, MotionSpec, ShipSpectrum};
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 
@@ -18,7 +18,7 @@ pub(super) fn sample_period_ns(rate: &At<f64>) -> Result<u64, Problem> {
     Ok(period_ns.round() as u64)
 }
 
-pub(super) fn parameters(imu: &ImuKeys) -> [Distribution; 7] {
+pub(super) fn parameters(imu: &ImuKeys) -> [ParameterDistribution; 7] {
     [
         imu.gyro_bias.distribution(),
         imu.gyro_scale.distribution(),
@@ -79,8 +79,8 @@ fn temperature(more: &ExtensionsKeys) -> Result<Option<plant::Temperature>, Prob
     }))
 }
 
-pub(super) fn turntable(keys: &TurntableKeys) -> plant::Turntable {
-    plant::Turntable {
+pub(super) fn turntable(keys: &TurntableKeys) -> plant::TurntableConfig {
+    plant::TurntableConfig {
         rate_radps: keys.rate,
         acceleration_radps2: keys.acceleration,
         encoder_sigma_rad: keys.encoder_error,
@@ -89,7 +89,7 @@ pub(super) fn turntable(keys: &TurntableKeys) -> plant::Turntable {
     }
 }
 
-pub(super) fn motion(keys: &MotionKeys) -> Motion {
+pub(super) fn motion(keys: &MotionKeys) -> MotionSpec {
     let mean = plant::CaseAttitude {
         heading_rad: keys.heading,
         pitch_rad: keys.pitch,
@@ -97,7 +97,7 @@ pub(super) fn motion(keys: &MotionKeys) -> Motion {
     };
     let ship = match (keys.kind, &keys.ship) {
         (MotionKind::Dockside, Some(ship)) => ship,
-        (MotionKind::Static, _) | (MotionKind::Dockside, None) => return Motion::Static(mean),
+        (MotionKind::Static, _) | (MotionKind::Dockside, None) => return MotionSpec::Static(mean),
     };
     let mut components = [
         given(&ship.roll),
@@ -111,7 +111,7 @@ pub(super) fn motion(keys: &MotionKeys) -> Motion {
         for (index, (amplitude, period_s)) in preset.into_iter().enumerate() {
             let amplitude = amplitude * if index < 3 { DEG } else { 1.0 };
             components[index]
-                .get_or_insert_with(|| vec![Component { amplitude, period_s, phase_rad: None }]);
+                .get_or_insert_with(|| vec![MotionComponent { amplitude, period_s, phase_rad: None }]);
         }
     }
     let spectrum = ship.spectrum.as_ref().map(|keys| ShipSpectrum {
@@ -119,7 +119,7 @@ pub(super) fn motion(keys: &MotionKeys) -> Motion {
         sigma: [keys.roll, keys.pitch, keys.yaw, keys.surge, keys.sway, keys.heave],
         components: keys.components as usize,
     });
-    Motion::Dockside(Dockside {
+    MotionSpec::Dockside(DocksideSpec {
         mean,
         components: components.map(Option::unwrap_or_default),
         spectrum,
@@ -127,9 +127,9 @@ pub(super) fn motion(keys: &MotionKeys) -> Motion {
     })
 }
 
-fn given<'a, K>(components: &'a Option<Vec<K>>) -> Option<Vec<Component>>
+fn given<'a, K>(components: &'a Option<Vec<K>>) -> Option<Vec<MotionComponent>>
 where
-    Component: From<&'a K>,
+    MotionComponent: From<&'a K>,
 {
-    components.as_ref().map(|all| all.iter().map(Component::from).collect())
+    components.as_ref().map(|all| all.iter().map(MotionComponent::from).collect())
 }

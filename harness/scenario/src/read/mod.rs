@@ -12,21 +12,21 @@ pub(crate) mod reader;
 pub mod requirement;
 mod source;
 
-pub use reader::Reader;
+pub use reader::TableReader;
 
-use super::document::Table;
+use super::document::DocumentTable;
 use super::error::Problem;
 use super::keys::{Keys, RealtimeKeys, RecordKeys, ScenarioKeys};
-use super::model::{Motion, Realtime, Record, Scenario, Source};
+use super::model::{MotionSpec, Realtime, RecordSpec, Scenario, SourceSpec};
 use octant_plant::config as plant;
 use std::path::Path;
 
 /// Reads a completed document.
-pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
-    let keys = ScenarioKeys::of(&Reader::root(&document))?;
+pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Problem> {
+    let keys = ScenarioKeys::of(&TableReader::root(&document))?;
     let sample_period_ns = instrument::sample_period_ns(&keys.imu.rate)?;
     let source = source::read(&keys.source, sample_period_ns)?;
-    let site = plant::Site {
+    let site = plant::PlantSite {
         latitude_rad: keys.site.latitude,
         longitude_rad: keys.site.longitude,
         height_m: keys.site.height,
@@ -73,7 +73,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         motion,
         file: String::new(),
         folder: folder.to_owned(),
-        document: Table::default(),
+        document: DocumentTable::default(),
     };
     check_once(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {
@@ -114,9 +114,9 @@ fn check_once(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Problem> {
 }
 
 /// Checks that the motion is a moving one if an FMU moves the case.
-fn check_motion(source: &Source, motion: &Motion) -> Result<(), Problem> {
+fn check_motion(source: &SourceSpec, motion: &MotionSpec) -> Result<(), Problem> {
     match (source.motion(), motion) {
-        (Some(fmu), Motion::Static(_)) => Err(fmu.at.problem(
+        (Some(fmu), MotionSpec::Static(_)) => Err(fmu.at.problem(
             "the FMU moves the case, and motion.kind is \"static\": expected \"dockside\", whose \
              sway tells the core what to expect",
         )),
@@ -124,7 +124,7 @@ fn check_motion(source: &Source, motion: &Motion) -> Result<(), Problem> {
     }
 }
 
-fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<Record, Problem> {
+fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<RecordSpec, Problem> {
     let samples = 1e9 / *keys.rate / sample_period_ns as f64;
     let every_samples = samples.round();
     if every_samples < 1.0 || (samples - every_samples).abs() > 1e-6 * samples {
@@ -134,7 +134,7 @@ fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<Record, Problem> {
             keys.rate.text
         )));
     }
-    Ok(Record {
+    Ok(RecordSpec {
         every_samples: every_samples as u64,
         full_samples: keys.samples,
         parameters_period_ns: ns(keys.parameters),

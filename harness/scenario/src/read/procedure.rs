@@ -1,15 +1,15 @@
 //! The core's procedure: alignment, the methods of calibration, navigation, screening.
 
-use super::reader::Reader;
-use crate::document::{Node, Table, Value};
+use super::reader::TableReader;
+use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use crate::error::Problem;
 use crate::keys::{
     AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, GateKeys,
     InitialKeys, Intervals, Keys, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw, Reference,
     Rotation, ScreeningKeys, StopKeys,
 };
-use crate::model::{Alignment, Calibration, Motion, case_attitude};
-use crate::quantity::{self, Dimension};
+use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
+use crate::quantity::{self, UnitDimension};
 use octant_calibration::config as core;
 use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
@@ -17,14 +17,14 @@ use octant_calibration::table::CalibrationTable;
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
 use std::path::Path;
 
 /// Properties of the run that the procedure must fit.
 pub(super) struct Setting<'a> {
     pub(super) sample_period_ns: u64,
-    pub(super) motion: &'a Motion,
-    pub(super) turntable: &'a plant::Turntable,
+    pub(super) motion: &'a MotionSpec,
+    pub(super) turntable: &'a plant::TurntableConfig,
     /// True if the source never ends, unlike a recording.
     pub(super) endless: bool,
     /// Folder from which relative file names start.
@@ -32,9 +32,9 @@ pub(super) struct Setting<'a> {
 }
 
 pub(super) struct Procedure {
-    pub(super) alignment: Alignment,
+    pub(super) alignment: AlignmentSpec,
     pub(super) initial_parameters: Parameters,
-    pub(super) calibration: Option<Calibration>,
+    pub(super) calibration: Option<CalibrationSpec>,
     pub(super) aiding: plant::AidingSource,
     pub(super) navigation: Option<core::NavigationPlan>,
 }
@@ -71,10 +71,10 @@ pub(super) fn procedure(keys: &ProcedureKeys, setting: &Setting<'_>) -> Result<P
 
 fn alignment(
     keys: &AlignmentKeys,
-    calibration: Option<&Calibration>,
-) -> Result<Alignment, Problem> {
+    calibration: Option<&CalibrationSpec>,
+) -> Result<AlignmentSpec, Problem> {
     if keys.method == AlignmentMethod::Given {
-        return Ok(Alignment::Given {
+        return Ok(AlignmentSpec::Given {
             tilt_rad: keys.tilt,
             azimuth_rad: keys.azimuth,
             velocity_mps: keys.velocity,
@@ -102,7 +102,7 @@ fn alignment(
             )));
         }
     }
-    Ok(Alignment::Coarse { duration_s })
+    Ok(AlignmentSpec::Coarse { duration_s })
 }
 
 fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, Problem> {
@@ -127,7 +127,7 @@ fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, P
         return Ok(read.parameters);
     }
     let mut all = [0.0; PARAMETER_COUNT];
-    for (group, values) in Group::ALL.into_iter().zip(groups) {
+    for (group, values) in ParameterGroup::ALL.into_iter().zip(groups) {
         if let Some(values) = &**values {
             all[group.range()].copy_from_slice(values);
         }
@@ -138,11 +138,11 @@ fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, P
 /// Reads the second method: the keys of the first one, replaced by those of `[baseline]`.
 pub(super) fn baseline(
     baseline: &At<Option<Raw>>,
-    document: &Table,
+    document: &DocumentTable,
     setting: &Setting<'_>,
-) -> Result<Option<Calibration>, Problem> {
+) -> Result<Option<CalibrationSpec>, Problem> {
     let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
-    let Some(Node { value: Value::Table(primary), .. }) = document.at("procedure.calibration")
+    let Some(DocumentNode { value: DocumentValue::Table(primary), .. }) = document.at("procedure.calibration")
     else {
         let message = "found without procedure.calibration, which it is compared with";
         return Err(baseline.problem(message));
@@ -150,7 +150,7 @@ pub(super) fn baseline(
     if overrides.get("positions").is_some() && overrides.get("stops").is_some() {
         return Err(baseline.problem("found positions and stops, expected one of them"));
     }
-    let mut merged: Table = primary.clone();
+    let mut merged: DocumentTable = primary.clone();
     for entry in &overrides.entries {
         match entry.key.as_str() {
             "positions" => merged.remove("stops"),
@@ -161,11 +161,11 @@ pub(super) fn baseline(
     }
     // The shared keys were already read with the first method, so a problem here belongs to the
     // baseline.
-    let second = CalibrationKeys::of(&Reader::new(&merged, &baseline.path, &baseline.place))?;
+    let second = CalibrationKeys::of(&TableReader::new(&merged, &baseline.path, &baseline.place))?;
     calibration(&second, setting).map(Some)
 }
 
-fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibration, Problem> {
+fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<CalibrationSpec, Problem> {
     let passes = keys.passes;
     if keys.positions.given && keys.stops.is_some() {
         return Err(keys.stops.problem("found stops beside positions, expected one of them"));
@@ -214,7 +214,7 @@ fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibrat
             (moves_s + weights * shortest_s).ceil(),
         )));
     }
-    Ok(Calibration { name: name.to_owned(), sequence, duration_s, dwell_s, estimator })
+    Ok(CalibrationSpec { name: name.to_owned(), sequence, duration_s, dwell_s, estimator })
 }
 
 fn not_whole<T>(time: &At<T>, setting: &Setting<'_>) -> Problem {
@@ -250,7 +250,7 @@ fn samples_of(time_s: f64, sample_period_ns: u64) -> Option<u64> {
 
 /// Total duration of the moves of all passes, s: both gimbals turn together, with a trapezoidal rate
 /// profile. Between two passes the gimbals return to the first stop.
-fn moves_s(sequence: &Sequence, turntable: &plant::Turntable) -> f64 {
+fn moves_s(sequence: &Sequence, turntable: &plant::TurntableConfig) -> f64 {
     let turn_s = |angle_rad: f64| {
         let (rate, acceleration) = (turntable.rate_radps, turntable.acceleration_radps2);
         if angle_rad * acceleration >= rate * rate {
@@ -281,8 +281,8 @@ fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
         return Err(not_whole(&keys.period, setting));
     }
     let dimension = match *keys.reference {
-        Reference::DockPosition => Dimension::LENGTH,
-        Reference::ZeroVelocity | Reference::Velocity => Dimension::VELOCITY,
+        Reference::DockPosition => UnitDimension::LENGTH,
+        Reference::ZeroVelocity | Reference::Velocity => UnitDimension::VELOCITY,
     };
     for key in [&keys.sigma, &keys.noise] {
         if !quantity::parse(&key.text).is_ok_and(|quantity| quantity.is(dimension)) {
@@ -312,9 +312,9 @@ fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
 
 fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Problem> {
     let prior = &keys.prior;
-    let estimated = Group::ALL.map(|group| {
+    let estimated = ParameterGroup::ALL.map(|group| {
         !keys.not_estimated.iter().any(|name| name == group.name())
-            && (keys.g_states || group != Group::GDependent)
+            && (keys.g_states || group != ParameterGroup::GDependent)
     });
     if prior.attitude.iter().any(|sigma| *sigma <= 0.0) {
         return Err(prior.attitude.problem("found a σ of 0 or less, expected values above 0"));
@@ -362,7 +362,7 @@ fn external_turntable(
     keys: &CalibrationKeys,
     setting: &Setting<'_>,
 ) -> Result<core::ExternalTurntable, Problem> {
-    let Motion::Static(mean) = setting.motion else {
+    let MotionSpec::Static(mean) = setting.motion else {
         return Err(keys.estimator.problem(
             "found \"external-turntable\" with motion.kind = \"dockside\", expected \"static\": a \
              turntable's base is surveyed on the ground",

@@ -1,40 +1,40 @@
 //! Reader of a completed document: a table with its path and place.
 
-use crate::document::{Node, Table, Value, join, number};
+use crate::document::{DocumentNode, DocumentTable, DocumentValue, join, number};
 use crate::error::{Place, Problem};
 use crate::quantity;
 
 /// A table of the completed document with its path and place. The check guarantees the kinds of its
 /// values; an accessor that meets anything else still reports a problem.
 #[derive(Clone)]
-pub struct Reader<'a> {
-    pub(crate) table: &'a Table,
+pub struct TableReader<'a> {
+    pub(crate) table: &'a DocumentTable,
     pub(crate) path: String,
     pub(crate) place: Place,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> TableReader<'a> {
     /// Makes a reader for the table of a whole file.
-    pub fn root(table: &'a Table) -> Self {
+    pub fn root(table: &'a DocumentTable) -> Self {
         Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
     }
 
     /// Makes a reader for a table with its dotted path and place.
-    pub fn new(table: &'a Table, path: &str, place: &Place) -> Self {
+    pub fn new(table: &'a DocumentTable, path: &str, place: &Place) -> Self {
         Self { table, path: path.to_owned(), place: place.clone() }
     }
 
     /// Makes a problem of a key, or of the table if the key is omitted.
     pub fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
         let place = match self.table.get(key) {
-            Some(Node { place: Place::Default, .. }) | None => &self.place,
+            Some(DocumentNode { place: Place::Default, .. }) | None => &self.place,
             Some(node) => &node.place,
         };
         Problem { place: place.clone(), path: join(&self.path, key), message: message.into() }
     }
 
     /// Value of a key.
-    pub fn node(&self, key: &str) -> Option<&'a Node> {
+    pub fn node(&self, key: &str) -> Option<&'a DocumentNode> {
         self.table.get(key)
     }
 
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
 
     /// Key that was written first.
     pub fn first_key(&self) -> &'a str {
-        let given = |entry: &&crate::document::Entry| entry.node.place != Place::Default;
+        let given = |entry: &&crate::document::KeyEntry| entry.node.place != Place::Default;
         self.table.entries.iter().find(given).map_or("", |entry| &entry.key)
     }
 
@@ -62,20 +62,20 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If it is missing.
-    pub fn table(&self, key: &str) -> Result<Reader<'a>, Problem> {
+    pub fn table(&self, key: &str) -> Result<TableReader<'a>, Problem> {
         self.optional_table(key).ok_or_else(|| self.missing(key))
     }
 
     /// Table under a key, if it is given.
-    pub fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
-        let Some(Node { value: Value::Table(table), place }) = self.node(key) else { return None };
+    pub fn optional_table(&self, key: &str) -> Option<TableReader<'a>> {
+        let Some(DocumentNode { value: DocumentValue::Table(table), place }) = self.node(key) else { return None };
         let place = if *place == Place::Default { &self.place } else { place };
-        Some(Reader::new(table, &join(&self.path, key), place))
+        Some(TableReader::new(table, &join(&self.path, key), place))
     }
 
     /// Tables of an array.
-    pub fn tables(&self, key: &str) -> Vec<Reader<'a>> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+    pub fn tables(&self, key: &str) -> Vec<TableReader<'a>> {
+        let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) = self.node(key) else {
             return Vec::new();
         };
         let path = join(&self.path, key);
@@ -83,8 +83,8 @@ impl<'a> Reader<'a> {
             .iter()
             .enumerate()
             .filter_map(|(index, node)| match &node.value {
-                Value::Table(table) => {
-                    Some(Reader::new(table, &format!("{path}[{index}]"), &node.place))
+                DocumentValue::Table(table) => {
+                    Some(TableReader::new(table, &format!("{path}[{index}]"), &node.place))
                 }
                 _ => None,
             })
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
     /// Text under a key, if it is given.
     pub fn optional_text(&self, key: &str) -> Option<&'a str> {
         match &self.node(key)?.value {
-            Value::Text(text) => Some(text),
+            DocumentValue::Text(text) => Some(text),
             _ => None,
         }
     }
@@ -109,11 +109,11 @@ impl<'a> Reader<'a> {
 
     /// Texts of an array.
     pub fn texts(&self, key: &str) -> Vec<&'a str> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+        let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) = self.node(key) else {
             return Vec::new();
         };
-        let text = |node: &'a Node| match &node.value {
-            Value::Text(text) => Some(text.as_str()),
+        let text = |node: &'a DocumentNode| match &node.value {
+            DocumentValue::Text(text) => Some(text.as_str()),
             _ => None,
         };
         entries.iter().filter_map(text).collect()
@@ -125,7 +125,7 @@ impl<'a> Reader<'a> {
     /// If it is missing.
     pub fn boolean(&self, key: &str) -> Result<bool, Problem> {
         match self.node(key) {
-            Some(Node { value: Value::Boolean(value), .. }) => Ok(*value),
+            Some(DocumentNode { value: DocumentValue::Boolean(value), .. }) => Ok(*value),
             _ => Err(self.missing(key)),
         }
     }
@@ -136,7 +136,7 @@ impl<'a> Reader<'a> {
     /// If it is missing, or too large for its type.
     pub fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
         match self.node(key) {
-            Some(Node { value: Value::Integer(value), .. }) => {
+            Some(DocumentNode { value: DocumentValue::Integer(value), .. }) => {
                 T::try_from(*value).map_err(|_| self.problem(key, format!("{value} is too large")))
             }
             _ => Err(self.missing(key)),
@@ -156,7 +156,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// If there are more or fewer.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+        let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) = self.node(key) else {
             return Err(self.missing(key));
         };
         let all: Vec<f64> = entries.iter().filter_map(|node| number(&node.value)).collect();

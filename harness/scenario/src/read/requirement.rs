@@ -2,14 +2,14 @@
 
 use crate::error::Problem;
 use crate::keys::{At, DecisionKeys, EquipmentKeys, RequirementKeys};
-use crate::model::Requirement;
+use crate::model::RequirementSpec;
 use crate::quantity::{self, Quantity};
 use octant_base::names::suggestion;
 use octant_requirements::decision::{Decision, Uncertainty};
 use octant_requirements::equipment::{Day, Equipment};
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{measures, signed};
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 
 /// Unit suffixes of the names of measures, with the unit's own spelling.
 const SUFFIXES: [(&str, &str); 9] = [
@@ -24,8 +24,8 @@ const SUFFIXES: [(&str, &str); 9] = [
     ("_m", "m"),
 ];
 
-pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<Requirement>, Problem> {
-    let mut all: Vec<Requirement> = Vec::new();
+pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
+    let mut all: Vec<RequirementSpec> = Vec::new();
     for RequirementKeys { id, text, measure, limit, comparison, clause } in keys {
         if id.trim().is_empty() {
             return Err(id.problem("found an empty text, expected an identifier"));
@@ -36,7 +36,7 @@ pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<Requirement>, Problem
         }
         let bare = path_of(measure).map_err(|error| measure.problem(error.to_string()))?;
         let (limit, limit_text) = self::limit(limit, bare)?;
-        all.push(Requirement {
+        all.push(RequirementSpec {
             check: LimitCheck {
                 id: id.to_string(),
                 measure: measure.to_string(),
@@ -49,7 +49,7 @@ pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<Requirement>, Problem
         });
     }
     for (keys, requirement) in keys.iter().zip(&all) {
-        let side = |requirement: &Requirement| requirement.check.comparison;
+        let side = |requirement: &RequirementSpec| requirement.check.comparison;
         let both = all.iter().map(|other| (other.check.measure.as_str(), side(other)));
         let this = (requirement.check.measure.as_str(), side(requirement));
         if let Some(message) = signed::one_sided(this, both) {
@@ -117,7 +117,7 @@ fn limit(limit: &At<f64>, measure: &str) -> Result<(f64, String), Problem> {
 
 /// Reason why a text is no measure of a run, or no limit of one.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MeasureError {
+pub enum MeasureTextError {
     /// The text isn't a path.
     #[error(
         "found {found:?}, expected a dotted path such as navigation.longitude_error_arcmin.max"
@@ -193,19 +193,19 @@ pub enum MeasureError {
 ///
 /// # Errors
 /// If it isn't a path, or no summary has it.
-pub fn path_of(measure: &str) -> Result<&str, MeasureError> {
+pub fn path_of(measure: &str) -> Result<&str, MeasureTextError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let bare = measure.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
     let bare = bare.unwrap_or(measure);
     let found = measure.to_owned();
     if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
-        return Err(MeasureError::Form { found });
+        return Err(MeasureTextError::Form { found });
     }
     let Err((place, part, keys)) = measures::check(bare) else { return Ok(bare) };
     Err(match part {
-        None => MeasureError::Table { found, place, keys },
-        Some(part) if keys.is_empty() => MeasureError::Number { found, place, part },
-        Some(part) => MeasureError::Key { found, place, part, keys },
+        None => MeasureTextError::Table { found, place, keys },
+        Some(part) if keys.is_empty() => MeasureTextError::Number { found, place, part },
+        Some(part) => MeasureTextError::Key { found, place, part, keys },
     })
 }
 
@@ -213,14 +213,14 @@ pub fn path_of(measure: &str) -> Result<&str, MeasureError> {
 ///
 /// # Errors
 /// If it isn't a quantity, or has another kind than the measure.
-pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureError> {
+pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureTextError> {
     let limit =
-        quantity::parse(text).map_err(|_| MeasureError::Quantity { found: text.to_owned() })?;
+        quantity::parse(text).map_err(|_| MeasureTextError::Quantity { found: text.to_owned() })?;
     let Some((unit, one)) = unit_of(measure) else {
-        return Err(MeasureError::NoUnit { found: text.to_owned(), measure: measure.to_owned() });
+        return Err(MeasureTextError::NoUnit { found: text.to_owned(), measure: measure.to_owned() });
     };
     if !limit.same_dimension(one) {
-        return Err(MeasureError::Dimension {
+        return Err(MeasureTextError::Dimension {
             found: text.to_owned(),
             unit,
             measure: measure.to_owned(),
@@ -237,7 +237,7 @@ fn unit_of(measure: &str) -> Option<(String, Quantity)> {
     let mut unit: Option<String> = None;
     for part in measure.split('.') {
         if let Some(index) = NAMES.iter().position(|name| *name == part) {
-            unit = Some(Group::of(index).unit().to_owned());
+            unit = Some(ParameterGroup::of(index).unit().to_owned());
         }
         if let Some((_, found)) = SUFFIXES.iter().find(|(suffix, _)| part.ends_with(suffix)) {
             unit = Some((*found).to_owned());

@@ -3,32 +3,32 @@
 use super::instrument_port::instrument;
 use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
-use crate::model::{FileName, Source};
+use crate::model::{FileName, SourceSpec};
 use crate::recorded::{
-    Axis, Column, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity, TextFiles,
+    AxisColumn, RecordedColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, RecordedQuantity, TextFiles,
     TextMapping, TimeColumn,
 };
 use std::path::PathBuf;
 
-pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<Source, Problem> {
+pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpec, Problem> {
     let uri = keys.uri.as_str();
     match uri.split_once(':') {
-        None if uri == "plant" => Ok(Source::Plant),
+        None if uri == "plant" => Ok(SourceSpec::Plant),
         Some(("replay", file)) if !file.is_empty() => {
             let mapping = keys.mcap.as_ref().map(|mcap| read_mcap(mcap, sample_period_ns));
-            Ok(Source::Replay { file: FileName(file.to_owned()), mapping: mapping.transpose()? })
+            Ok(SourceSpec::Replay { file: FileName(file.to_owned()), mapping: mapping.transpose()? })
         }
         Some(("text", file)) if !file.is_empty() => {
             let Some(text) = &*keys.text else {
                 let message = "missing, expected the columns of the text files of source.uri";
                 return Err(keys.text.problem(message));
             };
-            Ok(Source::Text(read_text(text, file, sample_period_ns)?))
+            Ok(SourceSpec::Text(read_text(text, file, sample_period_ns)?))
         }
         Some(("fmu", file)) if !file.is_empty() => {
-            Ok(Source::Fmu(Box::new(super::fmu::source(keys, file, sample_period_ns)?)))
+            Ok(SourceSpec::Fmu(Box::new(super::fmu::source(keys, file, sample_period_ns)?)))
         }
-        _ if octant_link::Uri::is_one(uri) => Ok(Source::Live(instrument(keys)?)),
+        _ if octant_link::Uri::is_one(uri) => Ok(SourceSpec::Live(instrument(keys)?)),
         _ => Err(keys.uri.problem(format!(
             "found {uri:?}, expected plant, replay:FILE, text:FILE, fmu:FILE, serial:PORT, \
              udp:HOST:PORT, can:INTERFACE or slcan:PORT"
@@ -37,18 +37,18 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<Source, P
 }
 
 fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextMapping, Problem> {
-    let column = |key: &At<Column>| match &**key {
-        Column::Name(name) if !keys.header => Err(key.problem(format!(
+    let column = |key: &At<RecordedColumn>| match &**key {
+        RecordedColumn::Name(name) if !keys.header => Err(key.problem(format!(
             "found the name {name:?} with header = false, expected a column number"
         ))),
         column => Ok(column.clone()),
     };
-    let sensor = |columns: [&At<Column>; 3], keys: SignalKeys<'_>| {
+    let sensor = |columns: [&At<RecordedColumn>; 3], keys: SignalKeys<'_>| {
         let [x, y, z] = columns.map(column);
         let columns = [x?, y?, z?];
         let axis = |axis: Mapped| {
             let column = columns[axis.index].clone();
-            Axis { column, offset: axis.offset, scale: axis.scale }
+            AxisColumn { column, offset: axis.offset, scale: axis.scale }
         };
         Ok(signal(keys)?.map(axis))
     };
@@ -68,7 +68,7 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     let time = TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit };
     let gimbal = keys.gimbal.as_ref().map(|gimbal| {
         let scale = unit_si(&gimbal.unit)?;
-        let axis = |key| Ok(Axis { column: column(key)?, offset: 0.0, scale });
+        let axis = |key| Ok(AxisColumn { column: column(key)?, offset: 0.0, scale });
         Ok(GimbalColumns { azimuth: axis(&gimbal.azimuth)?, roll: axis(&gimbal.roll)? })
     });
     Ok(TextMapping {
@@ -127,7 +127,7 @@ fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Prob
     })
 }
 
-fn same_quantity(gyro: Quantity, accelerometer: &At<Quantity>) -> Result<(), Problem> {
+fn same_quantity(gyro: RecordedQuantity, accelerometer: &At<RecordedQuantity>) -> Result<(), Problem> {
     if gyro == **accelerometer {
         return Ok(());
     }
@@ -168,7 +168,7 @@ struct Mapped {
 fn signal(keys: SignalKeys<'_>) -> Result<[Mapped; 3], Problem> {
     let unit = keys.unit.as_str();
     let integral = matches!(unit, "rad" | "deg" | "arcsec" | "m/s" | "mm/s");
-    if integral != (**keys.quantity == Quantity::Increments) {
+    if integral != (**keys.quantity == RecordedQuantity::Increments) {
         return Err(keys.unit.problem(format!(
             "found {unit:?}, which is not the unit of quantity = {:?}",
             keys.quantity.text

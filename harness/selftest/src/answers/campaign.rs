@@ -1,13 +1,13 @@
 //! Report of a campaign of six runs that all pass.
 
 use super::numbers::Found;
-use crate::bench::Bench;
-use crate::error::CaseError;
-use crate::judge::Outcome;
+use crate::bench::CaseBench;
+use crate::error::CaseSetupError;
+use crate::judge::CaseOutcome;
 use crate::scenarios::{ALWAYS, campaign};
 use serde_json::Value;
 
-pub(super) fn found(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
+pub(super) fn found(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     campaign(bench, 6, ALWAYS, "")?;
     let said = bench.octant(&["campaign", "report", "campaign"])?;
     let statistics: Value = serde_json::from_slice(&bench.read("campaign/statistics.json")?)
@@ -25,5 +25,5 @@ pub(super) fn found(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
         put(format!("interval after {runs}, low"), &at["estimate"]["low"])?;
         put(format!("interval after {runs}, high"), &at["estimate"]["high"])?;
     }
-    Ok(Outcome { status: Some(0), numbers: all, ..Outcome::default() })
+    Ok(CaseOutcome { status: Some(0), numbers: all, ..CaseOutcome::default() })
 }

@@ -1,7 +1,7 @@
 //! Default values of a scenario.
 
 use super::numbers::Found;
-use octant_scenario::{Motion, Scenario};
+use octant_scenario::{MotionSpec, Scenario};
 use std::path::Path;
 
 const STATIC: &str = "schema = 1\n[procedure.navigation]\nduration = \"1 h\"\n";
@@ -13,7 +13,7 @@ pub(super) fn found() -> Result<Found, String> {
     };
     for preset in ["default", "severe"] {
         let ship = format!("[motion]\nkind = \"dockside\"\nship = {{ preset = \"{preset}\" }}\n");
-        let Motion::Dockside(ship) = read(&(STATIC.to_owned() + &ship))?.motion else {
+        let MotionSpec::Dockside(ship) = read(&(STATIC.to_owned() + &ship))?.motion else {
             return Err("read a ship: found a static base".to_owned());
         };
         for (i, of) in ship.components.iter().enumerate() {

@@ -3,13 +3,13 @@
 use super::numbers::Found;
 use octant_plant::draw::{ParameterDraws, alignment_error, parameters, phases};
 use octant_plant::sea::Spectrum;
-use octant_random::philox::{Key, block};
+use octant_random::philox::{StreamKey, block};
 use octant_random::stream::{Ahead, Triad};
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use std::hint::black_box;
 
 /// Test vectors of Random123: key and counter.
-const VECTORS: [(&str, Key, [u64; 4]); 3] = [
+const VECTORS: [(&str, StreamKey, [u64; 4]); 3] = [
     ("zeros", [0; 2], [0; 4]),
     ("ones", [u64::MAX; 2], [u64::MAX; 4]),
     (
@@ -35,7 +35,7 @@ pub(super) fn found() -> Found {
     normals(&mut all);
     let seed = black_box(7);
     let instrument = parameters(seed, &black_box(ParameterDraws::table_1())).to_array();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         for (i, at) in group.range().enumerate() {
             all.insert(format!("{} {i}", group.name()), instrument[at]);
         }

@@ -6,8 +6,8 @@ use octant_earth::units::DEG;
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Setup, Spec, Station, Value, Values, kinds};
-use octant_plant::config::{CaseAttitude, Config, Motion};
+use octant_faults::{Setup, FaultSpec, Station, Value, Values, kinds};
+use octant_plant::config::{CaseAttitude, PlantConfig, Motion};
 use octant_plant::{Plant, Truth};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output};
@@ -31,7 +31,7 @@ impl World for Behind<'_> {
     }
 }
 
-pub(super) fn setup(config: &Config) -> Setup {
+pub(super) fn setup(config: &PlantConfig) -> Setup {
     Setup {
         seed: config.seed,
         sample_period_ns: config.sample_period_ns,
@@ -59,7 +59,7 @@ pub(super) fn spec(
     values: Vec<Named>,
     first: u64,
     samples: u64,
-) -> Result<Spec, String> {
+) -> Result<FaultSpec, String> {
     let kind = kinds::named(name).ok_or_else(|| format!("find the fault {name}"))?;
     let mut all = Values::default();
     for (name, value) in values {
@@ -71,7 +71,7 @@ pub(super) fn spec(
         recovery: 0,
         repeat: Repeat::Once,
     };
-    Ok(Spec { id: "f".to_owned(), kind, values: all, schedule })
+    Ok(FaultSpec { id: "f".to_owned(), kind, values: all, schedule })
 }
 
 /// Lists every fault with its values, and the set point of the gimbals.
@@ -168,7 +168,7 @@ pub(super) fn found() -> Result<Found, String> {
 
 fn suffer(
     found: &mut Found,
-    config: &Config,
+    config: &PlantConfig,
     name: &'static str,
     values: Vec<Named>,
     (azimuth, roll): (f64, f64),

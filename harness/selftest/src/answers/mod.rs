@@ -24,17 +24,17 @@ mod statistics;
 mod strapdown;
 mod units;
 
-use super::bench::Bench;
-use super::case::Case;
-use super::error::CaseError;
-use super::judge::{Expectation, Known, Outcome};
+use super::bench::CaseBench;
+use super::case::SelftestCase;
+use super::error::CaseSetupError;
+use super::judge::{Expectation, Known, CaseOutcome};
 use numbers::{Found, known};
 
-fn outcome(numbers: Found) -> Outcome {
-    Outcome { status: Some(0), numbers, ..Outcome::default() }
+fn outcome(numbers: Found) -> CaseOutcome {
+    CaseOutcome { status: Some(0), numbers, ..CaseOutcome::default() }
 }
 
-fn computed(numbers: Result<Found, String>) -> Result<Outcome, CaseError> {
+fn computed(numbers: Result<Found, String>) -> Result<CaseOutcome, CaseSetupError> {
     Ok(outcome(numbers?))
 }
 
@@ -43,9 +43,9 @@ fn case(
     about: &'static str,
     known: Vec<Known>,
     source: &'static str,
-    run: fn(&Bench<'_>) -> Result<Outcome, CaseError>,
-) -> Case {
-    Case { id, about, expectation: Expectation::Numbers { known, source }, run }
+    run: fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>,
+) -> SelftestCase {
+    SelftestCase { id, about, expectation: Expectation::Numbers { known, source }, run }
 }
 
 /// Whole runs with known numbers that take less than a second.
@@ -53,7 +53,7 @@ const QUICK_RUNS: [&str; 3] = ["g-dependent-drift", "observability", "posterior-
 
 /// Lists the cases that `octant selftest --answers` runs. No hash of our own output is among them.
 #[must_use]
-pub fn with_runs() -> Vec<Case> {
+pub fn with_runs() -> Vec<SelftestCase> {
     let mut all = cases();
     all.extend(super::golden::cases().into_iter().filter(|case| QUICK_RUNS.contains(&case.id)));
     all
@@ -61,7 +61,7 @@ pub fn with_runs() -> Vec<Case> {
 
 /// Lists the known-answer tests of every part.
 #[must_use]
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<SelftestCase> {
     vec![
         case(
             "answers-earth",
@@ -202,7 +202,7 @@ mod tests {
                 continue;
             }
             let Expectation::Numbers { known, .. } = &case.expectation else { panic!() };
-            let bench = Bench::new(std::path::Path::new("octant"), folder.path(), &cancel).unwrap();
+            let bench = CaseBench::new(std::path::Path::new("octant"), folder.path(), &cancel).unwrap();
             let found = (case.run)(&bench).unwrap().numbers;
             let mut names: Vec<&str> = known.iter().map(|k| k.name.as_str()).collect();
             names.sort_unstable();

@@ -1,7 +1,7 @@
 //! Power, ratios, distances in the plane, hypercubes and correlated draws.
 
 use super::numbers::Found;
-use octant_statistics::draw::{Correlation, Distribution, Factor, latin_hypercube, monte_carlo};
+use octant_statistics::draw::{FactorCorrelation, Distribution, Factor, latin_hypercube, monte_carlo};
 use octant_statistics::radius::Plane;
 use octant_statistics::{deviation, paired, position, power};
 use std::hint::black_box;
@@ -43,7 +43,7 @@ fn all() -> Option<Found> {
     }
     let normal = |name, mean, sigma| Factor::new(name, Distribution::Normal { mean, sigma });
     let factors = [normal("a", 10.0, 2.0), normal("b", 5.0, 1.0)];
-    let pair = Correlation { first: "a".to_owned(), second: "b".to_owned(), value: 0.6 };
+    let pair = FactorCorrelation { first: "a".to_owned(), second: "b".to_owned(), value: 0.6 };
     for i in 0..6 {
         let row = monte_carlo(&factors, std::slice::from_ref(&pair), 3, i).ok()?;
         put(&format!("correlated {i} a"), row.first()?.number());

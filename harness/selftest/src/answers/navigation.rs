@@ -1,8 +1,8 @@
 //! Whole runs of an instrument without errors, which must end where they began.
 
-use crate::bench::Bench;
-use crate::error::CaseError;
-use crate::judge::{Known, Outcome};
+use crate::bench::CaseBench;
+use crate::error::CaseSetupError;
+use crate::judge::{Known, CaseOutcome};
 
 const PERFECT: &str = include_str!("../../../../fixtures/selftest/perfect.toml");
 
@@ -22,8 +22,8 @@ pub(super) fn known() -> Vec<Known> {
     RUNS.iter().map(known).collect()
 }
 
-pub(super) fn found(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
-    let mut outcome = Outcome { status: Some(0), ..Outcome::default() };
+pub(super) fn found(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
+    let mut outcome = CaseOutcome { status: Some(0), ..CaseOutcome::default() };
     for (name, changes, _) in RUNS {
         let mut words = changes.to_vec();
         words.push("--force");

@@ -4,8 +4,8 @@
 use super::numbers::Found;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_plant::config::{
-    AidingKind, AidingSource, CaseAttitude, Config, Dockside, Extensions, GaussMarkov, Imu, Motion,
-    Site, Temperature, Turntable, Vibration,
+    AidingKind, AidingSource, CaseAttitude, PlantConfig, Dockside, Extensions, GaussMarkov, Imu, Motion,
+    PlantSite, Temperature, TurntableConfig, Vibration,
 };
 use octant_plant::draw::{ParameterDraws, parameters};
 use octant_plant::{Plant, interpolation, motion};
@@ -16,8 +16,8 @@ const CALIBRATION: u64 = 1600;
 const MARKS: [u64; 5] = [400, 1100, 1600, 2100, 2600];
 const LEANING: CaseAttitude = CaseAttitude { heading_rad: 1.1, pitch_rad: 0.03, roll_rad: -0.02 };
 
-pub(super) fn site(latitude_deg: f64, longitude_deg: f64, height_m: f64) -> Site {
-    Site { latitude_rad: latitude_deg * DEG, longitude_rad: longitude_deg * DEG, height_m }
+pub(super) fn site(latitude_deg: f64, longitude_deg: f64, height_m: f64) -> PlantSite {
+    PlantSite { latitude_rad: latitude_deg * DEG, longitude_rad: longitude_deg * DEG, height_m }
 }
 
 /// Interpolates the tenth power, of which ten nodes leave a known error.
@@ -31,14 +31,14 @@ fn interpolated(all: &mut Found) {
 }
 
 /// Configures perfect sensors on a turntable of 10 °/s and 10 °/s².
-pub(super) fn perfect(seed: u64, site: Site, motion: Motion) -> Config {
-    Config {
+pub(super) fn perfect(seed: u64, site: PlantSite, motion: Motion) -> PlantConfig {
+    PlantConfig {
         sample_period_ns: PERIOD_NS,
         seed,
         calibration_samples: CALIBRATION,
         site,
         motion,
-        turntable: Turntable {
+        turntable: TurntableConfig {
             rate_radps: 10.0 * DEG,
             acceleration_radps2: 10.0 * DEG,
             encoder_sigma_rad: 0.0,
@@ -67,7 +67,7 @@ pub(super) fn found() -> Result<Found, String> {
     Ok(all)
 }
 
-fn instruments() -> Vec<(&'static str, Config, bool, bool)> {
+fn instruments() -> Vec<(&'static str, PlantConfig, bool, bool)> {
     let (north, south) = (site(30.5, 114.3, 40.0), site(-60.0, -20.0, 4000.0));
     let still = |seed, site| perfect(seed, site, Motion::Static(LEANING));
 
@@ -140,7 +140,7 @@ fn target(sample: u64) -> GimbalCommand {
 fn tell(
     all: &mut Found,
     name: &str,
-    config: &Config,
+    config: &PlantConfig,
     moves: bool,
     has_reference: bool,
 ) -> Result<(), String> {

@@ -3,7 +3,7 @@
 use super::numbers::{Found, tight};
 use crate::judge::Known;
 use octant_statistics::draw::{Distribution, Factor};
-use octant_statistics::outlier::{Scale, outliers};
+use octant_statistics::outlier::{OutlierScale, outliers};
 use octant_statistics::proportion::{
     Demand, Needed, further_at_rate, further_if_all_pass, success_lower_bound, success_upper_bound,
 };
@@ -109,7 +109,7 @@ fn quantiles(golden: &Value, all: &mut Pairs) -> Option<()> {
     }
     let scores = numbers(&golden["mad"]["scores"])?;
     let values = numbers(&golden["mad"]["values"])?;
-    for outlier in outliers(&values, Scale::Linear, 0.0) {
+    for outlier in outliers(&values, OutlierScale::Linear, 0.0) {
         let name = format!("robust score {}", outlier.index);
         all.put(name, outlier.score, Some(scores[outlier.index]), 1e-12);
     }

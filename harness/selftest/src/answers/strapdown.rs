@@ -4,7 +4,7 @@
 use super::numbers::Found;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_calibration::Core;
-use octant_calibration::config::{Alignment, Config};
+use octant_calibration::config::{Alignment, CoreConfig};
 use octant_sample::{DeviceTime, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
@@ -58,7 +58,7 @@ fn fall(all: &mut Found) -> Result<(), String> {
 }
 
 /// Configures a core without parameters.
-fn config(scenario: &str) -> Result<Config, String> {
+fn config(scenario: &str) -> Result<CoreConfig, String> {
     let scenario = Scenario::parse(scenario, "answers.toml", Path::new("."), &[])
         .map_err(|why| why.to_string())?;
     let (_, mut config, _) =

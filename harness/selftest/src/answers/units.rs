@@ -1,7 +1,7 @@
 //! Units: SI values of a scenario's quantities.
 
 use super::numbers::Found;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use octant_scenario::quantity;
 
 pub(super) fn found() -> Result<Found, String> {
@@ -18,6 +18,6 @@ pub(super) fn found() -> Result<Found, String> {
 }
 
 fn of_group(name: &str) -> Option<f64> {
-    let plain = |group: &Group| group.name().replace('_', " ") == name.replace('-', " ");
-    Group::ALL.into_iter().find(plain).map(|group| std::hint::black_box(group).si_per_unit())
+    let plain = |group: &ParameterGroup| group.name().replace('_', " ") == name.replace('-', " ");
+    ParameterGroup::ALL.into_iter().find(plain).map(|group| std::hint::black_box(group).si_per_unit())
 }

@@ -7,8 +7,8 @@
 use crate::counting::Triads;
 use crate::{Epoch, Source, SourceError};
 use octant_fmu_host::description::Description;
-use octant_mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
-use octant_mapping::find::Way;
+use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell, Cells, Handle};
+use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
 use octant_plant::Truth;
 use octant_sample::time::SimulatedTime;
@@ -44,19 +44,19 @@ enum Triad {
 /// Cells of a position.
 #[derive(Clone, Copy, Debug)]
 struct Position {
-    latitude: Cell,
-    longitude: Cell,
-    height: Cell,
+    latitude: ChannelCell,
+    longitude: ChannelCell,
+    height: ChannelCell,
 }
 
 /// Cells of the reference that the FMU outputs.
 #[derive(Clone, Copy, Debug)]
 struct References {
-    kind: Option<Cell>,
-    valid: Option<Cell>,
+    kind: Option<ChannelCell>,
+    valid: Option<ChannelCell>,
     velocity: Option<Cells<3>>,
     position: Option<Position>,
-    age_ns: Option<Cell>,
+    age_ns: Option<ChannelCell>,
 }
 
 /// Cells of truth that the FMU outputs.
@@ -65,7 +65,7 @@ struct Truths {
     position: Position,
     velocity: Option<Cells<3>>,
     attitude: Option<Cells<4>>,
-    gimbal: Option<[Cell; 2]>,
+    gimbal: Option<[ChannelCell; 2]>,
 }
 
 /// Cells of all outputs of the FMU.
@@ -73,11 +73,11 @@ struct Truths {
 struct Gives {
     gyro: Triad,
     accelerometer: Triad,
-    gimbal: Option<[Cell; 2]>,
-    valid: Option<Cell>,
-    status: Option<Cell>,
-    sequence: Option<Cell>,
-    device_time: Option<Cell>,
+    gimbal: Option<[ChannelCell; 2]>,
+    valid: Option<ChannelCell>,
+    status: Option<ChannelCell>,
+    sequence: Option<ChannelCell>,
+    device_time: Option<ChannelCell>,
     reference: References,
     truth: Option<Truths>,
 }
@@ -86,7 +86,7 @@ struct Gives {
 pub(super) struct Instrument {
     inputs: Bound,
     outputs: Bound,
-    command: Option<[Cell; 2]>,
+    command: Option<[ChannelCell; 2]>,
     gives: Gives,
 }
 
@@ -96,7 +96,7 @@ impl Instrument {
     /// # Errors
     /// If a required channel is missing or doesn't fit.
     pub(super) fn bind(description: &Description, fmu: &Fmu) -> Result<Self, BindError> {
-        let mut inputs = Binder::new(description, fmu, Way::In);
+        let mut inputs = Binder::new(description, fmu, ValueWay::In);
         let azimuth = inputs.channel(&sample::COMMAND_AZIMUTH);
         let roll = inputs.channel(&sample::COMMAND_ROLL);
         if azimuth.is_some() != roll.is_some() {
@@ -107,7 +107,7 @@ impl Instrument {
         let inputs = inputs.finish()?;
         let command = inputs.cell(azimuth).zip(inputs.cell(roll)).map(|(a, r)| [a, r]);
 
-        let mut outputs = Binder::new(description, fmu, Way::Out);
+        let mut outputs = Binder::new(description, fmu, ValueWay::Out);
         let gyro = outputs.one_of(&sample::DELTA_THETA, &sample::RATE);
         let accelerometer = outputs.one_of(&sample::DELTA_VELOCITY, &sample::SPECIFIC_FORCE);
         let gimbal = pair(&mut outputs, &sample::AZIMUTH, &sample::ROLL);
@@ -290,7 +290,7 @@ impl FmuSource {
         if self.passed > self.timing.calibration_samples {
             return None;
         }
-        let read = |cell: &Option<Cell>| cell.as_ref().map(|cell| cell.read(numbers));
+        let read = |cell: &Option<ChannelCell>| cell.as_ref().map(|cell| cell.read(numbers));
         let position = match read(&of.kind) {
             Some(1.0) => false,
             Some(2.0) => true,
@@ -378,7 +378,7 @@ impl Source for FmuSource {
                 }
             }
             sample.status = status;
-            let whole = |cell: Option<Cell>| cell.map(|cell| cell.read(numbers) as u64);
+            let whole = |cell: Option<ChannelCell>| cell.map(|cell| cell.read(numbers) as u64);
             sample.sequence = whole(gives.sequence).unwrap_or(self.delivered);
             sample.device_time = DeviceTime::from_ns(
                 whole(gives.device_time).unwrap_or(self.passed * self.timing.period_ns),

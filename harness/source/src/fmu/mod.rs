@@ -8,7 +8,7 @@ use motion::{MovedPlant, Moving};
 use octant_plant::Truth;
 
 use super::{AnySource, Source, SourceError};
-use octant_mapping::open::{self, Kept};
+use octant_mapping::open::{self, NamedInstance};
 use octant_mapping::stepper::{Stepper, UseError};
 use octant_plant::config as plant;
 use octant_scenario::{Fmu, Scenario};
@@ -21,7 +21,7 @@ use octant_scenario::{Fmu, Scenario};
 pub(super) fn open(
     scenario: &Scenario,
     fmu: &Fmu,
-    plant: &plant::Config,
+    plant: &plant::PlantConfig,
 ) -> Result<AnySource, SourceError> {
     of_instance(scenario, fmu, plant, open::instance(scenario, fmu)?)
 }
@@ -29,12 +29,12 @@ pub(super) fn open(
 fn of_instance(
     scenario: &Scenario,
     fmu: &Fmu,
-    plant: &plant::Config,
-    Kept { instance, uri }: Kept,
+    plant: &plant::PlantConfig,
+    NamedInstance { instance, uri }: NamedInstance,
 ) -> Result<AnySource, SourceError> {
     let description = instance.description().clone();
     if fmu.is_motion() {
-        let moving = moving(scenario, fmu, plant, Kept { instance, uri })?;
+        let moving = moving(scenario, fmu, plant, NamedInstance { instance, uri })?;
         let samples = scenario.samples().unwrap_or(u64::MAX);
         let samples_a_piece = fmu.step_ns / scenario.sample_period_ns;
         return Ok(MovedPlant::new(moving, plant, samples, samples_a_piece)?.into());
@@ -59,8 +59,8 @@ fn of_instance(
 fn moving(
     scenario: &Scenario,
     fmu: &Fmu,
-    plant: &plant::Config,
-    Kept { instance, uri }: Kept,
+    plant: &plant::PlantConfig,
+    NamedInstance { instance, uri }: NamedInstance,
 ) -> Result<Moving, SourceError> {
     let description = instance.description().clone();
     let starts = open::starts(scenario, fmu, &uri, &description, None)?;
@@ -78,7 +78,7 @@ fn moving(
 pub(crate) fn truth_at_start(
     scenario: &Scenario,
     fmu: &Fmu,
-    plant: &plant::Config,
+    plant: &plant::PlantConfig,
 ) -> Result<Option<Truth>, SourceError> {
     if fmu.is_motion() {
         return Ok(open(scenario, fmu, plant)?.truth());

@@ -8,12 +8,12 @@
 use crate::{Epoch, Source, SourceError};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_fmu_host::description::Description;
-use octant_mapping::bind::{BindError, Binder, Bound, Cell};
-use octant_mapping::find::Way;
+use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell};
+use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
-use octant_plant::config::{CaseAttitude, Config, Dockside, Motion, Site};
-use octant_plant::course::{Course, Point};
-use octant_plant::{ConfigError, Plant, Truth};
+use octant_plant::config::{CaseAttitude, PlantConfig, Dockside, Motion, PlantSite};
+use octant_plant::course::{Course, CoursePoint};
+use octant_plant::{PlantConfigError, Plant, Truth};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 use octant_scenario::Fmu;
@@ -46,9 +46,9 @@ const SECOND: [[f64; STENCIL]; STENCIL] = [
 #[derive(Clone, Copy, Debug)]
 enum Place {
     /// Metres north, east and down of the site.
-    Metres([Option<Cell>; 3]),
+    Metres([Option<ChannelCell>; 3]),
     /// Latitude, longitude, height.
-    Geodetic([Cell; 3]),
+    Geodetic([ChannelCell; 3]),
 }
 
 /// Case motion that an FMU outputs.
@@ -57,10 +57,10 @@ pub(super) struct Moving {
     inputs: Bound,
     outputs: Bound,
     /// Cells of roll, pitch, yaw; the mean is used where the FMU outputs none.
-    angles: [Option<Cell>; 3],
+    angles: [Option<ChannelCell>; 3],
     place: Place,
     mean: CaseAttitude,
-    site: Site,
+    site: PlantSite,
     /// Metres per radian of latitude and of longitude.
     radii_m: [f64; 2],
     step_s: f64,
@@ -74,14 +74,14 @@ pub(super) struct Moving {
 pub(super) struct Bindings {
     inputs: Bound,
     outputs: Bound,
-    angles: [Option<Cell>; 3],
+    angles: [Option<ChannelCell>; 3],
     place: Place,
 }
 
 /// Binds an FMU through the mapping of a scenario.
 pub(super) fn bind(description: &Description, fmu: &Fmu) -> Result<Bindings, BindError> {
-    let inputs = Binder::new(description, fmu, Way::In).finish()?;
-    let mut b = Binder::new(description, fmu, Way::Out);
+    let inputs = Binder::new(description, fmu, ValueWay::In).finish()?;
+    let mut b = Binder::new(description, fmu, ValueWay::Out);
     let angles = [&case::ROLL, &case::PITCH, &case::HEADING].map(|channel| b.channel(channel));
     let metres: [&'static Channel; 3] = [&case::NORTH, &case::EAST, &case::DOWN];
     let geodetic: [&'static Channel; 3] = [&case::LATITUDE, &case::LONGITUDE, &case::HEIGHT];
@@ -119,7 +119,7 @@ impl Moving {
     pub(super) fn new(
         stepper: Stepper,
         bindings: Bindings,
-        config: &Config,
+        config: &PlantConfig,
         step_s: f64,
     ) -> Result<Self, SourceError> {
         let Bindings { inputs, outputs, angles, place } = bindings;
@@ -218,7 +218,7 @@ impl Moving {
 
     /// Computes value, rate and acceleration at a point, from two points on each side where they
     /// exist.
-    fn derived(&self, k: u64) -> [Point; 6] {
+    fn derived(&self, k: u64) -> [CoursePoint; 6] {
         let index = (k - self.first) as usize;
         let from = index.saturating_sub(2).min(self.points.len() - STENCIL);
         let at = index - from;
@@ -226,7 +226,7 @@ impl Moving {
             let sum = |weights: &[f64; STENCIL]| -> f64 {
                 (0..STENCIL).map(|i| weights[i] * self.points[from + i][dof]).sum()
             };
-            Point {
+            CoursePoint {
                 value: self.points[index][dof],
                 rate: sum(&FIRST[at]) / (12.0 * self.step_s),
                 acceleration: sum(&SECOND[at]) / (12.0 * self.step_s * self.step_s),
@@ -237,8 +237,8 @@ impl Moving {
 
 /// Configures the plant for an external motion: without sway and mean attitude of its own, because
 /// the external motion includes them.
-pub(super) fn on_a_course(config: &Config) -> Config {
-    Config { motion: Motion::Dockside(Dockside::calm(CaseAttitude::default())), ..config.clone() }
+pub(super) fn on_a_course(config: &PlantConfig) -> PlantConfig {
+    PlantConfig { motion: Motion::Dockside(Dockside::calm(CaseAttitude::default())), ..config.clone() }
 }
 
 /// The plant on a case that an FMU moves.
@@ -258,7 +258,7 @@ impl MovedPlant {
     /// Creates the plant at time 0.
     pub(super) fn new(
         mut moving: Moving,
-        config: &Config,
+        config: &PlantConfig,
         samples: u64,
         samples_a_piece: u64,
     ) -> Result<Self, SourceError> {
@@ -285,7 +285,7 @@ impl MovedPlant {
     }
 }
 
-fn refused(moving: &Moving, error: &ConfigError) -> SourceError {
+fn refused(moving: &Moving, error: &PlantConfigError) -> SourceError {
     SourceError::Use(octant_mapping::stepper::UseError::Open {
         uri: moving.stepper.uri().to_owned(),
         reason: error.to_string(),

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Epoch;
 use crate::configure::configurations;
-use octant_fmu_host::description::{Causality, Description, Kind};
+use octant_fmu_host::description::{Causality, Description, VariableType};
 use octant_mapping::testing::{Scripted, With, description, variable};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalAngles, GimbalCommand, Reference, Status};
@@ -13,20 +13,20 @@ fn sine() -> Description {
     description(
         "imu",
         vec![
-            variable("w", 1, Kind::Float64, Output).array(3).in_unit("deg/h"),
-            variable("fx", 4, Kind::Float64, Output),
-            variable("fy", 5, Kind::Float64, Output),
-            variable("fz", 6, Kind::Float64, Output),
-            variable("az", 7, Kind::Float64, Output).in_unit("deg"),
-            variable("el", 8, Kind::Float64, Output).in_unit("deg"),
-            variable("cmd[1]", 9, Kind::Float64, Input).in_unit("deg"),
-            variable("cmd[2]", 10, Kind::Float64, Input).in_unit("deg"),
-            variable("vn", 11, Kind::Float64, Output).in_unit("m/s"),
-            variable("lat", 12, Kind::Float64, Output).in_unit("deg"),
-            variable("ok", 13, Kind::Boolean, Output),
-            variable("mass", 14, Kind::Float64, Parameter).in_unit("kg"),
-            variable("length", 15, Kind::Float64, Parameter).in_unit("m"),
-            variable("mode", 16, Kind::Int32, Parameter),
+            variable("w", 1, VariableType::Float64, Output).array(3).in_unit("deg/h"),
+            variable("fx", 4, VariableType::Float64, Output),
+            variable("fy", 5, VariableType::Float64, Output),
+            variable("fz", 6, VariableType::Float64, Output),
+            variable("az", 7, VariableType::Float64, Output).in_unit("deg"),
+            variable("el", 8, VariableType::Float64, Output).in_unit("deg"),
+            variable("cmd[1]", 9, VariableType::Float64, Input).in_unit("deg"),
+            variable("cmd[2]", 10, VariableType::Float64, Input).in_unit("deg"),
+            variable("vn", 11, VariableType::Float64, Output).in_unit("m/s"),
+            variable("lat", 12, VariableType::Float64, Output).in_unit("deg"),
+            variable("ok", 13, VariableType::Boolean, Output),
+            variable("mass", 14, VariableType::Float64, Parameter).in_unit("kg"),
+            variable("length", 15, VariableType::Float64, Parameter).in_unit("m"),
+            variable("mode", 16, VariableType::Int32, Parameter),
         ],
     )
 }
@@ -48,10 +48,10 @@ fn open(
     description: Description,
     behaviour: impl FnMut(&mut [f64], f64) -> Result<bool, String> + Send + 'static,
 ) -> Result<AnySource, SourceError> {
-    let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+    let scenario::SourceSpec::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
     let (plant, ..) = configurations(scenario, Method::Primary, 1).unwrap();
     let instance = Scripted::boxed(description, behaviour);
-    of_instance(scenario, fmu, &plant, Kept { instance, uri: "fmu:imu.fmu".to_owned() })
+    of_instance(scenario, fmu, &plant, NamedInstance { instance, uri: "fmu:imu.fmu".to_owned() })
 }
 
 #[test]
@@ -292,7 +292,7 @@ fn parameters_are_set_in_their_units() {
 /// Scenario whose case motion comes from a ship FMU that outputs its position.
 fn ship(geodetic: bool) -> Description {
     let output = |name: &str, reference, unit: &str| {
-        variable(name, reference, Kind::Float64, Causality::Output).in_unit(unit)
+        variable(name, reference, VariableType::Float64, Causality::Output).in_unit(unit)
     };
     let mut variables =
         vec![output("psi", 1, "deg"), output("theta", 2, "rad"), output("phi", 3, "mrad")];
@@ -370,7 +370,7 @@ fn a_ship_that_sways_as_the_plants_own_gives_the_same_counts() {
     ] {
         let map = if geodetic { GEODETIC } else { METRES };
         let scenario = swaying(map, period);
-        let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+        let scenario::SourceSpec::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
         let give = move |cells: &mut [f64], time_s: f64| {
             let [heading, pitch, roll, north, east, down] = sway_at(time_s);
             cells[1..4].copy_from_slice(&[heading, pitch, roll]);
@@ -391,10 +391,10 @@ fn a_ship_that_sways_as_the_plants_own_gives_the_same_counts() {
         let mut cells = [0.0; 64];
         give(&mut cells, 0.0);
         for variable in ship(geodetic).variables {
-            let group = octant_fmu_host::instance::Group::of(&ship(geodetic), &variable).unwrap();
+            let group = octant_fmu_host::instance::VariableGroup::of(&ship(geodetic), &variable).unwrap();
             instance.set(&group, &[cells[variable.reference as usize]]).unwrap();
         }
-        let kept = Kept { instance, uri: "fmu:ship.fmu".to_owned() };
+        let kept = NamedInstance { instance, uri: "fmu:ship.fmu".to_owned() };
         let mut source = of_instance(&scenario, fmu, &config, kept).unwrap();
         let mut plant = octant_plant::Plant::new(&config).unwrap();
         let command = GimbalCommand { target: GimbalAngles { azimuth: 1 << 27, roll: -1 << 26 } };
@@ -435,12 +435,12 @@ fn what_doesnt_fit_a_motion_is_told() {
         ("case.latitude = { constant = \"30 deg\" }\n", "case.longitude is mapped to nothing"),
     ] {
         let scenario = swaying(map, "5 ms");
-        let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+        let scenario::SourceSpec::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
         let own = format!("schema = 1\n[procedure.calibration]\nduration = \"4 min\"\n{SHIP}");
         let own = Scenario::parse(&own, "own.toml", Path::new(""), &[]).unwrap();
         let (config, ..) = configurations(&own, Method::Primary, 1).unwrap();
         let instance = Scripted::boxed(ship(false), |_, _| Ok(true));
-        let kept = Kept { instance, uri: "fmu:ship.fmu".to_owned() };
+        let kept = NamedInstance { instance, uri: "fmu:ship.fmu".to_owned() };
         let error = of_instance(&scenario, fmu, &config, kept).err();
         let error = error.map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains(expected), "{map}:\n  {error}\n  {expected}");

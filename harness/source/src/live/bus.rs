@@ -3,9 +3,9 @@
 use crate::SourceError;
 use octant_base::number::counted;
 use octant_instruments::Reading;
-use octant_instruments::dbc::{CanFrame, Database, Gatherer, Mapping, Problem};
+use octant_instruments::dbc::{CanFrame, Database, Gatherer, SignalMapping, DbcProblem};
 use octant_link::Uri;
-use octant_link::port::{Heard, Listener};
+use octant_link::port::{HeardFrame, Listener};
 use octant_scenario::{FileName, Messages};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ pub(super) struct Bus {
     listener: Listener,
     gatherer: Gatherer,
     /// Frame that was not taken yet, with its time of arrival.
-    frame: Option<(Heard, Instant)>,
+    frame: Option<(HeardFrame, Instant)>,
 }
 
 impl Bus {
@@ -76,10 +76,10 @@ fn gatherer(messages: &Messages, folder: &Path) -> Result<Gatherer, SourceError>
             Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
         }
     };
-    let wrong = |problem: Problem| SourceError::Read { path: problem.place, reason: problem.what };
+    let wrong = |problem: DbcProblem| SourceError::Read { path: problem.place, reason: problem.what };
     let (file, text) = read(&messages.database)?;
     let database = Database::parse(&file, &text).map_err(wrong)?;
     let (file, text) = read(&messages.mapping)?;
-    let mapping = Mapping::parse(&file, &text).map_err(wrong)?;
+    let mapping = SignalMapping::parse(&file, &text).map_err(wrong)?;
     Gatherer::new(&database, &mapping).map_err(wrong)
 }

@@ -1,6 +1,6 @@
 //! Relates the instrument's clock to the host's.
 
-use octant_instruments::align::Alignment;
+use octant_instruments::align::ClockAlignment;
 use octant_recorder::event::BenchClock;
 use std::time::{Duration, Instant, SystemTime};
 
@@ -13,12 +13,12 @@ const BASE_NS: u64 = 3_600_000_000_000;
 pub(super) struct Clock {
     base: Instant,
     utc: SystemTime,
-    alignment: Alignment,
+    alignment: ClockAlignment,
 }
 
 impl Clock {
     pub(super) fn new() -> Self {
-        Self { base: Instant::now(), utc: SystemTime::now(), alignment: Alignment::new() }
+        Self { base: Instant::now(), utc: SystemTime::now(), alignment: ClockAlignment::new() }
     }
 
     /// Returns when the interval of a reading ended: from its stamp by the estimated clock

@@ -3,10 +3,10 @@
 use super::bus::Bus;
 use crate::SourceError;
 use octant_base::number::counted;
-use octant_instruments::{AnyDecoder, Event, Reading};
+use octant_instruments::{AnyDecoder, FramingEvent, Reading};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
-use octant_wire::Role;
+use octant_wire::EndRole;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -42,7 +42,7 @@ impl Feed {
             }
         };
         // The port waits for a sender, as a device does.
-        let port = match port::open(uri, Role::Device) {
+        let port = match port::open(uri, EndRole::Device) {
             Ok(Port::Bytes(port)) => port,
             Ok(Port::Frames(_)) => {
                 return Err(gone(
@@ -124,7 +124,7 @@ impl Line {
             let event =
                 if event.is_none() && self.port.datagrams() { self.decoder.end() } else { event };
             match event {
-                Some(Event::Reading(reading)) => return Some((reading, self.came)),
+                Some(FramingEvent::Reading(reading)) => return Some((reading, self.came)),
                 Some(_) => {}
                 None => return None,
             }

@@ -18,9 +18,9 @@ use self::clock::Clock;
 use self::feed::Feed;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
-use octant_instruments::{Sampler, Settings, Unusable};
+use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
-use octant_recorder::event::{Bench, BenchReadings};
+use octant_recorder::event::{BenchRecord, BenchReadings};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::{Instrument, Scenario, Speaks};
 use std::path::Path;
@@ -82,7 +82,7 @@ impl LiveSource {
         samples: Option<u64>,
     ) -> Result<Self, SourceError> {
         let feed = Feed::open(instrument, folder)?;
-        let settings = Settings { axes: instrument.axes, period_ns: sample_period_ns };
+        let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
         Ok(Self {
             feed,
             instrument: instrument.clone(),
@@ -180,7 +180,7 @@ impl Source for LiveSource {
         true
     }
 
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<Bench>>, Option<SourceError>) {
+    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let table = self.table.take();
         let told = table.as_ref().map(Table::told);
         // The table is stopped before anything else is done.
@@ -192,7 +192,7 @@ impl Source for LiveSource {
             Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
             None => (None, None, None),
         };
-        let bench = Bench {
+        let bench = BenchRecord {
             clock,
             instrument: format!("{}, {protocol}", self.instrument.uri),
             instruments_clock,

@@ -5,7 +5,7 @@ use octant_base::number::counted;
 use octant_recorder::event::{BenchAngles, BenchAxis, BenchTable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_scenario::Drive;
-use octant_turntable::{Axis, Following};
+use octant_turntable::{TableAxis, Following};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -82,7 +82,7 @@ impl Table {
             (place.age <= self.drive.oldest).then_some(place)
         };
         let ages = &mut self.ages;
-        let (Some(azimuth), Some(roll)) = (place(Axis::Azimuth), place(Axis::Roll)) else {
+        let (Some(azimuth), Some(roll)) = (place(TableAxis::Azimuth), place(TableAxis::Roll)) else {
             ages.without += 1;
             return None;
         };
@@ -97,7 +97,7 @@ impl Table {
     /// Summarises the table's run.
     pub(super) fn told(&self) -> Told {
         let (drive, ages) = (&self.drive, &self.ages);
-        let axis = |axis: Axis| {
+        let axis = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
             BenchAxis {
                 acceleration_degps2: limits.acceleration_radps2.to_degrees(),
@@ -119,17 +119,17 @@ impl Table {
                 samples_without: ages.without,
                 time_within_ms: ms(ages.within),
             },
-            azimuth: axis(Axis::Azimuth),
+            azimuth: axis(TableAxis::Azimuth),
             commands: went.commands,
             dialect: self.language.clone(),
             guard_s: seconds(drive.guard),
             looks: went.looks,
             port: drive.port.clone(),
-            roll: axis(Axis::Roll),
+            roll: axis(TableAxis::Roll),
             stopped: stopped.clone(),
             watchdog_s: seconds(drive.settings.watchdog),
         };
-        let range = |axis: Axis| {
+        let range = |axis: TableAxis| {
             let limits = drive.settings.limits.of(axis);
             let (least, most) = (limits.least_rad.to_degrees(), limits.most_rad.to_degrees());
             format!("{axis} {least:.4} to {most:.4}°")
@@ -152,8 +152,8 @@ impl Table {
                 "{}, {}, {}, {}; {}{how}",
                 drive.port,
                 self.language,
-                range(Axis::Azimuth),
-                range(Axis::Roll),
+                range(TableAxis::Azimuth),
+                range(TableAxis::Roll),
                 counted(went.commands, "set point", "set points")
             ),
             angles,

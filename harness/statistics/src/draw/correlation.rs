@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Correlation of two factors: that of the Gaussian copula that joins them. For normal factors it is
 /// their own correlation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Correlation {
+pub struct FactorCorrelation {
     /// First factor.
     pub first: String,
     /// Second factor.
@@ -55,7 +55,7 @@ impl Correlations {
     /// # Errors
     /// If a correlation names an unknown factor, a choice, the same factor twice or a pair a second
     /// time, if a value isn't between −1 and 1, or if the matrix isn't positive definite.
-    pub fn new(factors: &[Factor], correlations: &[Correlation]) -> Result<Self, DrawError> {
+    pub fn new(factors: &[Factor], correlations: &[FactorCorrelation]) -> Result<Self, DrawError> {
         let mut columns: Vec<usize> = Vec::new();
         let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
         for correlation in correlations {

@@ -39,14 +39,14 @@ pub enum Distribution {
 /// A drawn value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Value {
+pub enum DrawnFactor {
     /// Value of a continuous distribution.
     Number(f64),
     /// Index of the option, from 0.
     Choice(usize),
 }
 
-impl Value {
+impl DrawnFactor {
     /// Value as a number; for a choice, the index of the option.
     #[must_use]
     pub fn number(self) -> f64 {
@@ -189,20 +189,20 @@ impl Factor {
     ///
     /// # Errors
     /// If the distribution has no value.
-    pub fn at(&self, u: f64) -> Result<Value, DrawError> {
+    pub fn at(&self, u: f64) -> Result<DrawnFactor, DrawError> {
         if let Distribution::Choice { weights } = &self.distribution {
             let total: f64 = weights.iter().sum();
             let mut left = u * total;
             let mut last = None;
             for (index, weight) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
                 if left < *weight {
-                    return Ok(Value::Choice(index));
+                    return Ok(DrawnFactor::Choice(index));
                 }
                 left -= weight;
                 last = Some(index);
             }
             // Reached only by rounding.
-            return last.map(Value::Choice).ok_or_else(|| self.wrong("it has no weight"));
+            return last.map(DrawnFactor::Choice).ok_or_else(|| self.wrong("it has no weight"));
         }
         let mirrored = self.mirrored();
         let (from, to) = self.range(mirrored);
@@ -219,6 +219,6 @@ impl Factor {
         };
         // Rounding may exceed a limit.
         let x = self.low.map_or(x, |low| x.max(low));
-        Ok(Value::Number(self.high.map_or(x, |high| x.min(high))))
+        Ok(DrawnFactor::Number(self.high.map_or(x, |high| x.min(high))))
     }
 }

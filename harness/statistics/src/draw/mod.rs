@@ -8,8 +8,8 @@
 mod correlation;
 mod distribution;
 
-pub use correlation::{Correlation, Correlations};
-pub use distribution::{Distribution, Factor, Value};
+pub use correlation::{FactorCorrelation, Correlations};
+pub use distribution::{Distribution, Factor, DrawnFactor};
 
 use crate::sample::ranks;
 use octant_random::normal::{uniform, words};
@@ -77,10 +77,10 @@ pub(crate) fn unit(seed: u64, name: &str, i: u64, word: usize) -> f64 {
 /// If a factor or a correlation is invalid.
 pub fn monte_carlo(
     factors: &[Factor],
-    correlations: &[Correlation],
+    correlations: &[FactorCorrelation],
     seed: u64,
     i: u64,
-) -> Result<Vec<Value>, DrawError> {
+) -> Result<Vec<DrawnFactor>, DrawError> {
     check(factors)?;
     let correlations = Correlations::new(factors, correlations)?;
     let mut units: Vec<f64> = factors.iter().map(|f| unit(seed, &f.name, i, 0)).collect();
@@ -97,10 +97,10 @@ pub fn monte_carlo(
 /// If a factor or a correlation is invalid, or there are too few runs to correlate them.
 pub fn latin_hypercube(
     factors: &[Factor],
-    correlations: &[Correlation],
+    correlations: &[FactorCorrelation],
     seed: u64,
     runs: usize,
-) -> Result<Vec<Vec<Value>>, DrawError> {
+) -> Result<Vec<Vec<DrawnFactor>>, DrawError> {
     check(factors)?;
     let correlations = Correlations::new(factors, correlations)?;
     if runs == 0 {

@@ -9,7 +9,7 @@ mod pattern;
 
 pub(crate) use pattern::{Field, Fields, Pattern};
 
-use crate::{Axis, Error};
+use crate::{TableAxis, Error};
 use std::collections::BTreeMap;
 
 /// A command of the table.
@@ -327,7 +327,7 @@ impl Dialect {
             match field {
                 Field::Axis => {
                     let index = self.axes.iter().position(|name| name == text.trim())?;
-                    values.axis = Some(Axis::ALL[index]);
+                    values.axis = Some(TableAxis::ALL[index]);
                 }
                 Field::Angle => values.angle_rad = Some(number(angle)?),
                 Field::Rate => values.rate_radps = Some(number(rate)?),
@@ -348,7 +348,7 @@ impl Dialect {
     /// was cut in the middle.
     pub(crate) fn emergency(&self) -> Vec<u8> {
         let mut bytes = self.end.clone().into_bytes();
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             let fields = self.write(&Values { axis: Some(axis), ..Values::default() });
             for line in self.lines(Command::Stop) {
                 // A stop has no field other than the axis.
@@ -363,7 +363,7 @@ impl Dialect {
 /// Values in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Values {
-    pub(crate) axis: Option<Axis>,
+    pub(crate) axis: Option<TableAxis>,
     pub(crate) angle_rad: Option<f64>,
     pub(crate) rate_radps: Option<f64>,
     pub(crate) acceleration_radps2: Option<f64>,

@@ -1,13 +1,13 @@
 //! Simulated controller: its reaction to a line.
 
 use crate::dialect::{Command, Fields, Pattern, Values};
-use crate::{Axis, Dialect};
-use octant_plant::config::Turntable;
-use octant_plant::table::{self, Table};
+use crate::{TableAxis, Dialect};
+use octant_plant::config::TurntableConfig;
+use octant_plant::table::{self, GimbalTable};
 
 /// Behaviour of a simulated controller.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub enum Behaviour {
+pub enum ControllerBehaviour {
     /// Correct.
     #[default]
     Well,
@@ -25,7 +25,7 @@ pub enum Behaviour {
 #[derive(Debug)]
 pub struct Controller {
     dialect: Dialect,
-    table: Table,
+    table: GimbalTable,
     /// Angle of the end switches of both axes, in either direction, rad.
     end_rad: f64,
     /// Rate of homing, rad/s.
@@ -37,7 +37,7 @@ pub struct Controller {
     context: Values,
     watchdog_ns: Option<u64>,
     fed_ns: u64,
-    behaviour: Behaviour,
+    behaviour: ControllerBehaviour,
     log: Vec<String>,
 }
 
@@ -46,10 +46,10 @@ const FAULT_END: u32 = 0x4;
 /// Fault word of an axis whose watchdog stopped it.
 const FAULT_WATCHDOG: u32 = 0x100;
 
-fn plant(axis: Axis) -> table::Axis {
+fn plant(axis: TableAxis) -> table::GimbalAxis {
     match axis {
-        Axis::Azimuth => table::Axis::Azimuth,
-        Axis::Roll => table::Axis::Roll,
+        TableAxis::Azimuth => table::GimbalAxis::Azimuth,
+        TableAxis::Roll => table::GimbalAxis::Roll,
     }
 }
 
@@ -57,10 +57,10 @@ impl Controller {
     /// Makes a controller of a table at rest at zero, with its drives off. `end_rad`: angle of the end
     /// switches.
     #[must_use]
-    pub fn new(dialect: Dialect, config: &Turntable, end_rad: f64) -> Self {
+    pub fn new(dialect: Dialect, config: &TurntableConfig, end_rad: f64) -> Self {
         Self {
             dialect,
-            table: Table::new(config),
+            table: GimbalTable::new(config),
             end_rad,
             home_radps: config.rate_radps / 6.0,
             enabled: [false; 2],
@@ -69,7 +69,7 @@ impl Controller {
             context: Values::default(),
             watchdog_ns: None,
             fed_ns: 0,
-            behaviour: Behaviour::Well,
+            behaviour: ControllerBehaviour::Well,
             log: Vec::new(),
         }
     }
@@ -81,13 +81,13 @@ impl Controller {
     }
 
     /// Sets the behaviour from now on.
-    pub fn behave(&mut self, behaviour: Behaviour) {
+    pub fn behave(&mut self, behaviour: ControllerBehaviour) {
         self.behaviour = behaviour;
     }
 
     /// Present behaviour.
     #[must_use]
-    pub fn behaviour(&self) -> &Behaviour {
+    pub fn behaviour(&self) -> &ControllerBehaviour {
         &self.behaviour
     }
 
@@ -99,13 +99,13 @@ impl Controller {
 
     /// True motion of an axis.
     #[must_use]
-    pub fn motion(&self, axis: Axis, now_ns: u64) -> table::AxisMotion {
+    pub fn motion(&self, axis: TableAxis, now_ns: u64) -> table::AxisMotion {
         self.table.motion(plant(axis), now_ns)
     }
 
     /// Advances the time: end switches and watchdog act.
     pub fn tick(&mut self, now_ns: u64) {
-        for axis in Axis::ALL {
+        for axis in TableAxis::ALL {
             let motion = self.motion(axis, now_ns);
             let outward =
                 motion.angle_rad.abs() > self.end_rad && motion.angle_rad * motion.rate_radps > 0.0;
@@ -118,29 +118,29 @@ impl Controller {
             && now_ns.saturating_sub(self.fed_ns) > silence
         {
             self.watchdog_ns = None;
-            for axis in Axis::ALL {
+            for axis in TableAxis::ALL {
                 self.fault[axis.index()] |= FAULT_WATCHDOG;
                 self.halt(axis, now_ns);
             }
         }
     }
 
-    fn halt(&mut self, axis: Axis, now_ns: u64) {
+    fn halt(&mut self, axis: TableAxis, now_ns: u64) {
         self.table.run_on(plant(axis), 0.0, now_ns);
     }
 
     /// Receives a line and returns its answer.
     pub fn line(&mut self, line: &str, now_ns: u64) -> Option<String> {
         self.tick(now_ns);
-        if line.is_empty() || self.behaviour == Behaviour::Deaf {
+        if line.is_empty() || self.behaviour == ControllerBehaviour::Deaf {
             return None;
         }
         self.log.push(line.into());
         let reply = self.understood(line, now_ns);
         match &self.behaviour {
-            Behaviour::Well => reply,
-            Behaviour::Nonsense(nonsense) => Some(nonsense.clone()),
-            Behaviour::Silent | Behaviour::Deaf | Behaviour::HangUp => None,
+            ControllerBehaviour::Well => reply,
+            ControllerBehaviour::Nonsense(nonsense) => Some(nonsense.clone()),
+            ControllerBehaviour::Silent | ControllerBehaviour::Deaf | ControllerBehaviour::HangUp => None,
         }
     }
 
@@ -148,7 +148,7 @@ impl Controller {
         for question in &self.dialect.status {
             let asked = question.send.read(line).and_then(|fields| self.dialect.read(&fields));
             if let Some(asked) = asked {
-                let axis = asked.axis.unwrap_or(Axis::Azimuth);
+                let axis = asked.axis.unwrap_or(TableAxis::Azimuth);
                 return question.reply.write(&self.dialect.write(&self.state(axis, now_ns)));
             }
         }
@@ -180,7 +180,7 @@ impl Controller {
     fn done(&mut self, command: Command, now_ns: u64) -> bool {
         let context = std::mem::take(&mut self.context);
         let axis = context.axis;
-        let ready = |axis: Axis| self.enabled[axis.index()] && self.fault[axis.index()] == 0;
+        let ready = |axis: TableAxis| self.enabled[axis.index()] && self.fault[axis.index()] == 0;
         match command {
             Command::Begin => true,
             Command::Enable => axis.is_some_and(|axis| {
@@ -205,7 +205,7 @@ impl Controller {
             },
             Command::Stop => {
                 // A language that stops both axes with one line names no axis.
-                for one in Axis::ALL {
+                for one in TableAxis::ALL {
                     if axis.is_none_or(|axis| axis == one) {
                         self.halt(one, now_ns);
                     }
@@ -227,7 +227,7 @@ impl Controller {
     }
 
     /// State of an axis.
-    fn state(&self, axis: Axis, now_ns: u64) -> Values {
+    fn state(&self, axis: TableAxis, now_ns: u64) -> Values {
         let motion = self.motion(axis, now_ns);
         let index = axis.index();
         let mut bits = 0;

@@ -1,8 +1,8 @@
 //! Simulated controllers at an address.
 
-use super::{Controller, Server};
+use super::{Controller, SimulatedServer};
 use crate::{Dialect, Error};
-use octant_plant::config::Turntable;
+use octant_plant::config::TurntableConfig;
 
 /// Angle of the table's end switches, in either direction, degrees: two turns.
 const END_DEG: f64 = 720.0;
@@ -13,9 +13,9 @@ const END_DEG: f64 = 720.0;
 ///
 /// # Errors
 /// If it can't listen there.
-pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
+pub fn listen(at: &str, dialect: Dialect) -> Result<(SimulatedServer, String), Error> {
     let degrees = f64::to_radians;
-    let config = Turntable {
+    let config = TurntableConfig {
         rate_radps: degrees(10.0),
         acceleration_radps2: degrees(10.0),
         encoder_sigma_rad: 0.0,
@@ -27,7 +27,7 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
     match at.split_once(':') {
         Some(("tcp", address)) => {
             let server =
-                Server::tcp(controller, address, 1.0).map_err(|error| failed(error.to_string()))?;
+                SimulatedServer::tcp(controller, address, 1.0).map_err(|error| failed(error.to_string()))?;
             let name =
                 server.address().map_or_else(|| at.to_owned(), |address| format!("tcp:{address}"));
             Ok((server, name))
@@ -38,7 +38,7 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
 }
 
 #[cfg(unix)]
-fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error> {
+fn on_pty(controller: Controller, link: &str) -> Result<(SimulatedServer, String), Error> {
     use serialport::SerialPort;
     let failed = |reason: String| Error::Listen { port: format!("pty:{link}"), reason };
     let (master, slave) = serialport::TTYPort::pair().map_err(|error| failed(error.to_string()))?;
@@ -50,12 +50,12 @@ fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error>
     std::os::unix::fs::symlink(&name, link)
         .map_err(|error| failed(format!("link to {name}: {error}")))?;
     let server =
-        Server::line(controller, master, 1.0).map_err(|error| failed(error.to_string()))?;
+        SimulatedServer::line(controller, master, 1.0).map_err(|error| failed(error.to_string()))?;
     Ok((server, format!("serial:{link}")))
 }
 
 #[cfg(not(unix))]
-fn on_pty(_: Controller, link: &str) -> Result<(Server, String), Error> {
+fn on_pty(_: Controller, link: &str) -> Result<(SimulatedServer, String), Error> {
     let reason = "there are no pseudo-terminals on this system".to_owned();
     Err(Error::Listen { port: format!("pty:{link}"), reason })
 }

@@ -3,12 +3,12 @@
 //!
 //! The simulation answers and refuses commands like a real controller, has limits of its own and a watchdog that
 //! stops the table when it isn't fed. On demand it misbehaves: it is silent, answers nonsense, or hangs
-//! up. [`Server`] puts it on a TCP port or a pseudo-terminal.
+//! up. [`SimulatedServer`] puts it on a TCP port or a pseudo-terminal.
 
 mod controller;
 mod listen;
 mod server;
 
-pub use controller::{Behaviour, Controller};
+pub use controller::{ControllerBehaviour, Controller};
 pub use listen::listen;
-pub use server::Server;
+pub use server::SimulatedServer;

@@ -1,7 +1,7 @@
 //! A simulated controller on a port.
 
-use super::{Behaviour, Controller};
-use crate::Port;
+use super::{ControllerBehaviour, Controller};
+use crate::TablePort;
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,13 +33,13 @@ impl Shared {
 }
 
 /// A simulated controller that listens, until it is dropped.
-pub struct Server {
+pub struct SimulatedServer {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
     address: Option<SocketAddr>,
 }
 
-impl Server {
+impl SimulatedServer {
     /// Listens on a TCP address, for one peer after the other; port 0 is any free one. `speed`: speed
     /// of the simulated time relative to real time.
     ///
@@ -71,7 +71,7 @@ impl Server {
     ///
     /// # Errors
     /// If the thread can't be started.
-    pub fn line(controller: Controller, port: impl Port + 'static, speed: f64) -> io::Result<Self> {
+    pub fn line(controller: Controller, port: impl TablePort + 'static, speed: f64) -> io::Result<Self> {
         let mut port = port;
         Self::start(controller, speed, None, move |shared: &Shared| {
             // A pseudo-terminal that nobody has open is gone until it is opened again. The table moves
@@ -126,7 +126,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
+impl Drop for SimulatedServer {
     fn drop(&mut self) {
         self.shared.ends.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
@@ -136,7 +136,7 @@ impl Drop for Server {
 }
 
 /// Serves one peer, until it leaves.
-fn serve(shared: &Shared, port: &mut impl Port) {
+fn serve(shared: &Shared, port: &mut impl TablePort) {
     let end = shared.controller().end().to_owned();
     if port.set_wait(WAIT).is_err() {
         return;
@@ -158,7 +158,7 @@ fn serve(shared: &Shared, port: &mut impl Port) {
             let mut controller = shared.controller();
             let now_ns = shared.now_ns();
             controller.tick(now_ns);
-            if *controller.behaviour() == Behaviour::HangUp {
+            if *controller.behaviour() == ControllerBehaviour::HangUp {
                 return;
             }
             let ends = |bytes: &[u8]| bytes.windows(end.len()).position(|w| w == end.as_bytes());

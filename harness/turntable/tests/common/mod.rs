@@ -1,8 +1,8 @@
 //! Shared parts of the tests.
 
-use octant_plant::config::Turntable as Config;
-use octant_turntable::simulate::{Controller, Server};
-use octant_turntable::{Axis, AxisLimits, Dialect, Driver, Limits, Port, Settings, open};
+use octant_plant::config::TurntableConfig as Config;
+use octant_turntable::simulate::{Controller, SimulatedServer};
+use octant_turntable::{TableAxis, AxisLimits, Dialect, Driver, TableLimits, TablePort, DriverSettings, open};
 use std::time::{Duration, Instant};
 
 /// An invented language: another end of line, degrees a minute, one status line without a rate, one
@@ -59,15 +59,15 @@ pub(crate) fn controller(dialect: Dialect) -> Controller {
     Controller::new(dialect, &config, degrees(400.0))
 }
 
-pub(crate) fn settings() -> Settings {
+pub(crate) fn settings() -> DriverSettings {
     let axis = AxisLimits {
         least_rad: degrees(-185.0),
         most_rad: degrees(365.0),
         rate_radps: degrees(20.0),
         acceleration_radps2: degrees(30.0),
     };
-    Settings {
-        limits: Limits { axes: [axis; 2] },
+    DriverSettings {
+        limits: TableLimits { axes: [axis; 2] },
         // Longer than a busy host takes; tests of a silent controller wait this long.
         reply_within: Duration::from_secs(5),
         watchdog: None,
@@ -75,18 +75,18 @@ pub(crate) fn settings() -> Settings {
 }
 
 /// Starts a simulated controller on TCP whose time is ten times as fast as real time.
-pub(crate) fn tcp(dialect: Dialect) -> (Server, String) {
+pub(crate) fn tcp(dialect: Dialect) -> (SimulatedServer, String) {
     tcp_at(dialect, 10.0)
 }
 
 /// Starts a simulated controller on TCP whose time is `speed` times as fast as real time.
-pub(crate) fn tcp_at(dialect: Dialect, speed: f64) -> (Server, String) {
-    let server = Server::tcp(controller(dialect), "127.0.0.1:0", speed).unwrap();
+pub(crate) fn tcp_at(dialect: Dialect, speed: f64) -> (SimulatedServer, String) {
+    let server = SimulatedServer::tcp(controller(dialect), "127.0.0.1:0", speed).unwrap();
     let name = format!("tcp:{}", server.address().unwrap());
     (server, name)
 }
 
-pub(crate) fn drive(name: &str, dialect: Dialect, settings: Settings) -> Driver<Box<dyn Port>> {
+pub(crate) fn drive(name: &str, dialect: Dialect, settings: DriverSettings) -> Driver<Box<dyn TablePort>> {
     Driver::new(open(name).unwrap(), name, dialect, settings).unwrap()
 }
 
@@ -100,16 +100,16 @@ pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
 }
 
 /// True if the simulated axis really turns.
-pub(crate) fn turns(server: &Server, axis: Axis) -> bool {
+pub(crate) fn turns(server: &SimulatedServer, axis: TableAxis) -> bool {
     server.with(|controller, now_ns| controller.motion(axis, now_ns).rate_radps != 0.0)
 }
 
 /// True if both simulated axes really rest.
-pub(crate) fn rests(server: &Server) -> bool {
-    Axis::ALL.iter().all(|axis| !turns(server, *axis))
+pub(crate) fn rests(server: &SimulatedServer) -> bool {
+    TableAxis::ALL.iter().all(|axis| !turns(server, *axis))
 }
 
 /// True angle of the simulated axis, degrees.
-pub(crate) fn angle(server: &Server, axis: Axis) -> f64 {
+pub(crate) fn angle(server: &SimulatedServer, axis: TableAxis) -> f64 {
     server.with(|controller, now_ns| controller.motion(axis, now_ns).angle_rad.to_degrees())
 }

@@ -2,7 +2,7 @@
 
 use super::style::SOFT;
 use crate::series::Series;
-use crate::state::State;
+use crate::state::RunState;
 use octant_base::number::{decimals_for, fixed};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -14,7 +14,7 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 /// A curve with its name.
 type Curve<'a> = (&'static str, &'a Series, Color, GraphType);
 
-pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
+pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let drift = [
         ("latitude", &state.latitude, Color::Cyan, GraphType::Line),
         ("longitude", &state.longitude, Color::Magenta, GraphType::Line),

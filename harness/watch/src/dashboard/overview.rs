@@ -5,7 +5,7 @@ use super::stage::stage;
 use super::style::{ACTS, ALERT, GOOD, SOFT, row};
 use crate::follow::{Follow, Stage};
 use crate::plain;
-use crate::state::{Drift, State};
+use crate::state::{SolutionError, RunState};
 use octant_base::number::fixed;
 use octant_sample::Mode;
 use ratatui::Frame;
@@ -47,7 +47,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     }
 }
 
-fn draw_core(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn draw_core(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let mut lines = vec![row("mode", plain::mode(state))];
     let since = state.time_ns.saturating_sub(state.mode_since_ns);
     lines.push(row("for", state.mode().map_or_else(|| "–".to_owned(), |_| plain::time(since))));
@@ -78,7 +78,7 @@ fn draw_core(frame: &mut Frame<'_>, area: Rect, state: &State) {
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(" Core ")), area);
 }
 
-fn draw_position(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn draw_position(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let mut lines = Vec::new();
     match &state.output {
         Some(output) => {
@@ -107,7 +107,7 @@ fn draw_position(frame: &mut Frame<'_>, area: Rect, state: &State) {
     frame.render_widget(Paragraph::new(lines).block(block), area);
 }
 
-fn drift_table(drift: Drift, state: &State) -> [Line<'static>; 4] {
+fn drift_table(drift: SolutionError, state: &RunState) -> [Line<'static>; 4] {
     let mode = state.largest_while.map_or("", Mode::name);
     let head = format!("{:10}{:>10}{:>25}", "error", "now", format!("largest, {mode}"));
     let one = |name: &str, now: f64, largest: f64, unit: &str| {
@@ -126,7 +126,7 @@ fn row_owned(name: &str, value: String) -> Line<'static> {
     Line::from(vec![Span::styled(format!("{name:10}"), SOFT), Span::raw(value)])
 }
 
-fn draw_faults(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn draw_faults(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let fired = state.faults.iter().filter(|fault| fault.firings > 0).count();
     let title = match state.faults.len() {
         0 => " Faults ".to_owned(),
@@ -157,7 +157,7 @@ fn draw_faults(frame: &mut Frame<'_>, area: Rect, state: &State) {
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(title)), area);
 }
 
-fn draw_pace(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn draw_pace(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let mut lines = Vec::new();
     let count = |n: u64| Span::styled(n.to_string(), if n > 0 { ALERT } else { Style::new() });
     if let Some(pace) = state.pace {

@@ -2,11 +2,11 @@
 
 use super::style::{ALERT, SOFT};
 use crate::plain;
-use crate::state::State;
+use crate::state::RunState;
 use octant_base::number::{decimals_for, fixed};
 use octant_sample::Parameters;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{ParameterGroup, NAMES};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -16,7 +16,7 @@ use ratatui::widgets::{Block, Paragraph};
 /// Error, in σ, beyond which a parameter is marked.
 const BEYOND_SIGMA: f64 = 3.0;
 
-pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
+pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let block = Block::bordered();
     let Some((ns, estimate)) = &state.parameters else {
         let line = Line::styled("none yet", SOFT);
@@ -28,7 +28,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
         title += &format!("· {} ", beyond(estimate, truth));
     }
     let mut lines = Vec::new();
-    for group in Group::ALL {
+    for group in ParameterGroup::ALL {
         let indices: Vec<usize> = group.range().collect();
         for (k, three) in indices.chunks(3).enumerate() {
             let name = if k == 0 { name(group) } else { "" };
@@ -46,7 +46,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
 /// Renders axis, value and σ in twenty-five columns.
 fn one(
     i: usize,
-    group: Group,
+    group: ParameterGroup,
     estimate: &ParameterEstimate,
     truth: Option<&Parameters>,
 ) -> [Span<'static>; 3] {
@@ -84,21 +84,21 @@ fn beyond(estimate: &ParameterEstimate, truth: &Parameters) -> String {
 }
 
 /// Returns the unit, as customary in the field.
-const fn unit(group: Group) -> &'static str {
+const fn unit(group: ParameterGroup) -> &'static str {
     match group {
-        Group::AccelBias => "µg",
+        ParameterGroup::AccelBias => "µg",
         other => other.unit(),
     }
 }
 
-const fn name(group: Group) -> &'static str {
+const fn name(group: ParameterGroup) -> &'static str {
     match group {
-        Group::GyroBias => "gyro bias",
-        Group::GyroScale => "gyro scale",
-        Group::GyroMisalignment => "gyro misal.",
-        Group::GDependent => "g-dependent",
-        Group::AccelBias => "accel. bias",
-        Group::AccelScale => "accel. scale",
-        Group::AccelMisalignment => "accel. misal.",
+        ParameterGroup::GyroBias => "gyro bias",
+        ParameterGroup::GyroScale => "gyro scale",
+        ParameterGroup::GyroMisalignment => "gyro misal.",
+        ParameterGroup::GDependent => "g-dependent",
+        ParameterGroup::AccelBias => "accel. bias",
+        ParameterGroup::AccelScale => "accel. scale",
+        ParameterGroup::AccelMisalignment => "accel. misal.",
     }
 }

@@ -1,22 +1,22 @@
 //! The CAN database (DBC): every frame and signal, for any tool that reads such files.
 
-use super::{Format, Slot};
-use crate::layout::{self, Field, Type, image_at};
-use crate::message::{Kind, Role, SEGMENT_VALUES};
+use super::{CanVersion, Slot};
+use crate::layout::{self, Field, FieldType, image_at};
+use crate::message::{MessageKind, EndRole, SEGMENT_VALUES};
 use core::fmt::{Result, Write};
 use octant_sample::parameters::NAMES;
 
 /// Name of a sender as a node.
-const fn node(role: Role) -> &'static str {
+const fn node(role: EndRole) -> &'static str {
     match role {
-        Role::Harness => "Harness",
-        Role::Device => "Device",
-        Role::Instrument => "Instrument",
+        EndRole::Harness => "Harness",
+        EndRole::Device => "Device",
+        EndRole::Instrument => "Instrument",
     }
 }
 
 /// Name of a message's frame: `HarnessSample_0`, in FD `HarnessSampleFd_0`.
-fn message_name(w: &mut impl Write, slot: Slot, segment: usize, format: Format) -> Result {
+fn message_name(w: &mut impl Write, slot: Slot, segment: usize, format: CanVersion) -> Result {
     w.write_str(node(slot.sender))?;
     for word in slot.kind.name().split('_') {
         let mut letters = word.chars();
@@ -25,10 +25,10 @@ fn message_name(w: &mut impl Write, slot: Slot, segment: usize, format: Format) 
             w.write_str(letters.as_str())?;
         }
     }
-    if slot.kind == Kind::Parameters {
+    if slot.kind == MessageKind::Parameters {
         write!(w, "{}", slot.parameters)?;
     }
-    let fd = if format == Format::Fd { "Fd" } else { "" };
+    let fd = if format == CanVersion::Fd { "Fd" } else { "" };
     write!(w, "{fd}_{segment}")
 }
 
@@ -76,8 +76,8 @@ fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -
         name: field.name,
         bit: 8 * image_at(field.at),
         bits: 8 * field.ty.bytes(),
-        signed: field.ty == Type::I32,
-        float: field.ty == Type::F64,
+        signed: field.ty == FieldType::I32,
+        float: field.ty == FieldType::F64,
         factor: field.lsb,
         unit: field.unit,
         values: field.values,
@@ -85,17 +85,17 @@ fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -
         ..CRC
     };
     match field.ty {
-        Type::Zero(_) => Ok(()),
-        Type::Step(flag) => {
+        FieldType::Zero(_) => Ok(()),
+        FieldType::Step(flag) => {
             each(&Signal { bits: 15, ..signal })?;
             let Some(name) = flag else { return Ok(()) };
             each(&Signal { name, bit: signal.bit + 15, bits: 1, about: "", ..signal })
         }
         // Eight bytes at a time: the most that one frame holds.
-        Type::Bytes(bytes) | Type::Text(bytes) => (0..bytes / 8).try_for_each(|part| {
+        FieldType::Bytes(bytes) | FieldType::Text(bytes) => (0..bytes / 8).try_for_each(|part| {
             each(&Signal { part: Some(part), bit: signal.bit + 64 * part, bits: 64, ..signal })
         }),
-        Type::F64 if slot.kind == Kind::Parameters => {
+        FieldType::F64 if slot.kind == MessageKind::Parameters => {
             // Each parameter has its own name: the estimates come first, then their σ.
             let number = (field.at - 12) / 8;
             let index = SEGMENT_VALUES * usize::from(slot.parameters) + number % SEGMENT_VALUES;
@@ -111,7 +111,7 @@ fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -
 fn frame_signals(
     slot: Slot,
     segment: usize,
-    format: Format,
+    format: CanVersion,
     each: &mut dyn FnMut(&Signal, usize) -> Result,
 ) -> Result {
     let room = 8 * format.room();
@@ -125,8 +125,8 @@ fn frame_signals(
 }
 
 /// Calls `each` with every frame of both formats.
-fn frames(each: &mut dyn FnMut(Slot, usize, Format) -> Result) -> Result {
-    for format in [Format::Classic, Format::Fd] {
+fn frames(each: &mut dyn FnMut(Slot, usize, CanVersion) -> Result) -> Result {
+    for format in [CanVersion::Classic, CanVersion::Fd] {
         for slot in Slot::ALL {
             for segment in 0..slot.segments(format) {
                 each(slot, segment, format)?;
@@ -145,17 +145,17 @@ pub fn write(w: &mut impl Write) -> Result {
     writeln!(
         w,
         "BU_: {} {} {}\n",
-        node(Role::Harness),
-        node(Role::Device),
-        node(Role::Instrument)
+        node(EndRole::Harness),
+        node(EndRole::Device),
+        node(EndRole::Instrument)
     )?;
     frames(&mut |slot, segment, format| {
         write!(w, "BO_ {} ", slot.id(segment, format))?;
         message_name(w, slot, segment, format)?;
         writeln!(w, ": {} {}", slot.frame_bytes(segment, format), node(slot.sender))?;
         let receiver = match slot.sender {
-            Role::Harness => "Device,Instrument",
-            Role::Device | Role::Instrument => "Harness",
+            EndRole::Harness => "Device,Instrument",
+            EndRole::Device | EndRole::Instrument => "Harness",
         };
         frame_signals(slot, segment, format, &mut |signal, bit| {
             write!(w, " SG_ ")?;
@@ -187,9 +187,9 @@ fn comments(w: &mut impl Write) -> Result {
          bits 4 to 0 segment. A bus has one of the two formats. Made by octant-wire.\";"
     )?;
     for (role, about) in [
-        (Role::Harness, "tests: sends samples, gets outputs"),
-        (Role::Device, "is tested: gets samples, answers with outputs"),
-        (Role::Instrument, "an inertial unit: sends samples on its own"),
+        (EndRole::Harness, "tests: sends samples, gets outputs"),
+        (EndRole::Device, "is tested: gets samples, answers with outputs"),
+        (EndRole::Instrument, "an inertial unit: sends samples on its own"),
     ] {
         writeln!(w, "CM_ BU_ {} \"{about}\";", node(role))?;
     }
@@ -217,8 +217,8 @@ fn attributes(w: &mut impl Write) -> Result {
     writeln!(w, "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";")?;
     writeln!(w, "BA_ \"BusType\" \"CAN FD\";")?;
     frames(&mut |slot, segment, format| match format {
-        Format::Classic => Ok(()),
-        Format::Fd => {
+        CanVersion::Classic => Ok(()),
+        CanVersion::Fd => {
             writeln!(w, "BA_ \"VFrameFormat\" BO_ {} 14;", slot.id(segment, format))
         }
     })

@@ -2,14 +2,14 @@
 
 /// Version of CAN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
+pub enum CanVersion {
     /// Classic CAN, up to 8 bytes.
     Classic,
     /// CAN FD, up to 64 bytes.
     Fd,
 }
 
-impl Format {
+impl CanVersion {
     /// Most bytes of data in a frame.
     #[must_use]
     pub const fn room(self) -> usize {
@@ -41,18 +41,18 @@ impl Format {
 /// A data frame with an identifier of 11 bits. Remote frames, error frames and frames with 29 bits are
 /// not part of the protocol: the caller who takes frames from a bus drops them.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Frame {
+pub struct BusFrame {
     id: u16,
-    format: Format,
+    format: CanVersion,
     length: u8,
     data: [u8; 64],
 }
 
-impl Frame {
+impl BusFrame {
     /// Makes a frame from data of a bus. `None` if no data frame with an 11-bit identifier can be like
     /// that: the identifier is beyond 0x7FF, or the format doesn't have the length.
     #[must_use]
-    pub fn new(id: u16, format: Format, data: &[u8]) -> Option<Self> {
+    pub fn new(id: u16, format: CanVersion, data: &[u8]) -> Option<Self> {
         let length = data.len();
         if id > 0x7FF || length > format.room() || format.length_for(length) != length {
             return None;
@@ -70,7 +70,7 @@ impl Frame {
 
     /// Format.
     #[must_use]
-    pub fn format(&self) -> Format {
+    pub fn format(&self) -> CanVersion {
         self.format
     }
 
@@ -81,13 +81,13 @@ impl Frame {
     }
 }
 
-impl core::fmt::Debug for Frame {
+impl core::fmt::Debug for BusFrame {
     /// Writes the frame in the form of `cansend`.
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let mark = match self.format {
-            Format::Classic => "#",
+            CanVersion::Classic => "#",
             // Flag of the bit rate switch.
-            Format::Fd => "##1",
+            CanVersion::Fd => "##1",
         };
         write!(f, "{:03X}{mark}", self.id)?;
         self.data().iter().try_for_each(|byte| write!(f, "{byte:02X}"))

@@ -4,8 +4,8 @@
 //! one after the first five bits and then one after each four, because a stuff bit is the first of the
 //! next five.
 
-use super::{Format, Slot};
-use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
+use super::{CanVersion, Slot};
+use crate::message::{MessageKind, PARAMETERS_SEGMENTS, EndRole};
 use crate::traffic::Traffic;
 
 /// Bits of a frame by the rate at which they are sent, with the three bits of intermission after it.
@@ -67,7 +67,7 @@ pub struct Bus {
 
 /// Share of a bus that traffic takes in the worst case; 1 is all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
+pub struct BusLoad {
     /// Share of the harness's messages.
     pub from_harness: f64,
     /// Share of the other ends' messages.
@@ -76,7 +76,7 @@ pub struct Load {
     pub frames_per_s: f64,
 }
 
-impl Load {
+impl BusLoad {
     /// Share in both directions: they have the bus in common.
     #[must_use]
     pub fn share(&self) -> f64 {
@@ -98,7 +98,7 @@ pub struct Overload {
     /// Traffic to carry.
     pub traffic: Traffic,
     /// Load that the traffic would make.
-    pub load: Load,
+    pub load: BusLoad,
     /// Highest permitted share.
     pub limit: f64,
     /// Highest sample rate that the bus carries with the same other traffic, Hz.
@@ -144,8 +144,8 @@ impl Bus {
 
     /// Format of the frames.
     #[must_use]
-    pub const fn format(self) -> Format {
-        if self.data_bps.is_some() { Format::Fd } else { Format::Classic }
+    pub const fn format(self) -> CanVersion {
+        if self.data_bps.is_some() { CanVersion::Fd } else { CanVersion::Classic }
     }
 
     /// Duration of the frames of a message in the worst case, s; for parameters, of one segment.
@@ -156,8 +156,8 @@ impl Bus {
         for segment in 0..slot.segments(format) {
             let bytes = slot.frame_bytes(segment, format);
             let bits = match format {
-                Format::Classic => classic_bits(bytes),
-                Format::Fd => fd_bits(bytes),
+                CanVersion::Classic => classic_bits(bytes),
+                CanVersion::Fd => fd_bits(bytes),
             };
             seconds += bits.seconds(self);
         }
@@ -166,15 +166,15 @@ impl Bus {
 
     /// Load of the traffic in the worst case.
     #[must_use]
-    pub fn load(self, traffic: &Traffic) -> Load {
-        let mut load = Load { from_harness: 0.0, to_harness: 0.0, frames_per_s: 0.0 };
+    pub fn load(self, traffic: &Traffic) -> BusLoad {
+        let mut load = BusLoad { from_harness: 0.0, to_harness: 0.0, frames_per_s: 0.0 };
         for (role, kind, rate_hz) in traffic.messages() {
-            let messages = if kind == Kind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
+            let messages = if kind == MessageKind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
             for parameters in 0..messages {
                 let Some(slot) = Slot::of(role, kind, parameters as u8) else { continue };
                 let way = match role {
-                    Role::Harness => &mut load.from_harness,
-                    Role::Device | Role::Instrument => &mut load.to_harness,
+                    EndRole::Harness => &mut load.from_harness,
+                    EndRole::Device | EndRole::Instrument => &mut load.to_harness,
                 };
                 *way += rate_hz * self.seconds(slot);
                 load.frames_per_s += rate_hz * slot.segments(self.format()) as f64;
@@ -187,7 +187,7 @@ impl Bus {
     ///
     /// # Errors
     /// If the load is higher, with the sample rate that the bus carries.
-    pub fn carry(self, traffic: &Traffic, limit: f64) -> Result<Load, Overload> {
+    pub fn carry(self, traffic: &Traffic, limit: f64) -> Result<BusLoad, Overload> {
         let load = self.load(traffic);
         if load.share() <= limit {
             return Ok(load);

@@ -5,13 +5,13 @@
 //! The CRC detects segments of two different messages.
 
 use super::segments::checksum;
-use super::{Format, Frame, Slot};
-use crate::message::{Kind, MAX_PAYLOAD_BYTES, Message, Role};
+use super::{CanVersion, BusFrame, Slot};
+use crate::message::{MessageKind, MAX_PAYLOAD_BYTES, Message, EndRole};
 use crate::{Unreadable, VERSION};
 
 /// Cause of a dropped message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Cause {
+pub enum DropCause {
     /// Number of missing segments.
     #[error("{0} segments are missing")]
     Missing(u8),
@@ -44,31 +44,31 @@ pub enum Cause {
 
 /// A message that was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lost {
+pub struct DroppedMessage {
     /// Sender and kind of the message.
     pub slot: Slot,
     /// Cause.
-    pub cause: Cause,
+    pub cause: DropCause,
 }
 
 /// Fate of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
-pub enum Event {
+pub enum ReassemblyEvent {
     /// The message is complete.
     Received {
         /// Sender.
-        sender: Role,
+        sender: EndRole,
         /// The message.
         message: Message,
     },
     /// The message was dropped.
-    Lost(Lost),
+    Lost(DroppedMessage),
 }
 
 /// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
+pub struct CanTraffic {
     /// All frames.
     pub frames: u64,
     /// Frames not addressed to this end: other identifiers, the other format, other senders.
@@ -93,7 +93,7 @@ pub struct Counters {
     pub unreadable: u64,
 }
 
-impl Counters {
+impl CanTraffic {
     /// True if nothing was lost, damaged or repeated. Foreign frames are allowed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
@@ -126,28 +126,28 @@ impl Progress {
 pub struct Reassembler {
     /// Senders that are listened to; a bit for each role.
     senders: u8,
-    pub(super) format: Format,
+    pub(super) format: CanVersion,
     pub(super) progress: [Progress; Slot::ALL.len()],
     pub(super) images: [u8; Slot::ALL_IMAGES_BYTES],
-    pub(super) counters: Counters,
+    pub(super) counters: CanTraffic,
 }
 
 impl Reassembler {
     /// Makes a reassembler for frames of one format from these senders; all others are foreign.
     #[must_use]
-    pub fn new(senders: &[Role], format: Format) -> Self {
+    pub fn new(senders: &[EndRole], format: CanVersion) -> Self {
         Self {
             senders: senders.iter().fold(0, |bits, role| bits | 1 << (*role as u8)),
             format,
             progress: [Progress::default(); Slot::ALL.len()],
             images: [0; Slot::ALL_IMAGES_BYTES],
-            counters: Counters::default(),
+            counters: CanTraffic::default(),
         }
     }
 
     /// Counts of the traffic so far.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
+    pub fn counters(&self) -> &CanTraffic {
         &self.counters
     }
 
@@ -163,7 +163,7 @@ impl Reassembler {
     }
 
     /// Takes a frame. Returns the fate of a message once it is decided.
-    pub fn receive(&mut self, frame: &Frame) -> Option<Event> {
+    pub fn receive(&mut self, frame: &BusFrame) -> Option<ReassemblyEvent> {
         self.counters.frames += 1;
         let known = Slot::of_id(frame.id()).filter(|(slot, _, format)| {
             *format == self.format && self.senders & 1 << (slot.sender as u8) != 0
@@ -176,19 +176,19 @@ impl Reassembler {
             Ok(None) => None,
             Ok(Some(message)) => {
                 self.counters.messages += 1;
-                Some(Event::Received { sender: slot.sender, message })
+                Some(ReassemblyEvent::Received { sender: slot.sender, message })
             }
             Err(cause) => {
                 let counters = &mut self.counters;
                 match cause {
-                    Cause::Missing(count) => counters.missing += u64::from(count),
-                    Cause::Disordered => counters.disordered += 1,
-                    Cause::Incomplete => counters.incomplete += 1,
-                    Cause::Mixed { .. } => counters.mixed += 1,
-                    Cause::Malformed { .. } => counters.malformed += 1,
-                    Cause::Unreadable(_) => counters.unreadable += 1,
+                    DropCause::Missing(count) => counters.missing += u64::from(count),
+                    DropCause::Disordered => counters.disordered += 1,
+                    DropCause::Incomplete => counters.incomplete += 1,
+                    DropCause::Mixed { .. } => counters.mixed += 1,
+                    DropCause::Malformed { .. } => counters.malformed += 1,
+                    DropCause::Unreadable(_) => counters.unreadable += 1,
                 }
-                Some(Event::Lost(Lost { slot, cause }))
+                Some(ReassemblyEvent::Lost(DroppedMessage { slot, cause }))
             }
         }
     }
@@ -197,9 +197,9 @@ impl Reassembler {
         &mut self,
         slot: Slot,
         segment: usize,
-        format: Format,
-        frame: &Frame,
-    ) -> Result<Option<Message>, Cause> {
+        format: CanVersion,
+        frame: &BusFrame,
+    ) -> Result<Option<Message>, DropCause> {
         let count = slot.segments(format);
         let at = segment * format.room();
         let end = slot.image_bytes().min(at + format.room());
@@ -207,12 +207,12 @@ impl Reassembler {
         let image = &mut self.images[slot.offset()..][..slot.image_bytes()];
         let data = frame.data();
 
-        if let (Kind::Hello, 0, Some(version)) = (slot.kind, segment, data.first_chunk::<2>()) {
+        if let (MessageKind::Hello, 0, Some(version)) = (slot.kind, segment, data.first_chunk::<2>()) {
             let found = u16::from_le_bytes(*version);
             // Only the version of a newer hello is known.
             if found > VERSION {
                 *progress = Progress::DROPPED;
-                return Err(Cause::Unreadable(Unreadable::NewerVersion { found }));
+                return Err(DropCause::Unreadable(Unreadable::NewerVersion { found }));
             }
         }
         let expected = slot.frame_bytes(segment, format);
@@ -220,7 +220,7 @@ impl Reassembler {
         if data.len() != expected || behind.iter().any(|byte| *byte != 0) {
             *progress = Progress::DROPPED;
             let [found, expected] = [data.len(), expected].map(|bytes| bytes as u8);
-            return Err(Cause::Malformed { found, expected });
+            return Err(DropCause::Malformed { found, expected });
         }
         // Repetition counts for messages of several segments only: a message of one may well be the
         // same again.
@@ -234,7 +234,7 @@ impl Reassembler {
             *progress = Progress { held: 1, dropped: false };
             image[at..end].copy_from_slice(here);
             if incomplete {
-                return Err(Cause::Incomplete);
+                return Err(DropCause::Incomplete);
             }
         } else {
             if progress.dropped {
@@ -245,11 +245,11 @@ impl Reassembler {
             let held = if progress.held == count { 0 } else { progress.held };
             if segment > held {
                 *progress = Progress::DROPPED;
-                return Err(Cause::Missing((segment - held) as u8));
+                return Err(DropCause::Missing((segment - held) as u8));
             }
             if segment < held {
                 *progress = Progress::DROPPED;
-                return Err(Cause::Disordered);
+                return Err(DropCause::Disordered);
             }
             progress.held += 1;
             image[at..end].copy_from_slice(here);
@@ -262,7 +262,7 @@ impl Reassembler {
 }
 
 /// Reads the message of a complete image.
-fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
+fn read(slot: Slot, image: &[u8]) -> Result<Message, DropCause> {
     let mut payload = [0; MAX_PAYLOAD_BYTES];
     let payload = &mut payload[..slot.kind.payload_bytes()];
     payload[..4].copy_from_slice(&image[..4]);
@@ -270,9 +270,9 @@ fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
     let crc = image[4..].first_chunk().copied().unwrap_or_default();
     let (found, computed) = (u32::from_le_bytes(crc), checksum(slot, payload));
     if found != computed {
-        return Err(Cause::Mixed { found, computed });
+        return Err(DropCause::Mixed { found, computed });
     }
-    let message = Message::read(slot.kind, payload).map_err(Cause::Unreadable)?;
+    let message = Message::read(slot.kind, payload).map_err(DropCause::Unreadable)?;
     // The identifier must agree with the content of the message.
     let contradiction = match message {
         Message::Hello(hello) if hello.role != slot.sender => {
@@ -284,7 +284,7 @@ fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
         _ => None,
     };
     match contradiction {
-        Some((field, found, expected)) => Err(Cause::Unreadable(Unreadable::Value {
+        Some((field, found, expected)) => Err(DropCause::Unreadable(Unreadable::Value {
             kind: slot.kind,
             field,
             found: found.into(),

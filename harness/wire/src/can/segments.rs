@@ -1,17 +1,17 @@
 //! Division of messages into CAN frames.
 
-use super::{Format, Frame, MAX_IMAGE_BYTES, Slot};
+use super::{CanVersion, BusFrame, MAX_IMAGE_BYTES, Slot};
 use crate::checksum::crc32_after;
-use crate::message::{Kind, MAX_PAYLOAD_BYTES, Message, Role};
+use crate::message::{MessageKind, MAX_PAYLOAD_BYTES, Message, EndRole};
 
 /// Error of a message that its sender has no identifier for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a {} sends no message {} on CAN", sender.name(), kind.name())]
 pub struct NotSent {
     /// The sender.
-    pub sender: Role,
+    pub sender: EndRole,
     /// The message.
-    pub kind: Kind,
+    pub kind: MessageKind,
 }
 
 /// CRC of a message: over its slot number and its payload.
@@ -24,7 +24,7 @@ pub(super) fn checksum(slot: Slot, payload: &[u8]) -> u32 {
 #[derive(Clone, Debug)]
 pub struct Segments {
     slot: Slot,
-    format: Format,
+    format: CanVersion,
     next: usize,
     image: [u8; MAX_IMAGE_BYTES],
 }
@@ -33,7 +33,7 @@ pub struct Segments {
 ///
 /// # Errors
 /// If the sender sends no such message.
-pub fn segments(message: &Message, sender: Role, format: Format) -> Result<Segments, NotSent> {
+pub fn segments(message: &Message, sender: EndRole, format: CanVersion) -> Result<Segments, NotSent> {
     let kind = message.kind();
     let parameters = if let Message::Parameters(segment) = message { segment.segment } else { 0 };
     let slot = Slot::of(sender, kind, parameters).ok_or(NotSent { sender, kind })?;
@@ -49,9 +49,9 @@ pub fn segments(message: &Message, sender: Role, format: Format) -> Result<Segme
 }
 
 impl Iterator for Segments {
-    type Item = Frame;
+    type Item = BusFrame;
 
-    fn next(&mut self) -> Option<Frame> {
+    fn next(&mut self) -> Option<BusFrame> {
         let segment = self.next;
         if segment >= self.slot.segments(self.format) {
             return None;
@@ -62,7 +62,7 @@ impl Iterator for Segments {
         let mut data = [0; 64];
         data[..here].copy_from_slice(&self.image[at..at + here]);
         let length = self.slot.frame_bytes(segment, self.format);
-        Frame::new(self.slot.id(segment, self.format), self.format, &data[..length])
+        BusFrame::new(self.slot.id(segment, self.format), self.format, &data[..length])
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -4,8 +4,8 @@
 //! one sender; a lower one wins the bus. Slots 0 and 31 stay free: 0 for frames that must win over all
 //! others, and 31 because identifiers that begin with seven ones are not allowed on every bus.
 
-use super::{Format, MAX_IMAGE_BYTES};
-use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
+use super::{CanVersion, MAX_IMAGE_BYTES};
+use crate::message::{MessageKind, PARAMETERS_SEGMENTS, EndRole};
 
 /// A message of one sender; of parameters, each segment is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,50 +13,50 @@ pub struct Slot {
     /// Slot number, 1 to 28.
     pub number: u8,
     /// Sender.
-    pub sender: Role,
+    pub sender: EndRole,
     /// Kind of the message.
-    pub kind: Kind,
+    pub kind: MessageKind,
     /// Segment of the parameters; 0 for other kinds.
     pub parameters: u8,
 }
 
-const fn slot(number: u8, sender: Role, kind: Kind) -> Slot {
+const fn slot(number: u8, sender: EndRole, kind: MessageKind) -> Slot {
     Slot { number, sender, kind, parameters: 0 }
 }
 
 const fn sixth(parameters: u8) -> Slot {
-    Slot { number: 23 + parameters, sender: Role::Device, kind: Kind::Parameters, parameters }
+    Slot { number: 23 + parameters, sender: EndRole::Device, kind: MessageKind::Parameters, parameters }
 }
 
 const SLOTS: usize = 22 + PARAMETERS_SEGMENTS;
 
-use Role::{Device, Harness, Instrument};
+use EndRole::{Device, Harness, Instrument};
 
 impl Slot {
     /// All slots, in order of priority.
     pub const ALL: [Self; SLOTS] = [
-        slot(1, Harness, Kind::Bye),
-        slot(2, Device, Kind::Bye),
-        slot(3, Instrument, Kind::Bye),
-        slot(4, Harness, Kind::TimeRequest),
-        slot(5, Device, Kind::TimeReply),
-        slot(6, Instrument, Kind::TimeReply),
-        slot(7, Instrument, Kind::Aiding),
-        slot(8, Instrument, Kind::Sample),
-        slot(9, Harness, Kind::Aiding),
-        slot(10, Harness, Kind::Sample),
-        slot(11, Harness, Kind::Restart),
-        slot(12, Harness, Kind::End),
-        slot(13, Device, Kind::Output),
-        slot(14, Device, Kind::Ready),
-        slot(15, Harness, Kind::Hello),
-        slot(16, Device, Kind::Hello),
-        slot(17, Instrument, Kind::Hello),
-        slot(18, Harness, Kind::Heartbeat),
-        slot(19, Device, Kind::Heartbeat),
-        slot(20, Instrument, Kind::Heartbeat),
-        slot(21, Device, Kind::Status),
-        slot(22, Instrument, Kind::Status),
+        slot(1, Harness, MessageKind::Bye),
+        slot(2, Device, MessageKind::Bye),
+        slot(3, Instrument, MessageKind::Bye),
+        slot(4, Harness, MessageKind::TimeRequest),
+        slot(5, Device, MessageKind::TimeReply),
+        slot(6, Instrument, MessageKind::TimeReply),
+        slot(7, Instrument, MessageKind::Aiding),
+        slot(8, Instrument, MessageKind::Sample),
+        slot(9, Harness, MessageKind::Aiding),
+        slot(10, Harness, MessageKind::Sample),
+        slot(11, Harness, MessageKind::Restart),
+        slot(12, Harness, MessageKind::End),
+        slot(13, Device, MessageKind::Output),
+        slot(14, Device, MessageKind::Ready),
+        slot(15, Harness, MessageKind::Hello),
+        slot(16, Device, MessageKind::Hello),
+        slot(17, Instrument, MessageKind::Hello),
+        slot(18, Harness, MessageKind::Heartbeat),
+        slot(19, Device, MessageKind::Heartbeat),
+        slot(20, Instrument, MessageKind::Heartbeat),
+        slot(21, Device, MessageKind::Status),
+        slot(22, Instrument, MessageKind::Status),
         sixth(0),
         sixth(1),
         sixth(2),
@@ -67,8 +67,8 @@ impl Slot {
 
     /// Slot of a message, if its sender sends such messages.
     #[must_use]
-    pub fn of(sender: Role, kind: Kind, parameters: u8) -> Option<Self> {
-        let parameters = if kind == Kind::Parameters { parameters } else { 0 };
+    pub fn of(sender: EndRole, kind: MessageKind, parameters: u8) -> Option<Self> {
+        let parameters = if kind == MessageKind::Parameters { parameters } else { 0 };
         Self::ALL
             .iter()
             .find(|slot| (slot.sender, slot.kind, slot.parameters) == (sender, kind, parameters))
@@ -77,8 +77,8 @@ impl Slot {
 
     /// Slot, segment and format of an identifier.
     #[must_use]
-    pub fn of_id(id: u16) -> Option<(Self, usize, Format)> {
-        let format = if id & 0x400 == 0 { Format::Classic } else { Format::Fd };
+    pub fn of_id(id: u16) -> Option<(Self, usize, CanVersion)> {
+        let format = if id & 0x400 == 0 { CanVersion::Classic } else { CanVersion::Fd };
         let slot = Self::ALL.get(usize::from(id >> 5 & 0x1F).checked_sub(1)?)?;
         let segment = usize::from(id & 0x1F);
         (id <= 0x7FF && segment < slot.segments(format)).then_some((*slot, segment, format))
@@ -86,10 +86,10 @@ impl Slot {
 
     /// Identifier of a segment.
     #[must_use]
-    pub const fn id(self, segment: usize, format: Format) -> u16 {
+    pub const fn id(self, segment: usize, format: CanVersion) -> u16 {
         let format = match format {
-            Format::Classic => 0,
-            Format::Fd => 0x400,
+            CanVersion::Classic => 0,
+            CanVersion::Fd => 0x400,
         };
         format | (self.number as u16) << 5 | (segment as u16 & 0x1F)
     }
@@ -102,13 +102,13 @@ impl Slot {
 
     /// Number of segments of the image.
     #[must_use]
-    pub const fn segments(self, format: Format) -> usize {
+    pub const fn segments(self, format: CanVersion) -> usize {
         self.image_bytes().div_ceil(format.room())
     }
 
     /// Length of a segment's frame; bytes after the image are zero.
     #[must_use]
-    pub const fn frame_bytes(self, segment: usize, format: Format) -> usize {
+    pub const fn frame_bytes(self, segment: usize, format: CanVersion) -> usize {
         let left = self.image_bytes().saturating_sub(segment * format.room());
         format.length_for(left)
     }
@@ -138,7 +138,7 @@ const _: () = {
     while i < SLOTS {
         assert!(Slot::ALL[i].number as usize == i + 1, "slots are numbered in order, from 1");
         assert!(Slot::ALL[i].image_bytes() <= MAX_IMAGE_BYTES, "the longest image is the longest");
-        assert!(Slot::ALL[i].segments(Format::Classic) <= 32, "five bits number the segments");
+        assert!(Slot::ALL[i].segments(CanVersion::Classic) <= 32, "five bits number the segments");
         i += 1;
     }
 };
@@ -149,13 +149,13 @@ mod tests {
 
     #[test]
     fn every_sender_has_a_slot_for_what_it_sends_and_for_nothing_else() {
-        for kind in Kind::ALL {
-            for role in Role::ALL {
+        for kind in MessageKind::ALL {
+            for role in EndRole::ALL {
                 let slot = Slot::of(role, kind, 0);
                 assert_eq!(slot.is_some(), kind.senders().contains(&role), "{role:?} {kind:?}");
             }
         }
-        assert_eq!(Slot::of(Role::Device, Kind::Parameters, 6), None);
+        assert_eq!(Slot::of(EndRole::Device, MessageKind::Parameters, 6), None);
     }
 
     #[test]
@@ -168,17 +168,17 @@ mod tests {
             }
         }
         let frames = |format| Slot::ALL.iter().map(|slot| slot.segments(format)).sum::<usize>();
-        assert_eq!(found, frames(Format::Classic) + frames(Format::Fd));
+        assert_eq!(found, frames(CanVersion::Classic) + frames(CanVersion::Fd));
     }
 
     #[test]
     fn a_sample_is_seven_classic_frames_or_one() {
-        let sample = Slot::of(Role::Harness, Kind::Sample, 0).unwrap();
-        assert_eq!(sample.segments(Format::Classic), 7);
-        assert_eq!(sample.segments(Format::Fd), 1);
-        assert_eq!(sample.frame_bytes(0, Format::Fd), 64);
-        let output = Slot::of(Role::Device, Kind::Output, 0).unwrap();
-        assert_eq!(output.segments(Format::Classic), 17);
-        assert_eq!([0, 1, 2].map(|i| output.frame_bytes(i, Format::Fd)), [64, 64, 8]);
+        let sample = Slot::of(EndRole::Harness, MessageKind::Sample, 0).unwrap();
+        assert_eq!(sample.segments(CanVersion::Classic), 7);
+        assert_eq!(sample.segments(CanVersion::Fd), 1);
+        assert_eq!(sample.frame_bytes(0, CanVersion::Fd), 64);
+        let output = Slot::of(EndRole::Device, MessageKind::Output, 0).unwrap();
+        assert_eq!(output.segments(CanVersion::Classic), 17);
+        assert_eq!([0, 1, 2].map(|i| output.frame_bytes(i, CanVersion::Fd)), [64, 64, 8]);
     }
 }

@@ -1,11 +1,11 @@
 //! State of a receiver as bytes: incomplete messages and counts.
 
-use super::{Counters, Reassembler, Slot};
-use octant_state::{Reader, State, StateError, Writer, check_below, check_count};
+use super::{CanTraffic, Reassembler, Slot};
+use octant_state::{StateReader, State, StateError, Writer, check_below, check_count};
 
 /// Counts in the order of writing.
-fn counts(counters: &mut Counters) -> [(&'static str, &mut u64); 11] {
-    let Counters {
+fn counts(counters: &mut CanTraffic) -> [(&'static str, &mut u64); 11] {
+    let CanTraffic {
         frames,
         foreign,
         messages,
@@ -46,7 +46,7 @@ impl State for Reassembler {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         for (slot, progress) in Slot::ALL.iter().zip(&mut self.progress) {
             let held: u8 = from.value("held")?;
             check_below("held", held.into(), slot.segments(self.format) as u64)?;

@@ -2,7 +2,7 @@
 
 /// Encoding of a field; all are little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
+pub enum FieldType {
     /// Unsigned, 1 byte.
     U8,
     /// Unsigned, 2 bytes.
@@ -25,7 +25,7 @@ pub enum Type {
     Zero(usize),
 }
 
-impl Type {
+impl FieldType {
     /// Size of the field, bytes.
     #[must_use]
     pub const fn bytes(self) -> usize {
@@ -63,7 +63,7 @@ pub struct Field {
     /// Index of the field's first byte in the payload.
     pub at: usize,
     /// Encoding.
-    pub ty: Type,
+    pub ty: FieldType,
     /// Name; empty for zeros.
     pub name: &'static str,
     /// Size of one count, in `unit`; 1 if the field is no count.

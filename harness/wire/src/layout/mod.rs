@@ -4,13 +4,13 @@
 mod field;
 mod tables;
 
-pub use field::{Field, Type};
+pub use field::{Field, FieldType};
 
-use crate::Kind;
+use crate::MessageKind;
 
 /// Fields of a payload, in order and without gaps.
 #[must_use]
-pub fn fields(kind: Kind) -> &'static [Field] {
+pub fn fields(kind: MessageKind) -> &'static [Field] {
     tables::fields(kind)
 }
 
@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn fields_fill_every_payload_without_gaps() {
-        for kind in Kind::ALL {
+        for kind in MessageKind::ALL {
             let mut at = 0;
             for field in fields(kind) {
                 assert_eq!(field.at, at, "{}.{}", kind.name(), field.name);
@@ -44,10 +44,10 @@ mod tests {
 
     #[test]
     fn no_number_crosses_a_word_of_the_can_image() {
-        for kind in Kind::ALL {
+        for kind in MessageKind::ALL {
             assert_eq!((kind.payload_bytes() + 4) % 8, 0, "{}", kind.name());
             for field in fields(kind) {
-                if !matches!(field.ty, Type::Bytes(_) | Type::Text(_) | Type::Zero(_)) {
+                if !matches!(field.ty, FieldType::Bytes(_) | FieldType::Text(_) | FieldType::Zero(_)) {
                     let at = image_at(field.at);
                     let last = at + field.ty.bytes() - 1;
                     assert_eq!(at / 8, last / 8, "{}.{}", kind.name(), field.name);

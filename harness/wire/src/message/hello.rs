@@ -1,6 +1,6 @@
 //! Hello messages, and the check that two ends fit together.
 
-use super::{Bye, Kind, Reason, Role};
+use super::{Bye, MessageKind, Reason, EndRole};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable, VERSION};
 use core::fmt;
@@ -8,7 +8,7 @@ use core::fmt;
 /// Pacing of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Pacing {
+pub enum StepPacing {
     /// The harness waits for each answer, and repeats unanswered requests: no step is ever lost.
     #[default]
     LockStep = 0,
@@ -16,7 +16,7 @@ pub enum Pacing {
     RealTime = 1,
 }
 
-impl Pacing {
+impl StepPacing {
     /// Name used in texts.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -54,7 +54,7 @@ bitflags::bitflags! {
 
 /// Limits of an end, which the other has to keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Limits {
+pub struct EndLimits {
     /// Number of unanswered samples that the end accepts.
     pub window: u16,
     /// Silence after which the end gives up the other, ms; 0: never.
@@ -69,9 +69,9 @@ pub struct Hello {
     /// Protocol version of the sender.
     pub version: u16,
     /// Role of the sender.
-    pub role: Role,
+    pub role: EndRole,
     /// Pacing of the steps: chosen by the harness, repeated by the others.
-    pub pacing: Pacing,
+    pub pacing: StepPacing,
     /// Session number: drawn by the harness, not 0, and repeated by the others. 0 in a hello that isn't
     /// an answer, after power on.
     pub session: u32,
@@ -80,7 +80,7 @@ pub struct Hello {
     /// Sample period that the sender is configured for, ns.
     pub sample_period_ns: u64,
     /// Limits that the sender asks the other end to keep.
-    pub limits: Limits,
+    pub limits: EndLimits,
     /// Hash of the core's configuration; zeros: unknown.
     pub configuration: [u8; 32],
     /// Name of the sender.
@@ -93,12 +93,12 @@ impl Default for Hello {
     fn default() -> Self {
         Self {
             version: VERSION,
-            role: Role::Harness,
-            pacing: Pacing::LockStep,
+            role: EndRole::Harness,
+            pacing: StepPacing::LockStep,
             session: 0,
             capabilities: Capabilities::empty(),
             sample_period_ns: 0,
-            limits: Limits::default(),
+            limits: EndLimits::default(),
             configuration: [0; 32],
             name: Text::default(),
             firmware: Text::default(),
@@ -125,7 +125,7 @@ impl Hello {
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
         let wrong = |field, found: u16, expected| {
             let found = found.into();
-            Unreadable::Value { kind: Kind::Hello, field, found, expected }
+            Unreadable::Value { kind: MessageKind::Hello, field, found, expected }
         };
         let version = r.u16();
         // Newer versions were already refused.
@@ -133,15 +133,15 @@ impl Hello {
             return Err(wrong("version", version, "1 or more"));
         }
         let [role, pacing] = r.take();
-        let role = *Role::ALL
+        let role = *EndRole::ALL
             .get(usize::from(role))
             .ok_or_else(|| wrong("role", role.into(), "0 to 2"))?;
         let pacing = match pacing {
-            0 => Pacing::LockStep,
-            1 => Pacing::RealTime,
+            0 => StepPacing::LockStep,
+            1 => StepPacing::RealTime,
             found => return Err(wrong("pacing", found.into(), "0 (lock-step) or 1 (real-time)")),
         };
-        let text = |field| move |reason| Unreadable::Text { kind: Kind::Hello, field, reason };
+        let text = |field| move |reason| Unreadable::Text { kind: MessageKind::Hello, field, reason };
         Ok(Self {
             version,
             role,
@@ -149,7 +149,7 @@ impl Hello {
             session: r.u32(),
             capabilities: Capabilities::from_bits_retain(r.u32()),
             sample_period_ns: r.u64(),
-            limits: Limits { window: r.u16(), silence_ms: r.u16(), shortest_period_ns: r.u32() },
+            limits: EndLimits { window: r.u16(), silence_ms: r.u16(), shortest_period_ns: r.u32() },
             configuration: r.take(),
             name: Text::from_bytes(r.take()).map_err(text("name"))?,
             firmware: Text::from_bytes(r.take()).map_err(text("firmware"))?,
@@ -163,21 +163,21 @@ pub struct Agreement {
     /// Session number.
     pub session: u32,
     /// Pacing of the steps.
-    pub pacing: Pacing,
+    pub pacing: StepPacing,
     /// True if both ends know the hash of their configuration, and the two are equal.
     pub configuration_compared: bool,
 }
 
 /// Reason why two ends don't fit together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
+pub enum SessionRefusal {
     /// Neither or both are the harness.
     #[error("{} talks to {}: one of the two has to be the harness", theirs.name(), ours.name())]
     Role {
         /// Role of this end.
-        ours: Role,
+        ours: EndRole,
         /// Role of the peer.
-        theirs: Role,
+        theirs: EndRole,
     },
     /// The answer belongs to another session.
     #[error("the answer is of session {theirs:#010x}, this is session {ours:#010x}")]
@@ -191,9 +191,9 @@ pub enum Refusal {
     #[error("the harness asks for {} steps, which the {} doesn't do", asked.name(), by.name())]
     Pacing {
         /// Pacing that the harness chose.
-        asked: Pacing,
+        asked: StepPacing,
         /// Role of the end that doesn't support it.
-        by: Role,
+        by: EndRole,
     },
     /// The sample periods differ.
     #[error(
@@ -239,7 +239,7 @@ impl fmt::Display for Short {
     }
 }
 
-impl Refusal {
+impl SessionRefusal {
     /// Bye that tells the peer the reason.
     #[must_use]
     pub fn bye(&self) -> Bye {
@@ -261,36 +261,36 @@ impl Refusal {
 ///
 /// # Errors
 /// If they don't fit, with the first reason found.
-pub fn agree(ours: &Hello, theirs: &Hello) -> Result<Agreement, Refusal> {
+pub fn agree(ours: &Hello, theirs: &Hello) -> Result<Agreement, SessionRefusal> {
     let (harness, other) = match (ours.role, theirs.role) {
-        (Role::Harness, Role::Device | Role::Instrument) => (ours, theirs),
-        (Role::Device | Role::Instrument, Role::Harness) => (theirs, ours),
-        (ours, theirs) => return Err(Refusal::Role { ours, theirs }),
+        (EndRole::Harness, EndRole::Device | EndRole::Instrument) => (ours, theirs),
+        (EndRole::Device | EndRole::Instrument, EndRole::Harness) => (theirs, ours),
+        (ours, theirs) => return Err(SessionRefusal::Role { ours, theirs }),
     };
     if harness.session != other.session {
-        return Err(Refusal::Session { ours: ours.session, theirs: theirs.session });
+        return Err(SessionRefusal::Session { ours: ours.session, theirs: theirs.session });
     }
     let needed = match harness.pacing {
-        Pacing::LockStep => Capabilities::LOCK_STEP,
-        Pacing::RealTime => Capabilities::REAL_TIME,
+        StepPacing::LockStep => Capabilities::LOCK_STEP,
+        StepPacing::RealTime => Capabilities::REAL_TIME,
     };
     if !other.capabilities.contains(needed) || other.pacing != harness.pacing {
-        return Err(Refusal::Pacing { asked: harness.pacing, by: other.role });
+        return Err(SessionRefusal::Pacing { asked: harness.pacing, by: other.role });
     }
     if harness.sample_period_ns != other.sample_period_ns {
-        return Err(Refusal::Period {
+        return Err(SessionRefusal::Period {
             harness_ns: harness.sample_period_ns,
             other_ns: other.sample_period_ns,
         });
     }
     let shortest_ns = other.limits.shortest_period_ns;
-    if harness.pacing == Pacing::RealTime && u64::from(shortest_ns) > harness.sample_period_ns {
-        return Err(Refusal::Rate { asked_ns: harness.sample_period_ns, shortest_ns });
+    if harness.pacing == StepPacing::RealTime && u64::from(shortest_ns) > harness.sample_period_ns {
+        return Err(SessionRefusal::Rate { asked_ns: harness.sample_period_ns, shortest_ns });
     }
     let known = [harness, other].map(|hello| hello.configuration != [0; 32]);
     if known == [true, true] && harness.configuration != other.configuration {
         let first = |hello: &Hello| core::array::from_fn(|i| hello.configuration[i]);
-        return Err(Refusal::Configuration { harness: first(harness), other: first(other) });
+        return Err(SessionRefusal::Configuration { harness: first(harness), other: first(other) });
     }
     Ok(Agreement {
         session: harness.session,

@@ -3,7 +3,7 @@
 /// Role of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Role {
+pub enum EndRole {
     /// The test program: it sends samples and receives outputs.
     Harness = 0,
     /// The unit under test: it receives samples and answers with outputs.
@@ -12,7 +12,7 @@ pub enum Role {
     Instrument = 2,
 }
 
-impl Role {
+impl EndRole {
     /// All roles, in the order of their codes.
     pub const ALL: [Self; 3] = [Self::Harness, Self::Device, Self::Instrument];
 
@@ -30,7 +30,7 @@ impl Role {
 /// Kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Kind {
+pub enum MessageKind {
     /// [`super::Hello`].
     Hello = 1,
     /// [`super::SampleMessage`].
@@ -59,7 +59,7 @@ pub enum Kind {
     Bye = 13,
 }
 
-impl Kind {
+impl MessageKind {
     /// All kinds, in the order of their codes, which begin with 1.
     pub const ALL: [Self; 13] = [
         Self::Hello,
@@ -128,15 +128,15 @@ impl Kind {
 
     /// Roles that send this kind.
     #[must_use]
-    pub const fn senders(self) -> &'static [Role] {
+    pub const fn senders(self) -> &'static [EndRole] {
         match self {
             Self::Hello | Self::Heartbeat | Self::Bye => {
-                &[Role::Harness, Role::Device, Role::Instrument]
+                &[EndRole::Harness, EndRole::Device, EndRole::Instrument]
             }
-            Self::Sample | Self::Aiding => &[Role::Harness, Role::Instrument],
-            Self::Output | Self::Parameters | Self::Ready => &[Role::Device],
-            Self::Restart | Self::End | Self::TimeRequest => &[Role::Harness],
-            Self::Status | Self::TimeReply => &[Role::Device, Role::Instrument],
+            Self::Sample | Self::Aiding => &[EndRole::Harness, EndRole::Instrument],
+            Self::Output | Self::Parameters | Self::Ready => &[EndRole::Device],
+            Self::Restart | Self::End | Self::TimeRequest => &[EndRole::Harness],
+            Self::Status | Self::TimeReply => &[EndRole::Device, EndRole::Instrument],
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Messages about the link: heartbeat, status, clocks, and its end.
 
-use super::{Kind, Step};
+use super::{MessageKind, StepNumber};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable};
 
@@ -23,7 +23,7 @@ impl ClockTime {
 /// Condition of an end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Condition {
+pub enum EndCondition {
     /// No session.
     #[default]
     Waiting = 0,
@@ -37,7 +37,7 @@ pub enum Condition {
     Failed = 4,
 }
 
-impl Condition {
+impl EndCondition {
     /// All conditions, in the order of their codes.
     pub const ALL: [Self; 5] =
         [Self::Waiting, Self::Ready, Self::Stepping, Self::Ended, Self::Failed];
@@ -59,9 +59,9 @@ impl Condition {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Heartbeat {
     /// Last step sent (harness), answered (device) or made (instrument).
-    pub step: Step,
+    pub step: StepNumber,
     /// Condition of the sender.
-    pub condition: Condition,
+    pub condition: EndCondition,
     /// Number of samples that wait for their step.
     pub queued: u8,
     /// Time of the sender's clock.
@@ -77,10 +77,10 @@ impl Heartbeat {
     }
 
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
-        let step = Step::new(r.u16());
+        let step = StepNumber::new(r.u16());
         let [condition, queued] = r.take();
-        let condition = *Condition::ALL.get(usize::from(condition)).ok_or(Unreadable::Value {
-            kind: Kind::Heartbeat,
+        let condition = *EndCondition::ALL.get(usize::from(condition)).ok_or(Unreadable::Value {
+            kind: MessageKind::Heartbeat,
             field: "condition",
             found: condition.into(),
             expected: "0 to 4",
@@ -92,9 +92,9 @@ impl Heartbeat {
 /// Work and losses of a device, counted since the hello of its session. A count stays at its largest
 /// value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Status {
+pub struct DeviceStatus {
     /// Last step answered.
-    pub step: Step,
+    pub step: StepNumber,
     /// Steps done.
     pub steps: u32,
     /// Repeated requests that were answered again, without a step.
@@ -121,7 +121,7 @@ pub struct Status {
     pub unreadable: u32,
 }
 
-impl Status {
+impl DeviceStatus {
     pub(super) fn write(&self, w: &mut Writer<'_>) {
         w.u16(self.step.number());
         w.u16(0);
@@ -144,7 +144,7 @@ impl Status {
     }
 
     pub(super) fn read(r: &mut Reader<'_>) -> Self {
-        let step = Step::new(r.u16());
+        let step = StepNumber::new(r.u16());
         r.u16();
         Self {
             step,
@@ -306,7 +306,7 @@ impl Bye {
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
         let [reason, _, _, _] = r.take();
         let text = Text::from_bytes(r.take()).map_err(|reason| Unreadable::Text {
-            kind: Kind::Bye,
+            kind: MessageKind::Bye,
             field: "text",
             reason,
         })?;

@@ -12,13 +12,13 @@ mod parameters;
 mod step;
 mod steps;
 
-pub use hello::{Agreement, Capabilities, Hello, Limits, Pacing, Refusal, agree};
-pub use kind::{Kind, Role};
+pub use hello::{Agreement, Capabilities, Hello, EndLimits, StepPacing, SessionRefusal, agree};
+pub use kind::{MessageKind, EndRole};
 pub use link::{
-    Bye, ClockTime, Condition, Heartbeat, Offset, Reason, Status, TimeReply, TimeRequest,
+    Bye, ClockTime, EndCondition, Heartbeat, Offset, Reason, DeviceStatus, TimeReply, TimeRequest,
 };
 pub use parameters::{Gathered, Gathering, PARAMETERS_SEGMENTS, ParametersSegment, SEGMENT_VALUES};
-pub use step::Step;
+pub use step::StepNumber;
 pub use steps::{AidingMessage, End, OutputMessage, Ready, Restart, SampleMessage};
 
 use crate::Unreadable;
@@ -49,7 +49,7 @@ pub enum Message {
     /// Sign of life of the sender.
     Heartbeat(Heartbeat),
     /// Work and losses of a device.
-    Status(Status),
+    Status(DeviceStatus),
     /// Request for the time.
     TimeRequest(TimeRequest),
     /// Answer to a request for the time.
@@ -61,14 +61,14 @@ pub enum Message {
 /// A payload: the fields of a message as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Payload {
-    kind: Kind,
+    kind: MessageKind,
     bytes: [u8; MAX_PAYLOAD_BYTES],
 }
 
 impl Payload {
     /// Kind of the message.
     #[must_use]
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> MessageKind {
         self.kind
     }
 
@@ -82,21 +82,21 @@ impl Payload {
 impl Message {
     /// Kind of the message.
     #[must_use]
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> MessageKind {
         match self {
-            Self::Hello(_) => Kind::Hello,
-            Self::Sample(_) => Kind::Sample,
-            Self::Aiding(_) => Kind::Aiding,
-            Self::Output(_) => Kind::Output,
-            Self::Parameters(_) => Kind::Parameters,
-            Self::Restart(_) => Kind::Restart,
-            Self::End(_) => Kind::End,
-            Self::Ready(_) => Kind::Ready,
-            Self::Heartbeat(_) => Kind::Heartbeat,
-            Self::Status(_) => Kind::Status,
-            Self::TimeRequest(_) => Kind::TimeRequest,
-            Self::TimeReply(_) => Kind::TimeReply,
-            Self::Bye(_) => Kind::Bye,
+            Self::Hello(_) => MessageKind::Hello,
+            Self::Sample(_) => MessageKind::Sample,
+            Self::Aiding(_) => MessageKind::Aiding,
+            Self::Output(_) => MessageKind::Output,
+            Self::Parameters(_) => MessageKind::Parameters,
+            Self::Restart(_) => MessageKind::Restart,
+            Self::End(_) => MessageKind::End,
+            Self::Ready(_) => MessageKind::Ready,
+            Self::Heartbeat(_) => MessageKind::Heartbeat,
+            Self::Status(_) => MessageKind::Status,
+            Self::TimeRequest(_) => MessageKind::TimeRequest,
+            Self::TimeReply(_) => MessageKind::TimeReply,
+            Self::Bye(_) => MessageKind::Bye,
         }
     }
 
@@ -136,8 +136,8 @@ impl Message {
     /// # Errors
     /// If this version has no such payload. Bytes without a meaning are ignored.
     #[inline]
-    pub fn read(kind: Kind, payload: &[u8]) -> Result<Self, Unreadable> {
-        if let (Kind::Hello, Some(version)) = (kind, payload.first_chunk::<2>()) {
+    pub fn read(kind: MessageKind, payload: &[u8]) -> Result<Self, Unreadable> {
+        if let (MessageKind::Hello, Some(version)) = (kind, payload.first_chunk::<2>()) {
             let found = u16::from_le_bytes(*version);
             // Applies to a newer hello of any content and length.
             if found > crate::VERSION {
@@ -149,19 +149,19 @@ impl Message {
         }
         let r = &mut Reader::new(payload);
         Ok(match kind {
-            Kind::Hello => Self::Hello(Hello::read(r)?),
-            Kind::Sample => Self::Sample(SampleMessage::read(r)),
-            Kind::Aiding => Self::Aiding(AidingMessage::read(r)?),
-            Kind::Output => Self::Output(OutputMessage::read(r)?),
-            Kind::Parameters => Self::Parameters(ParametersSegment::read(r)?),
-            Kind::Restart => Self::Restart(Restart::read(r)),
-            Kind::End => Self::End(End { step: Step::new(r.u16()) }),
-            Kind::Ready => Self::Ready(Ready { step: Step::new(r.u16()) }),
-            Kind::Heartbeat => Self::Heartbeat(Heartbeat::read(r)?),
-            Kind::Status => Self::Status(Status::read(r)),
-            Kind::TimeRequest => Self::TimeRequest(TimeRequest::read(r)),
-            Kind::TimeReply => Self::TimeReply(TimeReply::read(r)),
-            Kind::Bye => Self::Bye(Bye::read(r)?),
+            MessageKind::Hello => Self::Hello(Hello::read(r)?),
+            MessageKind::Sample => Self::Sample(SampleMessage::read(r)),
+            MessageKind::Aiding => Self::Aiding(AidingMessage::read(r)?),
+            MessageKind::Output => Self::Output(OutputMessage::read(r)?),
+            MessageKind::Parameters => Self::Parameters(ParametersSegment::read(r)?),
+            MessageKind::Restart => Self::Restart(Restart::read(r)),
+            MessageKind::End => Self::End(End { step: StepNumber::new(r.u16()) }),
+            MessageKind::Ready => Self::Ready(Ready { step: StepNumber::new(r.u16()) }),
+            MessageKind::Heartbeat => Self::Heartbeat(Heartbeat::read(r)?),
+            MessageKind::Status => Self::Status(DeviceStatus::read(r)),
+            MessageKind::TimeRequest => Self::TimeRequest(TimeRequest::read(r)),
+            MessageKind::TimeReply => Self::TimeReply(TimeReply::read(r)),
+            MessageKind::Bye => Self::Bye(Bye::read(r)?),
         })
     }
 

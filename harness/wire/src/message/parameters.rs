@@ -1,6 +1,6 @@
 //! Parameters and their σ, in six segments, so that they never delay an output for long.
 
-use super::{Kind, Step};
+use super::{MessageKind, StepNumber};
 use crate::Unreadable;
 use crate::bytes::{Reader, Writer};
 use octant_sample::Parameters;
@@ -15,7 +15,7 @@ pub const PARAMETERS_SEGMENTS: usize = PARAMETER_COUNT / SEGMENT_VALUES;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParametersSegment {
     /// Number of the step whose output announced them.
-    pub step: Step,
+    pub step: StepNumber,
     /// Index of the segment, from 0.
     pub segment: u8,
     /// Revision of the parameters.
@@ -30,7 +30,7 @@ impl ParametersSegment {
     /// Divides all parameters into segments.
     #[must_use]
     pub fn all(
-        step: Step,
+        step: StepNumber,
         revision: u32,
         parameters: &Parameters,
         sigma: &[f64; PARAMETER_COUNT],
@@ -60,11 +60,11 @@ impl ParametersSegment {
     }
 
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
-        let step = Step::new(r.u16());
+        let step = StepNumber::new(r.u16());
         let [segment, _] = r.take();
         if usize::from(segment) >= PARAMETERS_SEGMENTS {
             return Err(Unreadable::Value {
-                kind: Kind::Parameters,
+                kind: MessageKind::Parameters,
                 field: "segment",
                 found: segment.into(),
                 expected: "0 to 5",
@@ -81,7 +81,7 @@ impl ParametersSegment {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gathered {
     /// Number of the step whose output announced them.
-    pub step: Step,
+    pub step: StepNumber,
     /// Revision of the parameters.
     pub revision: u32,
     /// Estimates, SI.
@@ -93,7 +93,7 @@ pub struct Gathered {
 /// Collects segments, in any order, until all of one step and revision are there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gathering {
-    step: Step,
+    step: StepNumber,
     revision: u32,
     values: [f64; PARAMETER_COUNT],
     sigma: [f64; PARAMETER_COUNT],
@@ -153,7 +153,7 @@ mod tests {
         let values = core::array::from_fn(|i| i as f64 + f64::from(revision));
         let sigma = core::array::from_fn(|i| -(i as f64));
         let parameters = Parameters::from_array(&values);
-        ParametersSegment::all(Step::new(step), revision, &parameters, &sigma)
+        ParametersSegment::all(StepNumber::new(step), revision, &parameters, &sigma)
     }
 
     #[test]
@@ -164,7 +164,7 @@ mod tests {
             assert_eq!(gathering.add(&all[index]), None);
         }
         let gathered = gathering.add(&all[2]).unwrap();
-        assert_eq!((gathered.step, gathered.revision), (Step::new(7), 3));
+        assert_eq!((gathered.step, gathered.revision), (StepNumber::new(7), 3));
         assert_eq!(gathered.parameters.to_array()[29], 32.0);
         assert_eq!(gathered.sigma[29], -29.0);
     }

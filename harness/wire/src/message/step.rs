@@ -5,9 +5,9 @@
 /// The step number isn't the sequence number of the sample: a fault may repeat, skip or change the
 /// latter, and each sample delivered is a step of its own. The first step of a session has number 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Step(u16);
+pub struct StepNumber(u16);
 
-impl Step {
+impl StepNumber {
     /// Number of bits.
     pub const BITS: u32 = 15;
 
@@ -57,20 +57,20 @@ mod tests {
 
     #[test]
     fn steps_go_round() {
-        assert_eq!(Step::new(0x7FFF).next(), Step::new(0));
-        assert_eq!(Step::new(2).since(Step::new(0x7FFE)), 4);
-        assert_eq!(Step::new(0x7FFE).since(Step::new(2)), -4);
-        assert_eq!(Step::new(5).since(Step::new(5)), 0);
-        assert_eq!(Step::new(0x4000).since(Step::new(0)), -0x4000);
-        assert_eq!(Step::new(0x3FFF).since(Step::new(0)), 0x3FFF);
+        assert_eq!(StepNumber::new(0x7FFF).next(), StepNumber::new(0));
+        assert_eq!(StepNumber::new(2).since(StepNumber::new(0x7FFE)), 4);
+        assert_eq!(StepNumber::new(0x7FFE).since(StepNumber::new(2)), -4);
+        assert_eq!(StepNumber::new(5).since(StepNumber::new(5)), 0);
+        assert_eq!(StepNumber::new(0x4000).since(StepNumber::new(0)), -0x4000);
+        assert_eq!(StepNumber::new(0x3FFF).since(StepNumber::new(0)), 0x3FFF);
     }
 
     #[test]
     fn the_flag_leaves_the_number_alone() {
         for number in [0, 1, 0x1234, 0x7FFF] {
             for flag in [false, true] {
-                let step = Step::new(number);
-                assert_eq!(Step::and_flag(step.with_flag(flag)), (step, flag));
+                let step = StepNumber::new(number);
+                assert_eq!(StepNumber::and_flag(step.with_flag(flag)), (step, flag));
             }
         }
     }

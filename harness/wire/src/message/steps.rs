@@ -1,6 +1,6 @@
 //! Messages of a step: sample and aiding, output, end and restart.
 
-use super::{Kind, Step};
+use super::{MessageKind, StepNumber};
 use crate::Unreadable;
 use crate::bytes::{Reader, Writer};
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -13,7 +13,7 @@ use octant_sample::{
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SampleMessage {
     /// Number of the step.
-    pub step: Step,
+    pub step: StepNumber,
     /// True if an aiding message of the same step was sent just before.
     pub aided: bool,
     /// The sample.
@@ -37,7 +37,7 @@ impl SampleMessage {
 
     #[inline]
     pub(super) fn read(r: &mut Reader<'_>) -> Self {
-        let (step, aided) = Step::and_flag(r.u16());
+        let (step, aided) = StepNumber::and_flag(r.u16());
         let status = octant_sample::Status::from_bits_retain(r.u16());
         let sample = Sample {
             sequence: r.u64(),
@@ -55,7 +55,7 @@ impl SampleMessage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AidingMessage {
     /// Number of the step.
-    pub step: Step,
+    pub step: StepNumber,
     /// Reference with its timestamp.
     pub aiding: Aiding,
 }
@@ -78,7 +78,7 @@ impl AidingMessage {
     }
 
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
-        let step = Step::new(r.u16());
+        let step = StepNumber::new(r.u16());
         let [reference, _] = r.take();
         let device_time = DeviceTime { ns: r.u64() };
         let [first, second, third] = r.array(Reader::f64);
@@ -89,7 +89,7 @@ impl AidingMessage {
             }
             found => {
                 return Err(Unreadable::Value {
-                    kind: Kind::Aiding,
+                    kind: MessageKind::Aiding,
                     field: "reference",
                     found: found.into(),
                     expected: "0 (velocity) or 1 (position)",
@@ -104,7 +104,7 @@ impl AidingMessage {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OutputMessage {
     /// Number of the step answered.
-    pub step: Step,
+    pub step: StepNumber,
     /// True if the parameters changed; all of their segments follow.
     pub parameters_follow: bool,
     /// The output.
@@ -143,9 +143,9 @@ impl OutputMessage {
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
         let wrong = |field, found: u8, expected| {
             let found = found.into();
-            Unreadable::Value { kind: Kind::Output, field, found, expected }
+            Unreadable::Value { kind: MessageKind::Output, field, found, expected }
         };
-        let (step, parameters_follow) = Step::and_flag(r.u16());
+        let (step, parameters_follow) = StepNumber::and_flag(r.u16());
         let stop = r.u16();
         let sequence = r.u64();
         let device_time = DeviceTime { ns: r.u64() };
@@ -188,7 +188,7 @@ impl OutputMessage {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Restart {
     /// Number of the step.
-    pub step: Step,
+    pub step: StepNumber,
     /// Difference of the stored parameters from the configured ones, SI; `None`: none.
     pub offset: Option<Parameters>,
 }
@@ -203,7 +203,7 @@ impl Restart {
     }
 
     pub(super) fn read(r: &mut Reader<'_>) -> Self {
-        let (step, offset) = Step::and_flag(r.u16());
+        let (step, offset) = StepNumber::and_flag(r.u16());
         r.u16();
         let values: [f64; PARAMETER_COUNT] = r.array(Reader::f64);
         Self { step, offset: offset.then(|| Parameters::from_array(&values)) }
@@ -214,12 +214,12 @@ impl Restart {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Number of the step.
-    pub step: Step,
+    pub step: StepNumber,
 }
 
 /// Answer to a [`Restart`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ready {
     /// Number of the step answered.
-    pub step: Step,
+    pub step: StepNumber,
 }

@@ -3,11 +3,11 @@
 use super::{CRC_BYTES, HEADER_BYTES, MAX_STUFFED_BYTES};
 use crate::checksum::crc32;
 use crate::message::ClockTime;
-use crate::{Kind, Message, Unreadable};
+use crate::{MessageKind, Message, Unreadable};
 
 /// Position of a frame in the sequence of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum FrameOrder {
     /// First frame, or a hello, at which the numbering begins again.
     First,
     /// Frame after the last one.
@@ -24,7 +24,7 @@ pub struct Received {
     /// Sequence number of its frame.
     pub sequence: u16,
     /// Position in the sequence.
-    pub order: Order,
+    pub order: FrameOrder,
     /// Sender's clock when it made the frame.
     pub clock: ClockTime,
     /// The message.
@@ -33,7 +33,7 @@ pub struct Received {
 
 /// Reason why bytes are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Cause {
+pub enum FrameDefect {
     /// Longer than any frame, without a zero.
     #[error("there is no frame so long")]
     Long,
@@ -55,9 +55,9 @@ pub enum Cause {
 
 /// Bytes that are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lost {
+pub struct SkippedBytes {
     /// Reason.
-    pub cause: Cause,
+    pub cause: FrameDefect,
     /// Number of bytes, without the zeros around them.
     pub bytes: u64,
 }
@@ -65,16 +65,16 @@ pub struct Lost {
 /// Result for the bytes between two zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
-pub enum Event {
+pub enum DecodeEvent {
     /// A message.
     Received(Received),
     /// No message.
-    Lost(Lost),
+    Lost(SkippedBytes),
 }
 
 /// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
+pub struct SerialCounters {
     /// All bytes.
     pub bytes: u64,
     /// Intact frames.
@@ -95,7 +95,7 @@ pub struct Counters {
     pub behind: u64,
 }
 
-impl Counters {
+impl SerialCounters {
     /// Number of stretches that were no intact frame.
     #[must_use]
     pub fn damaged(&self) -> u64 {
@@ -111,23 +111,23 @@ impl Counters {
 
 /// Finds messages in bytes as they arrive, in pieces of any length.
 #[derive(Clone, Debug)]
-pub struct Decoder {
+pub struct SerialDecoder {
     /// Bytes since the last zero, up to the length of the longest frame.
     held: [u8; MAX_STUFFED_BYTES],
     /// Number of bytes since the last zero.
     length: u64,
     /// Expected sequence number of the next frame.
     expected: Option<u16>,
-    counters: Counters,
+    counters: SerialCounters,
 }
 
-impl Default for Decoder {
+impl Default for SerialDecoder {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Decoder {
+impl SerialDecoder {
     /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new() -> Self {
@@ -135,14 +135,14 @@ impl Decoder {
             held: [0; MAX_STUFFED_BYTES],
             length: 0,
             expected: None,
-            counters: Counters::default(),
+            counters: SerialCounters::default(),
         }
     }
 
     /// Takes bytes up to the end of the next nonempty stretch, and returns its result. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
-    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<DecodeEvent> {
         while let Some(zero) = bytes.iter().position(|byte| *byte == 0) {
             let (stretch, rest) = bytes.split_at(zero);
             *bytes = &rest[1..];
@@ -159,13 +159,13 @@ impl Decoder {
 
     /// Ends the input, at the end of a datagram or at a cut of the line: the bytes since the last zero
     /// are concluded as if a zero followed.
-    pub fn end(&mut self) -> Option<Event> {
+    pub fn end(&mut self) -> Option<DecodeEvent> {
         (self.length > 0).then(|| self.conclude())
     }
 
     /// Counts of the traffic so far.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
+    pub fn counters(&self) -> &SerialCounters {
         &self.counters
     }
 
@@ -185,67 +185,67 @@ impl Decoder {
         }
     }
 
-    fn conclude(&mut self) -> Event {
+    fn conclude(&mut self) -> DecodeEvent {
         let bytes = core::mem::take(&mut self.length);
         match self.read(bytes) {
-            Ok(received) => Event::Received(received),
+            Ok(received) => DecodeEvent::Received(received),
             Err(cause) => {
                 let counters = &mut self.counters;
                 match cause {
                     // Bytes of a stretch that is too long are already counted.
-                    Cause::Long => counters.long += 1,
-                    Cause::Malformed => counters.malformed += 1,
-                    Cause::Checksum { .. } => counters.checksum += 1,
-                    Cause::Unreadable(_) => counters.unreadable += 1,
+                    FrameDefect::Long => counters.long += 1,
+                    FrameDefect::Malformed => counters.malformed += 1,
+                    FrameDefect::Checksum { .. } => counters.checksum += 1,
+                    FrameDefect::Unreadable(_) => counters.unreadable += 1,
                 }
-                if matches!(cause, Cause::Malformed | Cause::Checksum { .. }) {
+                if matches!(cause, FrameDefect::Malformed | FrameDefect::Checksum { .. }) {
                     counters.bytes_lost += bytes;
                 }
-                Event::Lost(Lost { cause, bytes })
+                DecodeEvent::Lost(SkippedBytes { cause, bytes })
             }
         }
     }
 
-    fn read(&mut self, bytes: u64) -> Result<Received, Cause> {
+    fn read(&mut self, bytes: u64) -> Result<Received, FrameDefect> {
         let Some(stretch) = usize::try_from(bytes).ok().and_then(|n| self.held.get_mut(..n)) else {
-            return Err(Cause::Long);
+            return Err(FrameDefect::Long);
         };
-        let length = cobs::decode_in_place(stretch).map_err(|_| Cause::Malformed)?;
+        let length = cobs::decode_in_place(stretch).map_err(|_| FrameDefect::Malformed)?;
         let (bare, crc) =
-            stretch[..length].split_last_chunk::<CRC_BYTES>().ok_or(Cause::Malformed)?;
-        let (header, payload) = bare.split_first_chunk::<HEADER_BYTES>().ok_or(Cause::Malformed)?;
+            stretch[..length].split_last_chunk::<CRC_BYTES>().ok_or(FrameDefect::Malformed)?;
+        let (header, payload) = bare.split_first_chunk::<HEADER_BYTES>().ok_or(FrameDefect::Malformed)?;
         let (found, computed) = (u32::from_le_bytes(*crc), crc32(bare));
         if found != computed {
-            return Err(Cause::Checksum { found, computed });
+            return Err(FrameDefect::Checksum { found, computed });
         }
         let [code, s0, s1, clock @ ..] = *header;
         let sequence = u16::from_le_bytes([s0, s1]);
-        let kind = Kind::of(code);
+        let kind = MessageKind::of(code);
         let message = kind
             .ok_or(Unreadable::Code { code })
             .and_then(|kind| Message::read(kind, payload))
-            .map_err(Cause::Unreadable);
+            .map_err(FrameDefect::Unreadable);
         self.counters.frames += 1;
-        let order = self.order(sequence, kind == Some(Kind::Hello));
+        let order = self.order(sequence, kind == Some(MessageKind::Hello));
         let clock = ClockTime { ns: u64::from_le_bytes(clock) };
         Ok(Received { sequence, order, clock, message: message? })
     }
 
-    fn order(&mut self, sequence: u16, anew: bool) -> Order {
+    fn order(&mut self, sequence: u16, anew: bool) -> FrameOrder {
         let next = Some(sequence.wrapping_add(1));
         let Some(expected) = self.expected.filter(|_| !anew) else {
             self.expected = next;
-            return Order::First;
+            return FrameOrder::First;
         };
         let gap = sequence.wrapping_sub(expected);
         if gap < 1 << 15 {
             self.expected = next;
             self.counters.missing += u64::from(gap);
-            if gap == 0 { Order::Next } else { Order::Missing(gap) }
+            if gap == 0 { FrameOrder::Next } else { FrameOrder::Missing(gap) }
         } else {
             self.counters.behind += 1;
             // A repetition of the last frame is one behind.
-            Order::Behind(gap.wrapping_neg())
+            FrameOrder::Behind(gap.wrapping_neg())
         }
     }
 }

@@ -7,18 +7,18 @@ use crate::message::{ClockTime, MAX_PAYLOAD_BYTES};
 
 /// Encodes and numbers frames.
 #[derive(Clone, Debug)]
-pub struct Encoder {
+pub struct SerialEncoder {
     sequence: u16,
     frame: [u8; MAX_FRAME_BYTES],
 }
 
-impl Default for Encoder {
+impl Default for SerialEncoder {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Encoder {
+impl SerialEncoder {
     /// Makes an encoder whose first frame has sequence number 0.
     #[must_use]
     pub fn new() -> Self {

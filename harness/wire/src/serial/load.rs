@@ -1,8 +1,8 @@
 //! Load of a serial line.
 
 use super::{CRC_BYTES, HEADER_BYTES};
-use crate::Kind;
-use crate::message::{PARAMETERS_SEGMENTS, Role};
+use crate::MessageKind;
+use crate::message::{PARAMETERS_SEGMENTS, EndRole};
 use crate::traffic::Traffic;
 
 /// Bit rate and framing of a serial line.
@@ -36,8 +36,8 @@ impl Baud {
         let way = |harness: bool| {
             let mut bits_per_s = 0.0;
             for (role, kind, rate_hz) in traffic.messages() {
-                if (role == Role::Harness) == harness {
-                    let frames = if kind == Kind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
+                if (role == EndRole::Harness) == harness {
+                    let frames = if kind == MessageKind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
                     let bits = frame_bytes(kind) * frames * self.bits_per_byte as usize;
                     bits_per_s += rate_hz * bits as f64;
                 }
@@ -49,6 +49,6 @@ impl Baud {
 }
 
 /// Most bytes of a frame on the line.
-const fn frame_bytes(kind: Kind) -> usize {
+const fn frame_bytes(kind: MessageKind) -> usize {
     2 + cobs::max_encoding_length(HEADER_BYTES + kind.payload_bytes() + CRC_BYTES)
 }

@@ -8,8 +8,8 @@ mod decoder;
 mod encoder;
 mod load;
 
-pub use decoder::{Cause, Counters, Decoder, Event, Lost, Order, Received};
-pub use encoder::Encoder;
+pub use decoder::{FrameDefect, SerialCounters, SerialDecoder, DecodeEvent, SkippedBytes, FrameOrder, Received};
+pub use encoder::SerialEncoder;
 pub use load::{Baud, LineLoad};
 
 use crate::message::MAX_PAYLOAD_BYTES;

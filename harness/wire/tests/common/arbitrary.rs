@@ -5,7 +5,7 @@ use octant_sample::{
     Reference, Sample,
 };
 use octant_wire::message::*;
-use octant_wire::{Kind, Text, VERSION};
+use octant_wire::{MessageKind, Text, VERSION};
 use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::strategy::ValueTree;
@@ -30,8 +30,8 @@ fn numbers<const N: usize>() -> impl Strategy<Value = [f64; N]> {
     proptest::collection::vec(number(), N).prop_map(|all| all.try_into().unwrap())
 }
 
-fn step() -> impl Strategy<Value = Step> {
-    any::<u16>().prop_map(Step::new)
+fn step() -> impl Strategy<Value = StepNumber> {
+    any::<u16>().prop_map(StepNumber::new)
 }
 
 fn clock() -> impl Strategy<Value = ClockTime> {
@@ -48,18 +48,18 @@ fn text<const N: usize>() -> impl Strategy<Value = Text<N>> {
 
 fn hello() -> impl Strategy<Value = Message> {
     let numbers = any::<(u32, u32, u64, u16, u16, u32, [u8; 32])>();
-    let choices = (select(&Role::ALL[..]), any::<bool>());
+    let choices = (select(&EndRole::ALL[..]), any::<bool>());
     (choices, numbers, text(), text()).prop_map(|((role, real_time), numbers, name, firmware)| {
         let (session, bits, sample_period_ns, window, silence_ms, shortest_period_ns, hash) =
             numbers;
         Message::Hello(Hello {
             version: VERSION,
             role,
-            pacing: if real_time { Pacing::RealTime } else { Pacing::LockStep },
+            pacing: if real_time { StepPacing::RealTime } else { StepPacing::LockStep },
             session,
             capabilities: Capabilities::from_bits_retain(bits),
             sample_period_ns,
-            limits: Limits { window, silence_ms, shortest_period_ns },
+            limits: EndLimits { window, silence_ms, shortest_period_ns },
             configuration: hash,
             name,
             firmware,
@@ -141,7 +141,7 @@ fn restart() -> impl Strategy<Value = Message> {
 }
 
 fn heartbeat() -> impl Strategy<Value = Message> {
-    (step(), select(&Condition::ALL[..]), any::<u8>(), clock()).prop_map(
+    (step(), select(&EndCondition::ALL[..]), any::<u8>(), clock()).prop_map(
         |(step, condition, queued, clock)| {
             Message::Heartbeat(Heartbeat { step, condition, queued, clock })
         },
@@ -150,7 +150,7 @@ fn heartbeat() -> impl Strategy<Value = Message> {
 
 fn status() -> impl Strategy<Value = Message> {
     (step(), any::<[u32; 12]>()).prop_map(|(step, counts)| {
-        Message::Status(Status {
+        Message::Status(DeviceStatus {
             step,
             steps: counts[0],
             repeated: counts[1],
@@ -208,7 +208,7 @@ pub(crate) fn one_of_each() -> Vec<Message> {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let mut found: Vec<Message> = Vec::new();
     let strategy = message();
-    while found.len() < Kind::ALL.len() {
+    while found.len() < MessageKind::ALL.len() {
         let message = strategy.new_tree(&mut runner).unwrap().current();
         if found.iter().all(|known| known.kind() != message.kind()) {
             found.push(message);

@@ -4,12 +4,12 @@ pub(crate) mod arbitrary;
 pub(crate) mod peer;
 pub(crate) mod vectors;
 
-use octant_wire::can::{self, Format, Frame, Reassembler};
-use octant_wire::message::{ClockTime, Message, Role};
-use octant_wire::serial::{Decoder, Encoder, Event, Received};
+use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
+use octant_wire::message::{ClockTime, Message, EndRole};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent, Received};
 
 /// Decodes bytes that arrive in pieces into events.
-pub(crate) fn decode(decoder: &mut Decoder, pieces: &[&[u8]]) -> Vec<Event> {
+pub(crate) fn decode(decoder: &mut SerialDecoder, pieces: &[&[u8]]) -> Vec<DecodeEvent> {
     let mut events = Vec::new();
     for piece in pieces {
         let mut rest = *piece;
@@ -22,24 +22,24 @@ pub(crate) fn decode(decoder: &mut Decoder, pieces: &[&[u8]]) -> Vec<Event> {
 }
 
 /// Extracts the messages from events.
-pub(crate) fn received(events: &[Event]) -> Vec<Received> {
-    let received = |event: &Event| match event {
-        Event::Received(received) => Some(*received),
-        Event::Lost(_) => None,
+pub(crate) fn received(events: &[DecodeEvent]) -> Vec<Received> {
+    let received = |event: &DecodeEvent| match event {
+        DecodeEvent::Received(received) => Some(*received),
+        DecodeEvent::Lost(_) => None,
     };
     events.iter().filter_map(received).collect()
 }
 
 /// Encodes messages as one stretch of bytes.
 pub(crate) fn encode(messages: &[Message]) -> Vec<u8> {
-    let mut encoder = Encoder::new();
+    let mut encoder = SerialEncoder::new();
     let frames =
         messages.iter().map(|message| encoder.encode(message, ClockTime::from_ns(5)).to_vec());
     frames.collect::<Vec<_>>().concat()
 }
 
 /// Role that sends a message.
-pub(crate) fn sender(message: &Message) -> Role {
+pub(crate) fn sender(message: &Message) -> EndRole {
     match message {
         Message::Hello(hello) => hello.role,
         message => message.kind().senders()[0],
@@ -47,20 +47,20 @@ pub(crate) fn sender(message: &Message) -> Role {
 }
 
 /// Frames of a message from the first role that sends its kind.
-pub(crate) fn frames(message: &Message, format: Format) -> Vec<Frame> {
+pub(crate) fn frames(message: &Message, format: CanVersion) -> Vec<BusFrame> {
     can::segments(message, sender(message), format).expect("it has a slot").collect()
 }
 
 /// Reassembles frames into events.
-pub(crate) fn reassemble(reassembler: &mut Reassembler, frames: &[Frame]) -> Vec<can::Event> {
+pub(crate) fn reassemble(reassembler: &mut Reassembler, frames: &[BusFrame]) -> Vec<can::ReassemblyEvent> {
     frames.iter().filter_map(|frame| reassembler.receive(frame)).collect()
 }
 
 /// Extracts the messages from events.
-pub(crate) fn messages(events: &[can::Event]) -> Vec<Message> {
-    let message = |event: &can::Event| match event {
-        can::Event::Received { message, .. } => Some(*message),
-        can::Event::Lost(_) => None,
+pub(crate) fn messages(events: &[can::ReassemblyEvent]) -> Vec<Message> {
+    let message = |event: &can::ReassemblyEvent| match event {
+        can::ReassemblyEvent::Received { message, .. } => Some(*message),
+        can::ReassemblyEvent::Lost(_) => None,
     };
     events.iter().filter_map(message).collect()
 }

@@ -5,8 +5,8 @@ use octant_sample::{
     GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters, Reference,
 };
 use octant_wire::message::*;
-use octant_wire::requests::{Requests, Verdict};
-use octant_wire::serial::{Decoder, Encoder, Event};
+use octant_wire::requests::{Requests, RequestDecision};
+use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -18,8 +18,8 @@ pub(crate) struct Peer {
     pub(crate) child: Child,
     input: Option<ChildStdin>,
     output: Receiver<Vec<u8>>,
-    encoder: Encoder,
-    pub(crate) decoder: Decoder,
+    encoder: SerialEncoder,
+    pub(crate) decoder: SerialDecoder,
     waiting: VecDeque<Message>,
     begun: Instant,
 }
@@ -46,8 +46,8 @@ impl Peer {
             input: child.stdin.take(),
             child,
             output,
-            encoder: Encoder::new(),
-            decoder: Decoder::new(),
+            encoder: SerialEncoder::new(),
+            decoder: SerialDecoder::new(),
             waiting: VecDeque::new(),
             begun: Instant::now(),
         }
@@ -78,7 +78,7 @@ impl Peer {
                 Ok(bytes) => {
                     let mut rest = &bytes[..];
                     while let Some(event) = self.decoder.next(&mut rest) {
-                        if let Event::Received(received) = event {
+                        if let DecodeEvent::Received(received) = event {
                             self.waiting.push_back(received.message);
                         }
                     }
@@ -177,7 +177,7 @@ impl Echo {
         self.answer()
     }
 
-    pub(crate) fn end(&mut self, step: Step) -> Vec<Message> {
+    pub(crate) fn end(&mut self, step: StepNumber) -> Vec<Message> {
         self.last.step = step;
         self.last.output.mode = Mode::Done;
         self.answer()
@@ -201,7 +201,7 @@ impl Echo {
 }
 
 /// Hello that fits any other of these tests.
-pub(crate) fn hello(role: Role, session: u32) -> Hello {
+pub(crate) fn hello(role: EndRole, session: u32) -> Hello {
     Hello {
         role,
         session,
@@ -215,7 +215,7 @@ pub(crate) fn hello(role: Role, session: u32) -> Hello {
 /// is ignored, and one answer in `lost` is damaged.
 pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
     let (mut session, mut echo, mut heard) = (0, Echo::new(None), 0);
-    let mut requests = Requests::new(Pacing::LockStep);
+    let mut requests = Requests::new(StepPacing::LockStep);
     let mut answer: Vec<Message> = Vec::new();
     while let Some(message) = peer.receive(Duration::from_secs(60)) {
         heard += 1;
@@ -227,9 +227,9 @@ pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
             Message::Hello(theirs) => {
                 if theirs.session != session {
                     session = theirs.session;
-                    (requests, echo) = (Requests::new(Pacing::LockStep), Echo::new(None));
+                    (requests, echo) = (Requests::new(StepPacing::LockStep), Echo::new(None));
                 }
-                let ours = hello(Role::Device, session);
+                let ours = hello(EndRole::Device, session);
                 agree(&ours, theirs).expect("the client is a harness");
                 peer.send(&Message::Hello(ours));
                 continue;
@@ -245,17 +245,17 @@ pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
             _ => continue,
         };
         match (verdict, &message) {
-            (Verdict::Do(aiding), Message::Sample(sample)) => {
+            (RequestDecision::Do(aiding), Message::Sample(sample)) => {
                 let aiding = aiding.map(|aiding| AidingMessage { step: sample.step, aiding });
                 answer = echo.sample(sample, aiding.as_ref());
             }
-            (Verdict::Do(_), Message::Restart(restart)) => {
+            (RequestDecision::Do(_), Message::Restart(restart)) => {
                 echo = Echo::new(restart.offset);
                 answer = vec![Message::Ready(Ready { step: restart.step })];
             }
-            (Verdict::Do(_), _) => answer = echo.end(requests.last()),
-            (Verdict::Again, _) => {}
-            (Verdict::Nothing, _) => continue,
+            (RequestDecision::Do(_), _) => answer = echo.end(requests.last()),
+            (RequestDecision::Again, _) => {}
+            (RequestDecision::Nothing, _) => continue,
         }
         for (i, message) in answer.iter().enumerate() {
             if lost.is_some_and(|n| (heard + i) % n == 0) {

@@ -10,7 +10,7 @@ use octant_wire::{Text, VERSION};
 /// Message of the vectors.
 pub(crate) struct Vector {
     pub(crate) name: &'static str,
-    pub(crate) sender: Role,
+    pub(crate) sender: EndRole,
     pub(crate) message: Message,
     /// Sequence number and clock of its serial frame.
     pub(crate) sequence: u16,
@@ -74,47 +74,47 @@ fn special<const N: usize>(from: usize) -> [f64; N] {
     std::array::from_fn(|i| f64::from_bits(SPECIAL[(from + i) % SPECIAL.len()]))
 }
 
-fn hellos() -> Vec<(&'static str, Role, Message)> {
+fn hellos() -> Vec<(&'static str, EndRole, Message)> {
     let harness = Hello {
         version: VERSION,
-        role: Role::Harness,
-        pacing: Pacing::LockStep,
+        role: EndRole::Harness,
+        pacing: StepPacing::LockStep,
         session: 0x5EED_0001,
         capabilities: Capabilities::all(),
         sample_period_ns: 5_000_000,
-        limits: Limits { window: 1, silence_ms: 2000, shortest_period_ns: 0 },
+        limits: EndLimits { window: 1, silence_ms: 2000, shortest_period_ns: 0 },
         configuration: std::array::from_fn(|i| 0x10 + i as u8),
         name: Text::fitting("octant"),
         firmware: Text::fitting("octant 0.1.0"),
     };
     let device = Hello {
-        role: Role::Device,
+        role: EndRole::Device,
         capabilities: Capabilities::LOCK_STEP | Capabilities::PARAMETERS | Capabilities::VELOCITY,
-        limits: Limits { window: 8, silence_ms: 500, shortest_period_ns: 1_000_000 },
+        limits: EndLimits { window: 8, silence_ms: 500, shortest_period_ns: 1_000_000 },
         configuration: [0; 32],
         name: Text::fitting("Gerät №7, full to the b"),
         firmware: Text::fitting("abcdefghijklmnopqrstuvwx"),
         ..harness
     };
     let instrument = Hello {
-        role: Role::Instrument,
-        pacing: Pacing::RealTime,
+        role: EndRole::Instrument,
+        pacing: StepPacing::RealTime,
         session: 0,
         capabilities: Capabilities::from_bits_retain(0xFFFF_FFFF),
         sample_period_ns: u64::MAX,
-        limits: Limits { window: u16::MAX, silence_ms: u16::MAX, shortest_period_ns: u32::MAX },
+        limits: EndLimits { window: u16::MAX, silence_ms: u16::MAX, shortest_period_ns: u32::MAX },
         configuration: [0xFF; 32],
         name: Text::default(),
         ..device
     };
     vec![
-        ("hello of a harness", Role::Harness, Message::Hello(harness)),
-        ("hello of a device", Role::Device, Message::Hello(device)),
-        ("hello of an instrument", Role::Instrument, Message::Hello(instrument)),
+        ("hello of a harness", EndRole::Harness, Message::Hello(harness)),
+        ("hello of a device", EndRole::Device, Message::Hello(device)),
+        ("hello of an instrument", EndRole::Instrument, Message::Hello(instrument)),
     ]
 }
 
-fn steps() -> Vec<(&'static str, Role, Message)> {
+fn steps() -> Vec<(&'static str, EndRole, Message)> {
     let largest = Sample {
         sequence: u64::MAX,
         device_time: stamp(u64::MAX),
@@ -124,14 +124,14 @@ fn steps() -> Vec<(&'static str, Role, Message)> {
         status: SampleStatus::from_bits_retain(0xFFFF),
     };
     let message = |number, aided, sample| {
-        Message::Sample(SampleMessage { step: Step::new(number), aided, sample })
+        Message::Sample(SampleMessage { step: StepNumber::new(number), aided, sample })
     };
     let velocity = Reference::Velocity([0.001, -0.0, f64::NAN]);
     let [latitude_rad, longitude_rad, height_m] = special(0);
     let position = Reference::Position { latitude_rad, longitude_rad, height_m };
     let aiding = |number, ns, reference| {
         let aiding = Aiding { device_time: stamp(ns), reference };
-        Message::Aiding(AidingMessage { step: Step::new(number), aiding })
+        Message::Aiding(AidingMessage { step: StepNumber::new(number), aiding })
     };
     let numbers: [f64; 11] = special(0);
     let strange = Output {
@@ -155,28 +155,28 @@ fn steps() -> Vec<(&'static str, Role, Message)> {
         parameters_revision: u32::MAX,
     };
     let answer = |number, parameters_follow, output, computing_ns| {
-        let step = Step::new(number);
+        let step = StepNumber::new(number);
         Message::Output(OutputMessage { step, parameters_follow, output, computing_ns })
     };
     vec![
-        ("sample with aiding", Role::Harness, message(1, true, sample())),
-        ("sample of zeros", Role::Harness, message(0, false, Sample::default())),
-        ("sample of the largest counts", Role::Harness, message(0x7FFF, false, largest)),
-        ("sample of an instrument", Role::Instrument, message(2, false, sample())),
-        ("aiding, velocity", Role::Harness, aiding(1, 5_000_000, velocity)),
-        ("aiding, position", Role::Harness, aiding(0x7FFF, u64::MAX, position)),
-        ("aiding of an instrument", Role::Instrument, aiding(2, 0, velocity)),
-        ("output", Role::Device, answer(1, false, output(), 0)),
-        ("output of zeros", Role::Device, answer(0, false, Output::default(), 0)),
-        ("output of special numbers", Role::Device, answer(0x7FFF, true, strange, u32::MAX)),
-        ("end", Role::Harness, Message::End(End { step: Step::new(0x1234) })),
-        ("ready", Role::Device, Message::Ready(Ready { step: Step::new(0x1234) })),
+        ("sample with aiding", EndRole::Harness, message(1, true, sample())),
+        ("sample of zeros", EndRole::Harness, message(0, false, Sample::default())),
+        ("sample of the largest counts", EndRole::Harness, message(0x7FFF, false, largest)),
+        ("sample of an instrument", EndRole::Instrument, message(2, false, sample())),
+        ("aiding, velocity", EndRole::Harness, aiding(1, 5_000_000, velocity)),
+        ("aiding, position", EndRole::Harness, aiding(0x7FFF, u64::MAX, position)),
+        ("aiding of an instrument", EndRole::Instrument, aiding(2, 0, velocity)),
+        ("output", EndRole::Device, answer(1, false, output(), 0)),
+        ("output of zeros", EndRole::Device, answer(0, false, Output::default(), 0)),
+        ("output of special numbers", EndRole::Device, answer(0x7FFF, true, strange, u32::MAX)),
+        ("end", EndRole::Harness, Message::End(End { step: StepNumber::new(0x1234) })),
+        ("ready", EndRole::Device, Message::Ready(Ready { step: StepNumber::new(0x1234) })),
     ]
 }
 
-fn parameters() -> Vec<(&'static str, Role, Message)> {
+fn parameters() -> Vec<(&'static str, EndRole, Message)> {
     let parameters = Parameters::from_array(&std::array::from_fn(|i| (i as f64 - 14.5) * 1e-9));
-    let segments = ParametersSegment::all(Step::new(200), 3, &parameters, &special(0));
+    let segments = ParametersSegment::all(StepNumber::new(200), 3, &parameters, &special(0));
     let names = [
         "parameters, segment 0",
         "parameters, segment 1",
@@ -188,7 +188,7 @@ fn parameters() -> Vec<(&'static str, Role, Message)> {
     let mut all: Vec<_> = names
         .into_iter()
         .zip(segments)
-        .map(|(name, segment)| (name, Role::Device, Message::Parameters(segment)))
+        .map(|(name, segment)| (name, EndRole::Device, Message::Parameters(segment)))
         .collect();
     // A payload without zero bytes makes the longest stuffed frame.
     let full = Parameters::from_array(&[f64::from_bits(0x0101_0101_0101_0101); 30]);
@@ -198,21 +198,21 @@ fn parameters() -> Vec<(&'static str, Role, Message)> {
         ("restart with an offset of special numbers", 0, Some(Parameters::from_array(&special(3)))),
         ("restart without a zero", 0x0101, Some(full)),
     ] {
-        let restart = Restart { step: Step::new(number), offset };
-        all.push((name, Role::Harness, Message::Restart(restart)));
+        let restart = Restart { step: StepNumber::new(number), offset };
+        all.push((name, EndRole::Harness, Message::Restart(restart)));
     }
     all
 }
 
-fn link() -> Vec<(&'static str, Role, Message)> {
+fn link() -> Vec<(&'static str, EndRole, Message)> {
     let heartbeat = Heartbeat {
-        step: Step::new(300),
-        condition: Condition::Stepping,
+        step: StepNumber::new(300),
+        condition: EndCondition::Stepping,
         queued: 2,
         clock: ClockTime::from_ns(1_500_000_000),
     };
-    let status = Status {
-        step: Step::new(300),
+    let status = DeviceStatus {
+        step: StepNumber::new(300),
         steps: 1,
         repeated: 2,
         skipped: 3,
@@ -240,17 +240,17 @@ fn link() -> Vec<(&'static str, Role, Message)> {
         text: Text::fitting("µ: forty bytes of text, to the last one!"),
     };
     vec![
-        ("heartbeat of a harness", Role::Harness, Message::Heartbeat(Heartbeat::default())),
-        ("heartbeat of a device", Role::Device, Message::Heartbeat(heartbeat)),
-        ("heartbeat of an instrument", Role::Instrument, Message::Heartbeat(heartbeat)),
-        ("status", Role::Device, Message::Status(status)),
-        ("status of an instrument", Role::Instrument, Message::Status(Status::default())),
-        ("time request", Role::Harness, Message::TimeRequest(request)),
-        ("time reply", Role::Device, Message::TimeReply(reply)),
-        ("time reply of an instrument", Role::Instrument, Message::TimeReply(reply)),
-        ("bye of a harness", Role::Harness, Message::Bye(bye)),
-        ("bye of a device", Role::Device, Message::Bye(other)),
-        ("bye of an instrument", Role::Instrument, Message::Bye(Bye::default())),
+        ("heartbeat of a harness", EndRole::Harness, Message::Heartbeat(Heartbeat::default())),
+        ("heartbeat of a device", EndRole::Device, Message::Heartbeat(heartbeat)),
+        ("heartbeat of an instrument", EndRole::Instrument, Message::Heartbeat(heartbeat)),
+        ("status", EndRole::Device, Message::Status(status)),
+        ("status of an instrument", EndRole::Instrument, Message::Status(DeviceStatus::default())),
+        ("time request", EndRole::Harness, Message::TimeRequest(request)),
+        ("time reply", EndRole::Device, Message::TimeReply(reply)),
+        ("time reply of an instrument", EndRole::Instrument, Message::TimeReply(reply)),
+        ("bye of a harness", EndRole::Harness, Message::Bye(bye)),
+        ("bye of a device", EndRole::Device, Message::Bye(other)),
+        ("bye of an instrument", EndRole::Instrument, Message::Bye(Bye::default())),
     ]
 }
 

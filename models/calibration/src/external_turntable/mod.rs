@@ -21,9 +21,9 @@
 use crate::config::{self, Noise, Site};
 use crate::least_squares::accelerometer::norm_row;
 use crate::least_squares::chain::{self, AttitudePrior, Chain, Turn};
-use crate::least_squares::interval::{Interval, Segmenter};
+use crate::least_squares::interval::{StaticInterval, Segmenter};
 use crate::least_squares::moves::{Compensation, Move, corrected};
-use crate::least_squares::{Estimate, Refusal, positive};
+use crate::least_squares::{Adjustment, AdjustmentRefusal, positive};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use octant_earth::UnitQuaternion;
 use octant_earth::ellipsoid::Ellipsoid;
@@ -79,7 +79,7 @@ impl ExternalTurntableEstimator {
 struct NormMoments(SMatrix<f64, 10, 10>);
 
 impl NormMoments {
-    fn add(&mut self, compensation: &Compensation, interval: &Interval, gravity_mps2: f64) {
+    fn add(&mut self, compensation: &Compensation, interval: &StaticInterval, gravity_mps2: f64) {
         let (residual, gradient) = norm_row(compensation, interval, gravity_mps2);
         let row = SVector::<f64, 10>::from_fn(|i, _| if i < 9 { gradient[i] } else { residual });
         self.0 += row * row.transpose();
@@ -105,7 +105,7 @@ impl ExternalTurntableEstimator {
         site: &Site,
         noise: &Noise,
         initial: &Parameters,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, AdjustmentRefusal> {
         let encoder_sigma_rad = settings.encoder_sigma_rad;
         positive("encoder_sigma_rad", encoder_sigma_rad)?;
         positive("angle_random_walk", noise.angle_random_walk)?;
@@ -121,7 +121,7 @@ impl ExternalTurntableEstimator {
             encoder_sigma_rad,
             gravity_mps2: earth.gravity_mps2,
             initial: *initial,
-            compensation: Compensation::new(initial).ok_or(Refusal::InitialParameters)?,
+            compensation: Compensation::new(initial).ok_or(AdjustmentRefusal::InitialParameters)?,
             segmenter: Segmenter::new(SHORTEST_S),
             chain: Chain::new(initial, gravity, earth.earth_rate(), density, [true; 30]),
             norms: NormMoments(SMatrix::zeros()),
@@ -142,7 +142,7 @@ impl ExternalTurntableEstimator {
         }
     }
 
-    fn keep(&mut self, (arrival, interval): &(Move, Interval)) {
+    fn keep(&mut self, (arrival, interval): &(Move, StaticInterval)) {
         let Some((azimuth_rad, roll_rad)) = interval.gimbal_rad else {
             self.without_encoder.get_or_insert(self.intervals);
             return;
@@ -166,19 +166,19 @@ impl ExternalTurntableEstimator {
     ///
     /// # Errors
     /// If the dwells and moves don't determine the parameters, or a dwell has no encoder angles.
-    pub fn finish(&mut self) -> Result<Estimate, Refusal> {
+    pub fn finish(&mut self) -> Result<Adjustment, AdjustmentRefusal> {
         if let Some(ended) = self.segmenter.flush() {
             self.keep(&ended);
         }
         if let Some(interval) = self.without_encoder {
-            return Err(Refusal::NoEncoder { interval });
+            return Err(AdjustmentRefusal::NoEncoder { interval });
         }
         if self.intervals < 2 {
-            return Err(Refusal::TooFewIntervals { found: self.intervals, needed: 2 });
+            return Err(AdjustmentRefusal::TooFewIntervals { found: self.intervals, needed: 2 });
         }
         let solution = self.chain.clone().solve()?;
         solution.consistent()?;
-        Ok(Estimate {
+        Ok(Adjustment {
             parameters: corrected(&self.initial, &solution.correction),
             sigma: solution.sigma(),
             gravity_residual_rms_mps2: self.norms.rms(&solution.correction, self.intervals),

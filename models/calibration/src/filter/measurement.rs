@@ -10,7 +10,7 @@ use octant_sample::{Parameters, Reference};
 
 /// Result of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasurementResult {
     /// Normalized innovation squared over three axes; expected mean 3.
     pub nis: f64,
     /// True if the gate rejected the measurement.
@@ -32,7 +32,7 @@ impl CalibrationFilter {
         reference: &Reference,
         strapdown: &mut Strapdown,
         parameters: &mut Parameters,
-    ) -> Option<Measured> {
+    ) -> Option<MeasurementResult> {
         let (first, sigma, error) = self.error_against(reference, strapdown)?;
         let r = sigma * sigma;
         let nis = self.nis(first, r, &error)?;
@@ -43,7 +43,7 @@ impl CalibrationFilter {
         {
             if gate.recovery == Recovery::Widening && !self.is_plausible(&error) {
                 self.tally.rejected += 1;
-                return Some(Measured { nis, rejected: true, recovery_started, turned_rad: 0.0 });
+                return Some(MeasurementResult { nis, rejected: true, recovery_started, turned_rad: 0.0 });
             }
             if matches!(self.stage, Stage::Capture(_)) {
                 // The cause of the recovery still lasts, or one opening was not wide enough.
@@ -52,7 +52,7 @@ impl CalibrationFilter {
                 self.rejected_in_a_row = self.rejected_in_a_row.saturating_add(1);
                 if self.rejected_in_a_row < gate.rejections {
                     self.tally.rejected += 1;
-                    return Some(Measured {
+                    return Some(MeasurementResult {
                         nis,
                         rejected: true,
                         recovery_started,
@@ -87,7 +87,7 @@ impl CalibrationFilter {
                 drift.watch(self.time_s, parameters, &self.covariance);
             }
         }
-        Some(Measured { nis, rejected: false, recovery_started, turned_rad })
+        Some(MeasurementResult { nis, rejected: false, recovery_started, turned_rad })
     }
 
     /// First state, standard deviation and error (computed − reference) of a measurement.

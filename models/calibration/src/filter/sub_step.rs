@@ -9,7 +9,7 @@ const SUB_STEP_MAX_NS: u64 = 50_000_000;
 /// specific force (n, m/s), and the duration, s.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub struct Turned {
+pub struct SensorIntegrals {
     /// Increments of the gyros, compensated, in b, rad.
     pub delta_theta: Vector3<f64>,
     /// Change of velocity by specific force in n, m/s.
@@ -20,7 +20,7 @@ pub struct Turned {
     pub bridged: u8,
 }
 
-impl Turned {
+impl SensorIntegrals {
     pub(super) fn add(&mut self, other: &Self) {
         self.delta_theta += other.delta_theta;
         self.delta_velocity_n += other.delta_velocity_n;
@@ -62,8 +62,8 @@ impl SubStep {
 }
 
 impl SubStep {
-    pub(super) fn turned(&self) -> Turned {
-        Turned {
+    pub(super) fn turned(&self) -> SensorIntegrals {
+        SensorIntegrals {
             delta_theta: self.delta_theta,
             delta_velocity_n: self.delta_velocity_n,
             elapsed_s: self.elapsed_s,

@@ -3,26 +3,26 @@
 //! Nine unknowns, Gauss-Newton, every interval with the same weight: the residuals of such
 //! instruments come from model errors and not from white noise, which a longer mean would reduce.
 
-use super::interval::Interval;
+use super::interval::StaticInterval;
 use super::moves::{ACCEL_TERMS, Compensation, corrected};
 use super::normal::solve;
-use super::refusal::Refusal;
+use super::refusal::AdjustmentRefusal;
 use nalgebra::{SMatrix, SVector};
 use octant_sample::Parameters;
 
 /// Estimates the accelerometers' parameters. Returns all parameters with these replaced, their σ,
 /// and the root mean square of `|f| − g`, m/s².
 pub(crate) fn estimate(
-    intervals: &[Interval],
+    intervals: &[StaticInterval],
     initial: &Parameters,
     gravity_mps2: f64,
-) -> Result<(Parameters, [f64; 9], f64), Refusal> {
+) -> Result<(Parameters, [f64; 9], f64), AdjustmentRefusal> {
     if intervals.len() < 10 {
-        return Err(Refusal::TooFewIntervals { found: intervals.len(), needed: 10 });
+        return Err(AdjustmentRefusal::TooFewIntervals { found: intervals.len(), needed: 10 });
     }
     let mut parameters = *initial;
     for _ in 0..ITERATIONS_MAX {
-        let compensation = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+        let compensation = Compensation::new(&parameters).ok_or(AdjustmentRefusal::Diverged)?;
         let mut information = SMatrix::<f64, 9, 9>::zeros();
         let mut right = SVector::<f64, 9>::zeros();
         let mut sum = 0.0;
@@ -33,7 +33,7 @@ pub(crate) fn estimate(
             sum += residual * residual;
         }
         let (step, covariance) = solve(&information, &right, &[true; 9])
-            .map_err(|index| Refusal::Undetermined { parameter: 21 + index })?;
+            .map_err(|index| AdjustmentRefusal::Undetermined { parameter: 21 + index })?;
         let mut all = SVector::<f64, 30>::zeros();
         all.fixed_rows_mut::<9>(21).copy_from(&step);
         parameters = corrected(&parameters, &all);
@@ -43,7 +43,7 @@ pub(crate) fn estimate(
             return Ok((parameters, sigma, libm::sqrt(sum / intervals.len() as f64)));
         }
     }
-    Err(Refusal::Diverged)
+    Err(AdjustmentRefusal::Diverged)
 }
 
 /// Largest number of Gauss-Newton steps; biases wrong by 0.1 g need six.
@@ -53,7 +53,7 @@ const ITERATIONS_MAX: usize = 30;
 /// `d|f|/db = −n'A` and `d|f|/dM_ij = −(n'A)_i f_j` with `n = f/|f|`, `A = (I + M_a)⁻¹`.
 pub(crate) fn norm_row(
     compensation: &Compensation,
-    interval: &Interval,
+    interval: &StaticInterval,
     gravity_mps2: f64,
 ) -> (f64, SVector<f64, 9>) {
     let force = compensation.force(&interval.force_mps2);

@@ -10,11 +10,11 @@
 //! Attitudes are eliminated as soon as the next one is tied to them, so that one matrix of 36 × 36
 //! suffices for any number of intervals.
 
-use super::interval::Interval;
+use super::interval::StaticInterval;
 use super::limits::RESIDUAL_RMS_MAX;
 use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
 use super::normal::solve;
-use super::refusal::Refusal;
+use super::refusal::AdjustmentRefusal;
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{exp, log, skew};
 use octant_sample::Parameters;
@@ -117,11 +117,11 @@ impl Solution {
     }
 
     /// Refuses the solution if the residuals are far above their noise.
-    pub(crate) fn consistent(&self) -> Result<(), Refusal> {
+    pub(crate) fn consistent(&self) -> Result<(), AdjustmentRefusal> {
         if self.residual_rms <= RESIDUAL_RMS_MAX {
             Ok(())
         } else {
-            Err(Refusal::Inconsistent { residual_rms: self.residual_rms })
+            Err(AdjustmentRefusal::Inconsistent { residual_rms: self.residual_rms })
         }
     }
 
@@ -159,7 +159,7 @@ impl Chain {
     /// Adds an interval, linearised at the attitude `q_nb`, and the move before it.
     pub(crate) fn interval(
         &mut self,
-        interval: &Interval,
+        interval: &StaticInterval,
         q_nb: &UnitQuaternion<f64>,
         turn: Option<&Turn>,
         prior: Option<&AttitudePrior>,
@@ -278,12 +278,12 @@ impl Chain {
     }
 
     /// Eliminates the last attitude and solves for the parameters.
-    pub(crate) fn solve(&mut self) -> Result<Solution, Refusal> {
+    pub(crate) fn solve(&mut self) -> Result<Solution, AdjustmentRefusal> {
         self.eliminate_previous();
         let information = self.information.fixed_view::<30, 30>(0, 0).into_owned();
         let right = self.right.fixed_rows::<30>(0).into_owned();
         let (correction, covariance) = solve(&information, &right, &self.estimated)
-            .map_err(|parameter| Refusal::Undetermined { parameter })?;
+            .map_err(|parameter| AdjustmentRefusal::Undetermined { parameter })?;
         let unknowns = self.estimated.iter().filter(|estimated| **estimated).count();
         let squares = (self.squares - correction.dot(&right)).max(0.0);
         let freedom = self.freedom.saturating_sub(unknowns);

@@ -2,7 +2,7 @@
 //! that of a first interval that is known to be static.
 
 use super::limits::WINDOW_SAMPLES_MAX;
-use super::refusal::Refusal;
+use super::refusal::AdjustmentRefusal;
 use nalgebra::Vector3;
 use octant_sample::Sample;
 use octant_sample::counts::DELTA_VELOCITY_LSB_MPS;
@@ -55,7 +55,7 @@ impl octant_state::State for Detector {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         (self.time_s, self.delivered_time_s) = from.value("times")?;
         (self.initial_samples, self.initial_mean, self.initial_squares) = from.value("initial")?;
@@ -78,17 +78,17 @@ impl Detector {
         window_s: f64,
         threshold: f64,
         sample_period_ns: u64,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, AdjustmentRefusal> {
         let samples = window_s / (sample_period_ns as f64 * 1e-9);
         let window = samples + 0.5;
         if !(window >= 4.0 && window < (WINDOW_SAMPLES_MAX + 1) as f64) {
-            return Err(Refusal::Window { samples });
+            return Err(AdjustmentRefusal::Window { samples });
         }
         if !(initial_s >= window_s && initial_s.is_finite()) {
-            return Err(Refusal::InitialInterval { initial_s });
+            return Err(AdjustmentRefusal::InitialInterval { initial_s });
         }
         if !(threshold > 1.0 && threshold.is_finite()) {
-            return Err(Refusal::Threshold { threshold });
+            return Err(AdjustmentRefusal::Threshold { threshold });
         }
         Ok(Self {
             initial_s,

@@ -8,7 +8,7 @@ use octant_sample::{Sample, Status};
 /// Means of a static interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub struct Interval {
+pub struct StaticInterval {
     /// Mean specific force as measured, m/s².
     pub force_mps2: Vector3<f64>,
     /// Mean angular rate as measured, rad/s.
@@ -68,13 +68,13 @@ impl Sums {
         self.duration_s += dt_s;
     }
 
-    fn interval(&self) -> Interval {
+    fn interval(&self) -> StaticInterval {
         let per_s = 1.0 / self.duration_s;
         // Variance of an increment over the sample period; at least that of rounding.
         let pairs = 2.0 * f64::from(self.differences.max(1));
         let dt_s = self.duration_s / f64::from(self.samples);
         let noise = |sum: f64, lsb: f64| lsb * lsb * (sum / pairs).max(1.0 / 6.0) / dt_s;
-        Interval {
+        StaticInterval {
             force_mps2: Vector3::from(self.delta_velocity)
                 .map(|sum| sum as f64 * (DELTA_VELOCITY_LSB_MPS * per_s)),
             rate_radps: Vector3::from(self.delta_theta)
@@ -156,7 +156,7 @@ impl Segmenter {
         dt_s: f64,
         standing: bool,
         compensation: &Compensation,
-    ) -> Option<(Move, Interval)> {
+    ) -> Option<(Move, StaticInterval)> {
         let ended = if self.standing && !standing { self.flush() } else { None };
         let unbroken =
             self.last_sequence.is_none_or(|last| sample.sequence == last.wrapping_add(1));
@@ -181,7 +181,7 @@ impl Segmenter {
     }
 
     /// Ends a standstill; returns its interval if it was long enough.
-    pub(crate) fn flush(&mut self) -> Option<(Move, Interval)> {
+    pub(crate) fn flush(&mut self) -> Option<(Move, StaticInterval)> {
         if !self.standing {
             return None;
         }

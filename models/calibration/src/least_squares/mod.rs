@@ -47,9 +47,9 @@ use nalgebra::{SVector, Vector3};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_sample::{Parameters, Sample};
 
-pub use interval::Interval;
+pub use interval::StaticInterval;
 pub use limits::{INTERVALS_MAX, RESIDUAL_RMS_MAX, WINDOW_SAMPLES_MAX};
-pub use refusal::Refusal;
+pub use refusal::AdjustmentRefusal;
 pub(crate) use refusal::positive;
 
 /// Shortest standstill to use if the procedure commands it, s.
@@ -61,7 +61,7 @@ const ITERATIONS: usize = 8;
 
 /// Result of an adjustment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct Adjustment {
     /// Estimated parameters; those that the method doesn't estimate keep their initial values.
     pub parameters: Parameters,
     /// Standard deviations, SI, in the order of the parameters; NaN: not estimated.
@@ -89,7 +89,7 @@ pub struct LeastSquaresEstimator {
     compensation: Compensation,
     segmenter: Segmenter,
     detector: Option<Detector>,
-    intervals: [Interval; INTERVALS_MAX],
+    intervals: [StaticInterval; INTERVALS_MAX],
     moves: [Move; INTERVALS_MAX],
     len: usize,
     overflow: bool,
@@ -125,7 +125,7 @@ impl octant_state::State for LeastSquaresEstimator {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.compensation = from.value("compensation")?;
         from.part("segmenter", &mut self.segmenter)?;
@@ -152,7 +152,7 @@ impl LeastSquaresEstimator {
         site: &Site,
         sample_period_ns: u64,
         initial: &Parameters,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, AdjustmentRefusal> {
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
         let gravity_mps2 = settings.gravity_mps2.unwrap_or(earth.gravity_mps2);
         positive("gravity_mps2", gravity_mps2)?;
@@ -169,10 +169,10 @@ impl LeastSquaresEstimator {
             gravity_mps2,
             earth,
             initial: *initial,
-            compensation: Compensation::new(initial).ok_or(Refusal::InitialParameters)?,
+            compensation: Compensation::new(initial).ok_or(AdjustmentRefusal::InitialParameters)?,
             segmenter: Segmenter::new(shortest_s),
             detector,
-            intervals: [Interval::default(); INTERVALS_MAX],
+            intervals: [StaticInterval::default(); INTERVALS_MAX],
             moves: [Move::default(); INTERVALS_MAX],
             len: 0,
             overflow: false,
@@ -206,7 +206,7 @@ impl LeastSquaresEstimator {
         }
     }
 
-    fn keep(&mut self, (arrival, interval): (Move, Interval)) {
+    fn keep(&mut self, (arrival, interval): (Move, StaticInterval)) {
         if self.len == INTERVALS_MAX {
             self.overflow = true;
             return;
@@ -226,7 +226,7 @@ impl LeastSquaresEstimator {
     /// # Errors
     /// If the intervals don't determine the parameters, or are too many, or the adjustment didn't
     /// converge.
-    pub fn finish(&mut self) -> Result<Estimate, Refusal> {
+    pub fn finish(&mut self) -> Result<Adjustment, AdjustmentRefusal> {
         while let Some((sample, dt_s, standing)) = self.detector.as_mut().and_then(Detector::drain)
         {
             self.segment(&sample, dt_s, standing);
@@ -235,7 +235,7 @@ impl LeastSquaresEstimator {
             self.keep(ended);
         }
         if self.overflow {
-            return Err(Refusal::TooManyIntervals);
+            return Err(AdjustmentRefusal::TooManyIntervals);
         }
         match self.gyro {
             GyroReference::EarthRate => self.finish_earth_rate(),
@@ -245,7 +245,7 @@ impl LeastSquaresEstimator {
 
     /// The static intervals found so far.
     #[must_use]
-    pub fn intervals(&self) -> &[Interval] {
+    pub fn intervals(&self) -> &[StaticInterval] {
         &self.intervals[..self.len]
     }
 
@@ -255,10 +255,10 @@ impl LeastSquaresEstimator {
         &self.moves[1.min(self.len)..self.len]
     }
 
-    fn finish_rotated_gravity(&self) -> Result<Estimate, Refusal> {
+    fn finish_rotated_gravity(&self) -> Result<Adjustment, AdjustmentRefusal> {
         let (mut parameters, accel_sigma, gravity_residual_rms_mps2) =
             accelerometer::estimate(self.intervals(), &self.initial, self.gravity_mps2)?;
-        let accel = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+        let accel = Compensation::new(&parameters).ok_or(AdjustmentRefusal::Diverged)?;
         let (correction, gyro_sigma, residual_rms) = rotated_gravity::estimate(
             self.intervals(),
             self.between(),
@@ -277,7 +277,7 @@ impl LeastSquaresEstimator {
         }
         sigma[3..12].copy_from_slice(&gyro_sigma);
         sigma[21..30].copy_from_slice(&accel_sigma);
-        Ok(Estimate {
+        Ok(Adjustment {
             parameters,
             sigma,
             gravity_residual_rms_mps2,
@@ -287,15 +287,15 @@ impl LeastSquaresEstimator {
         })
     }
 
-    fn finish_earth_rate(&self) -> Result<Estimate, Refusal> {
+    fn finish_earth_rate(&self) -> Result<Adjustment, AdjustmentRefusal> {
         if self.len < 2 {
-            return Err(Refusal::TooFewIntervals { found: self.len, needed: 2 });
+            return Err(AdjustmentRefusal::TooFewIntervals { found: self.len, needed: 2 });
         }
         let mut estimated = [true; 30];
         estimated[12..21].fill(false);
         // Noise pooled over the intervals: one instrument, many samples.
         let count = self.len as f64;
-        let pooled = |of: fn(&Interval) -> Vector3<f64>| {
+        let pooled = |of: fn(&StaticInterval) -> Vector3<f64>| {
             self.intervals().iter().fold(Vector3::zeros(), |sum, at| sum + of(at)) / count
         };
         let noise = chain::Noise {
@@ -307,7 +307,7 @@ impl LeastSquaresEstimator {
         let mut parameters = self.initial;
         let mut adjusted = None;
         for _ in 0..ITERATIONS {
-            let at = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+            let at = Compensation::new(&parameters).ok_or(AdjustmentRefusal::Diverged)?;
             let mut chain = Chain::new(&parameters, gravity, earth_rate, noise, estimated);
             for (index, interval) in self.intervals().iter().enumerate() {
                 let force = at.force(&interval.force_mps2);
@@ -315,7 +315,7 @@ impl LeastSquaresEstimator {
                 let visible = rate.norm() / EARTH_RATE_RADPS;
                 let q_nb = attitude_of(&force, &rate)
                     .filter(|_| visible > 0.5 && visible < 2.0)
-                    .ok_or(Refusal::NoEarthRate { interval: index })?;
+                    .ok_or(AdjustmentRefusal::NoEarthRate { interval: index })?;
                 let turn = (index > 0).then(|| {
                     chain::Turn::new(
                         &self.moves[index],
@@ -330,17 +330,17 @@ impl LeastSquaresEstimator {
             parameters = corrected(&parameters, &solution.correction);
             adjusted = Some(solution);
         }
-        let solution = adjusted.ok_or(Refusal::Diverged)?;
+        let solution = adjusted.ok_or(AdjustmentRefusal::Diverged)?;
         solution.consistent()?;
         if !solution.settled() {
-            return Err(Refusal::Diverged);
+            return Err(AdjustmentRefusal::Diverged);
         }
-        let at = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+        let at = Compensation::new(&parameters).ok_or(AdjustmentRefusal::Diverged)?;
         let squares = self.intervals().iter().fold(0.0, |sum, interval| {
             let residual = at.force(&interval.force_mps2).norm() - self.gravity_mps2;
             sum + residual * residual
         });
-        Ok(Estimate {
+        Ok(Adjustment {
             parameters,
             sigma: solution.sigma(),
             gravity_residual_rms_mps2: libm::sqrt(squares / count),

@@ -9,7 +9,7 @@ type Setting = &'static str;
 /// Reason why there is no estimate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub enum Refusal {
+pub enum AdjustmentRefusal {
     /// Not enough static intervals.
     #[error("{found} static intervals were found, at least {needed} are needed")]
     TooFewIntervals {
@@ -97,11 +97,11 @@ pub enum Refusal {
 }
 
 /// Checks that a setting is a positive number.
-pub(crate) fn positive(field: &'static str, found: f64) -> Result<(), Refusal> {
+pub(crate) fn positive(field: &'static str, found: f64) -> Result<(), AdjustmentRefusal> {
     if found > 0.0 && found.is_finite() {
         Ok(())
     } else {
-        Err(Refusal::NotPositive { field, found })
+        Err(AdjustmentRefusal::NotPositive { field, found })
     }
 }
 

@@ -6,10 +6,10 @@
 //! without external equipments*, ICRA 2014). Earth rate remains in the bias: that is the limit of
 //! the method, and far below the noise of the gyros for which it is made.
 
-use super::interval::Interval;
+use super::interval::StaticInterval;
 use super::moves::{Compensation, Move};
 use super::normal::solve;
-use super::refusal::Refusal;
+use super::refusal::AdjustmentRefusal;
 use nalgebra::{SMatrix, SVector};
 use octant_earth::rotation::{exp, skew};
 
@@ -19,14 +19,14 @@ use octant_earth::rotation::{exp, skew};
 /// `moves[k]` leads from interval k to interval k + 1; the moves were integrated with
 /// `compensation`; forces are compensated with `accel`.
 pub(crate) fn estimate(
-    intervals: &[Interval],
+    intervals: &[StaticInterval],
     moves: &[Move],
     compensation: &Compensation,
     accel: &Compensation,
-) -> Result<(SVector<f64, 9>, [f64; 9], f64), Refusal> {
+) -> Result<(SVector<f64, 9>, [f64; 9], f64), AdjustmentRefusal> {
     let complete = moves.iter().filter(|m| m.complete).count();
     if complete < 6 {
-        return Err(Refusal::TooFewMoves { found: complete, needed: 6 });
+        return Err(AdjustmentRefusal::TooFewMoves { found: complete, needed: 6 });
     }
     let mut correction = SVector::<f64, 9>::zeros();
     for _ in 0..ITERATIONS_MAX {
@@ -46,7 +46,7 @@ pub(crate) fn estimate(
             sum += residual.norm_squared();
         }
         let (step, covariance) = solve(&information, &right, &[true; 9])
-            .map_err(|index| Refusal::Undetermined { parameter: 3 + index })?;
+            .map_err(|index| AdjustmentRefusal::Undetermined { parameter: 3 + index })?;
         correction += step;
         if step.amax() < 1e-12 {
             // Two of the three components of a direction are free.
@@ -55,7 +55,7 @@ pub(crate) fn estimate(
             return Ok((correction, sigma, libm::sqrt(sum / (3 * complete) as f64)));
         }
     }
-    Err(Refusal::Diverged)
+    Err(AdjustmentRefusal::Diverged)
 }
 
 /// Largest number of steps; scale factors wrong by a quarter need sixteen: the residuals stay large

@@ -12,7 +12,7 @@ use super::uncertainty::on;
 use super::{Core, increments};
 use crate::config::Base;
 use crate::continuity::{Edge, c_cb, gimbal_turn, share_of_turn};
-use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
+use crate::screen::{ACCELEROMETERS, SensorCounts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{GimbalAngles, Health, Mode, Parameters, Sample, Status};
@@ -33,7 +33,7 @@ struct Increments {
 }
 
 impl Increments {
-    fn of(&[x, y, z, u, v, w]: &Counts) -> Self {
+    fn of(&[x, y, z, u, v, w]: &SensorCounts) -> Self {
         let (delta_theta, delta_velocity) = increments([x, y, z], [u, v, w]);
         Self { delta_theta, delta_velocity }
     }
@@ -45,7 +45,7 @@ impl Increments {
     }
 }
 
-fn counts_of(sample: &Sample) -> Counts {
+fn counts_of(sample: &Sample) -> SensorCounts {
     let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
     [x, y, z, u, v, w]
 }

@@ -1,6 +1,6 @@
 //! Checks of a configuration before a core is made from it.
 
-use crate::config::{AidingMode, Alignment, Base, BaseMotion, Config, Estimator};
+use crate::config::{AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator};
 use crate::schedule::DoesNotFit;
 
 /// Longest calibration or navigation, s: thirty years. Its number of ticks is small enough for all
@@ -9,7 +9,7 @@ const DURATION_MAX_S: f64 = 1e9;
 
 /// Reason why a configuration can't be run.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum ConfigError {
+pub enum CoreConfigError {
     /// The sequence doesn't fit into the calibration time.
     #[error(transparent)]
     DoesNotFit(#[from] DoesNotFit),
@@ -61,7 +61,7 @@ pub enum ConfigError {
     },
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
-    Estimator(#[from] crate::least_squares::Refusal),
+    Estimator(#[from] crate::least_squares::AdjustmentRefusal),
     /// Coarse alignment takes longer than the instrument rests.
     #[error(
         "coarse alignment takes {alignment_s} s, and the first stop is held for {dwell_s} s only"
@@ -77,34 +77,34 @@ pub enum ConfigError {
     Nothing,
 }
 
-pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
+pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
     let period_ns = config.sample_period_ns;
     if period_ns == 0 || period_ns > 1_000_000_000 {
-        return Err(ConfigError::Period {
+        return Err(CoreConfigError::Period {
             field: "sample period",
             found_ns: period_ns,
             expected: "1 ns to 1 s",
         });
     }
     if !(config.site.latitude_rad.abs() <= 1.56) {
-        return Err(ConfigError::Latitude { found_rad: config.site.latitude_rad });
+        return Err(CoreConfigError::Latitude { found_rad: config.site.latitude_rad });
     }
     let positive = |field, found: f64| {
         if found > 0.0 && found.is_finite() {
             Ok(())
         } else {
-            Err(ConfigError::NotPositive { field, found })
+            Err(CoreConfigError::NotPositive { field, found })
         }
     };
     let finite = |field, found: f64| {
-        if found.is_finite() { Ok(()) } else { Err(ConfigError::NotFinite { field, found }) }
+        if found.is_finite() { Ok(()) } else { Err(CoreConfigError::NotFinite { field, found }) }
     };
     let duration = |field, found_s: f64| {
         positive(field, found_s)?;
         if found_s <= DURATION_MAX_S {
             Ok(())
         } else {
-            Err(ConfigError::TooLong { field, found_s })
+            Err(CoreConfigError::TooLong { field, found_s })
         }
     };
     finite("longitude", config.site.longitude_rad)?;
@@ -120,7 +120,7 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
         }
     }
     if let Some(found @ 0..2) = config.screening.stuck_samples {
-        return Err(ConfigError::StuckSamples { found });
+        return Err(CoreConfigError::StuckSamples { found });
     }
     if let Some(gate) = config.screening.gate {
         positive("gate of the innovations", gate.nis)?;
@@ -149,7 +149,7 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
         duration("calibration duration", calibration.duration_s)?;
         if let Estimator::Kalman(kalman) = &calibration.estimator {
             if kalman.aiding_period_ns == 0 || !kalman.aiding_period_ns.is_multiple_of(period_ns) {
-                return Err(ConfigError::Period {
+                return Err(CoreConfigError::Period {
                     field: "aiding period",
                     found_ns: kalman.aiding_period_ns,
                     expected: "a multiple of the sample period",
@@ -167,7 +167,7 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
         }
     }
     if config.calibration.is_none() && config.navigation.is_none() {
-        return Err(ConfigError::Nothing);
+        return Err(CoreConfigError::Nothing);
     }
     Ok(())
 }

@@ -6,9 +6,9 @@ use super::uncertainty::{OPEN_MAX_MPS, OPEN_MAX_RAD};
 use super::{Core, kalman_of};
 use crate::config::Base;
 use crate::continuity::{Block, Continuity, Edge, TURNS_RAD, gimbal_turn};
-use crate::filter::Turned;
+use crate::filter::SensorIntegrals;
 use nalgebra::{Matrix3, Vector3};
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use octant_sample::{GimbalAngles, Health, Mode, Sample, Status};
 
 /// Tolerance of the length of a block, as a share; after a gap a block is outside of it.
@@ -115,7 +115,7 @@ impl Core {
     /// Turn and velocity beyond the known motion of a base at rest, in n: rad and m/s.
     fn beyond(
         &self,
-        felt: &Turned,
+        felt: &SensorIntegrals,
         from: GimbalAngles,
         to: GimbalAngles,
     ) -> (Vector3<f64>, Vector3<f64>) {
@@ -178,10 +178,10 @@ impl Core {
     /// Variance of the possible difference between gyros and encoders over a move, rad².
     fn encoders_and_axes(&self) -> f64 {
         let sigma = self.config.screening.encoder_sigma_rad;
-        let parameters = |group: Group| {
+        let parameters = |group: ParameterGroup| {
             self.sigma[group.range()].iter().fold(0.0f64, |largest, sigma| largest.max(*sigma))
         };
-        let axes = parameters(Group::GyroScale).max(parameters(Group::GyroMisalignment));
+        let axes = parameters(ParameterGroup::GyroScale).max(parameters(ParameterGroup::GyroMisalignment));
         2.0 * sigma * sigma + axes * axes
     }
 

@@ -2,7 +2,7 @@
 
 use super::estimation::Estimation;
 use super::judgement::judge;
-use super::{Core, Refusal, kalman_of, strapdown_at};
+use super::{Core, CalibrationRefusal, kalman_of, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Estimator, Site};
@@ -37,7 +37,7 @@ impl Core {
     }
 
     /// Concludes the estimation: judges it, and sets parameters and attitude.
-    fn conclude(&mut self) -> Result<Quality, Refusal> {
+    fn conclude(&mut self) -> Result<Quality, CalibrationRefusal> {
         if let (Estimation::Kalman(filter), Some(kalman)) =
             (&mut self.estimation, kalman_of(&self.config))
         {
@@ -49,11 +49,11 @@ impl Core {
             let (bridged, gimbal_slips) = (self.bridge.samples, self.slips.count);
             let quality = judge(filter, kalman, expected, (bridged, ticks))?;
             if self.unrepaired != 0 {
-                return Err(Refusal::Disturbed { disturbances: self.unrepaired });
+                return Err(CalibrationRefusal::Disturbed { disturbances: self.unrepaired });
             }
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
-        let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
+        let Some(adjusted) = self.estimation.adjust() else { return Err(CalibrationRefusal::Numeric) };
         let estimate = adjusted?;
         self.parameters = estimate.parameters;
         self.sigma = estimate.sigma;
@@ -65,7 +65,7 @@ impl Core {
                 self.compensation.apply(&still.delta_theta, &still.delta_velocity, still.elapsed_s);
             let mut alignment = CoarseAlignment::new(&self.config.site);
             alignment.step(&dtheta, &dv, still.elapsed_s);
-            let q_nb = alignment.finish().ok_or(Refusal::Alignment)?;
+            let q_nb = alignment.finish().ok_or(CalibrationRefusal::Alignment)?;
             self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
         }
         let used = estimate.intervals as u64;

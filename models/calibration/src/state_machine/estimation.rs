@@ -1,9 +1,9 @@
 //! The estimator that runs, and its input beside the samples.
 
-use crate::config::{Calibration, Config, Estimator};
+use crate::config::{Calibration, CoreConfig, Estimator};
 use crate::external_turntable::ExternalTurntableEstimator;
 use crate::filter::CalibrationFilter;
-use crate::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
+use crate::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
 use nalgebra::Vector3;
 use octant_sample::Sample;
 
@@ -19,7 +19,7 @@ pub(super) enum Estimation {
 }
 
 impl Estimation {
-    pub(super) fn new(config: &Config, calibration: &Calibration) -> Result<Self, Refusal> {
+    pub(super) fn new(config: &CoreConfig, calibration: &Calibration) -> Result<Self, AdjustmentRefusal> {
         Ok(match &calibration.estimator {
             Estimator::Kalman(kalman) => Self::Kalman(CalibrationFilter::new(
                 kalman,
@@ -56,7 +56,7 @@ impl Estimation {
     }
 
     /// Computes the adjustment, if the estimator has one.
-    pub(super) fn adjust(&self) -> Option<Result<Estimate, Refusal>> {
+    pub(super) fn adjust(&self) -> Option<Result<Adjustment, AdjustmentRefusal>> {
         match self {
             Self::LeastSquares(estimator) => Some(estimator.clone().finish()),
             Self::ExternalTurntable(estimator) => Some(estimator.clone().finish()),

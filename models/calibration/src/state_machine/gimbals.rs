@@ -5,7 +5,7 @@ use crate::config::Base;
 use crate::covariance::PHI;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::rotation::log;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 use octant_sample::{GimbalAngles, GimbalCommand, Health, Mode, Sample, Status};
 
 /// Standard deviations of the difference between a turn by gyros and by encoders above which it is
@@ -68,7 +68,7 @@ impl Core {
         let q_nc = q_nb * q_cb(sample.gimbal).inverse();
         if let Some((before, gimbal)) = self.slips.last {
             let turned = (q_cb(gimbal).inverse() * q_cb(sample.gimbal)).angle();
-            let axes_rad = turned * kalman.prior.of(Group::GyroMisalignment);
+            let axes_rad = turned * kalman.prior.of(ParameterGroup::GyroMisalignment);
             let sigma = screening.encoder_sigma_rad;
             let attitude: f64 =
                 (0..3).map(|axis| filter.covariance().at(PHI + axis, PHI + axis)).sum();

@@ -24,7 +24,7 @@ const BRIDGED_SHARE_MAX: f64 = 0.02;
 /// Reason why a calibration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub enum Refusal {
+pub enum CalibrationRefusal {
     /// The innovations contradict the tuning.
     #[error("the mean NIS of {mean:.1} is above {limit}: the innovations contradict the tuning")]
     Inconsistent {
@@ -99,7 +99,7 @@ pub enum Refusal {
     },
     /// The least-squares adjustment gave no result.
     #[error("{0}")]
-    Adjustment(#[from] crate::least_squares::Refusal),
+    Adjustment(#[from] crate::least_squares::AdjustmentRefusal),
     /// The attitude could not be found from gravity and Earth rate.
     #[error("no attitude could be found from gravity and Earth rate: did the instrument stand?")]
     Alignment,
@@ -128,41 +128,41 @@ pub(super) fn judge(
     kalman: &Kalman,
     expected: u64,
     (bridged, samples): (u64, u64),
-) -> Result<Quality, Refusal> {
+) -> Result<Quality, CalibrationRefusal> {
     let (tally, quality) = (filter.tally(), quality_of(filter));
     let total = tally.used + tally.rejected;
     if !filter.covariance().is_finite() {
-        return Err(Refusal::Numeric);
+        return Err(CalibrationRefusal::Numeric);
     }
     let estimating = tally.used - tally.held;
     if (total as f64) >= MEASURED_SHARE_MIN * expected as f64
         && (estimating as f64) < ESTIMATING_SHARE_MIN * expected as f64
     {
-        return Err(Refusal::Held { held: tally.held, expected });
+        return Err(CalibrationRefusal::Held { held: tally.held, expected });
     }
     if (total as f64) < MEASURED_SHARE_MIN * expected as f64 {
-        return Err(Refusal::AidingLost { used: total, expected });
+        return Err(CalibrationRefusal::AidingLost { used: total, expected });
     }
     if tally.rejected as f64 > REJECTED_SHARE_MAX * total as f64 {
-        return Err(Refusal::Rejected { rejected: tally.rejected, total });
+        return Err(CalibrationRefusal::Rejected { rejected: tally.rejected, total });
     }
     if tally.recoveries > RECOVERIES_MAX {
-        return Err(Refusal::Recoveries { recoveries: tally.recoveries });
+        return Err(CalibrationRefusal::Recoveries { recoveries: tally.recoveries });
     }
     if !(quality.nis_mean <= kalman.refuse_above_mean_nis) {
-        return Err(Refusal::Inconsistent {
+        return Err(CalibrationRefusal::Inconsistent {
             mean: quality.nis_mean,
             limit: kalman.refuse_above_mean_nis,
         });
     }
     if bridged as f64 > BRIDGED_SHARE_MAX * samples as f64 {
-        return Err(Refusal::Bridged { bridged, total: samples });
+        return Err(CalibrationRefusal::Bridged { bridged, total: samples });
     }
     if let Some(drift) = filter.drift()
         && drift.is_found()
     {
         let &Largest { sigmas, parameter, between_s } = drift.largest();
-        return Err(Refusal::Drift { parameter, sigmas, between_s });
+        return Err(CalibrationRefusal::Drift { parameter, sigmas, between_s });
     }
     Ok(quality)
 }

@@ -2,9 +2,9 @@
 
 use super::edges::CORRECTION_RAD;
 use super::estimation::Estimation;
-use super::{Core, Refusal, kalman_of};
+use super::{Core, CalibrationRefusal, kalman_of};
 use crate::compensation::Compensation;
-use crate::drift::Drift;
+use crate::drift::DriftTest;
 use octant_sample::{Aiding, Health, Sample};
 
 /// Memory of the running mean of NIS, measurements.
@@ -55,7 +55,7 @@ impl Core {
         });
         if !self.parameters.to_array().iter().all(|value| value.is_finite()) {
             self.parameters = before;
-            self.refuse(Refusal::Numeric);
+            self.refuse(CalibrationRefusal::Numeric);
             *health |= Health::NUMERIC;
             return;
         }
@@ -91,7 +91,7 @@ impl Core {
         if filter.is_recovering() {
             *health |= Health::RECOVERING;
         }
-        if filter.drift().is_some_and(Drift::is_found) {
+        if filter.drift().is_some_and(DriftTest::is_found) {
             *health |= Health::DRIFTING;
         }
         if self.nis_running > kalman.refuse_above_mean_nis {

@@ -17,14 +17,14 @@ mod step;
 mod stretch;
 mod uncertainty;
 
-pub use check::ConfigError;
-pub use judgement::Refusal;
+pub use check::CoreConfigError;
+pub use judgement::CalibrationRefusal;
 #[cfg(feature = "state")]
 pub use state::FORMAT as STATE_FORMAT;
 
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
-use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
+use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, Site};
 use crate::continuity::{Continuity, POINTS, block_ticks};
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally};
@@ -68,7 +68,7 @@ struct Gimbals {
 /// The calibration core. See [`Core::step`].
 #[derive(Clone, Debug)]
 pub struct Core {
-    config: Config,
+    config: CoreConfig,
     sample_s: f64,
     /// Samples of the calibration, and of the navigation after it.
     calibration_ticks: u64,
@@ -111,7 +111,7 @@ pub struct Core {
     nis_running: f64,
     gimbal_disagreements: u64,
     gimbal_tolerance: u64,
-    refusal: Option<Refusal>,
+    refusal: Option<CalibrationRefusal>,
     /// Quality of a filter that was refused.
     last_quality: Quality,
     table: Option<CalibrationTable>,
@@ -142,8 +142,8 @@ impl Core {
     /// Makes a core that waits for its first sample.
     ///
     /// # Errors
-    /// If the configuration contradicts itself: see [`ConfigError`].
-    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+    /// If the configuration contradicts itself: see [`CoreConfigError`].
+    pub fn new(config: &CoreConfig) -> Result<Self, CoreConfigError> {
         check::check(config)?;
         let sample_s = config.sample_period_ns as f64 * 1e-9;
         let (q_nb, velocity, alignment) = match &config.alignment {
@@ -211,7 +211,7 @@ impl Core {
 
     /// Plans the stops. The clock of the calibration starts with the first sample: a coarse
     /// alignment uses time of the first dwell.
-    fn start_calibration(&mut self, calibration: &Calibration) -> Result<(), ConfigError> {
+    fn start_calibration(&mut self, calibration: &Calibration) -> Result<(), CoreConfigError> {
         let rates = self.config.turntable;
         let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
         self.calibration_ticks = ticks(calibration.duration_s, self.sample_s);
@@ -221,7 +221,7 @@ impl Core {
         if let Alignment::Coarse { duration_s: alignment_s } = self.config.alignment {
             let dwell_s = cursor.departure_s();
             if cursor.arrival_s() > 0.0 || alignment_s > dwell_s {
-                return Err(ConfigError::Alignment { alignment_s, dwell_s });
+                return Err(CoreConfigError::Alignment { alignment_s, dwell_s });
             }
         }
         self.cursor = Some(cursor);
@@ -277,7 +277,7 @@ impl Core {
 
     #[cold]
     #[inline(never)]
-    fn refuse(&mut self, refusal: Refusal) {
+    fn refuse(&mut self, refusal: CalibrationRefusal) {
         if let Some(filter) = self.filter() {
             self.last_quality = self.quality(filter);
         }
@@ -307,7 +307,7 @@ impl Core {
 
     /// Configuration of the core.
     #[must_use]
-    pub fn config(&self) -> &Config {
+    pub fn config(&self) -> &CoreConfig {
         &self.config
     }
 
@@ -338,7 +338,7 @@ impl Core {
 
     /// Reason why the calibration was refused, if it was.
     #[must_use]
-    pub fn refusal(&self) -> Option<&Refusal> {
+    pub fn refusal(&self) -> Option<&CalibrationRefusal> {
         self.refusal.as_ref()
     }
 
@@ -383,7 +383,7 @@ impl Core {
     }
 }
 
-fn kalman_of(config: &Config) -> Option<&Kalman> {
+fn kalman_of(config: &CoreConfig) -> Option<&Kalman> {
     match &config.calibration {
         Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) => Some(kalman),
         _ => None,

@@ -6,19 +6,19 @@
 
 use super::Core;
 use super::estimation::Estimation;
-use crate::config::Config;
+use crate::config::CoreConfig;
 use crate::schedule::Cursor;
 use alloc::string::ToString;
 use alloc::vec::Vec;
 use octant_sample::GimbalAngles;
-use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
+use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
 
 extern crate alloc;
 
 /// Format of the state of a core. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
-pub const FORMAT: Format =
-    Format { magic: "OCTANTCC", version: 2, what: "the state of a calibration core" };
+pub const FORMAT: StateFormat =
+    StateFormat { magic: "OCTANTCC", version: 2, what: "the state of a calibration core" };
 
 impl Core {
     /// Appends everything that the core needs to continue bit for bit after this step: the same
@@ -37,7 +37,7 @@ impl Core {
     /// function nor the resulting core panics, whatever the bytes.
     pub fn load(bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
-        let config: Config = from.value("config")?;
+        let config: CoreConfig = from.value("config")?;
         let mut core =
             Self::new(&config).map_err(|error| StateError::value("config", error.to_string()))?;
         from.part("core", &mut core)?;
@@ -148,7 +148,7 @@ impl State for Core {
         to.value("answered", answered);
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.tick = from.value("tick")?;
         self.phase_start = from.value("phase_start")?;
         check_count("tick", self.tick)?;
@@ -215,7 +215,7 @@ impl State for Estimation {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         match self {
             Self::Idle => Ok(()),
             Self::Kalman(filter) => from.part("filter", filter),

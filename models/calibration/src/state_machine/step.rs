@@ -1,8 +1,8 @@
 //! One sample: from its increments to the output.
 
 use super::estimation::{Estimation, Standstill};
-use super::{Core, Gimbals, Refusal, increments, strapdown_at};
-use crate::monitor::Order;
+use super::{Core, Gimbals, CalibrationRefusal, increments, strapdown_at};
+use crate::monitor::SampleOrder;
 use nalgebra::Vector3;
 use octant_sample::{Aiding, Health, Mode, Output, Sample};
 
@@ -23,9 +23,9 @@ impl Core {
         let (order, mut health) = self.monitor.check(sample);
         let mut nis = f64::NAN;
         let interval_ns = match order {
-            Order::Behind => return self.answer(sample, health, nis, output),
-            Order::Next(interval_ns) => interval_ns,
-            Order::Gap { missing } => {
+            SampleOrder::Behind => return self.answer(sample, health, nis, output),
+            SampleOrder::Next(interval_ns) => interval_ns,
+            SampleOrder::Gap { missing } => {
                 self.bridge(missing, sample);
                 self.config.sample_period_ns
             }
@@ -62,7 +62,7 @@ impl Core {
         if !self.strapdown.is_sound() && self.mode != Mode::Refused {
             // The number that isn't finite was kept out of the solution: the last good one remains.
             health |= Health::NUMERIC;
-            self.refuse(Refusal::Numeric);
+            self.refuse(CalibrationRefusal::Numeric);
         }
         self.answer(sample, health, nis, output);
     }
@@ -164,7 +164,7 @@ impl Core {
                 self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
                 self.leave_alignment();
             }
-            None => self.refuse(Refusal::Alignment),
+            None => self.refuse(CalibrationRefusal::Alignment),
         }
     }
 

@@ -8,7 +8,7 @@ use crate::continuity::gimbal_turn;
 use crate::screen::{ACCELEROMETERS, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::ParameterGroup;
 
 /// Largest attitude jump that is followed after its rejection, rad: 3°, the limit of the linear
 /// error model.
@@ -92,7 +92,7 @@ impl Core {
     /// relative to the body axes no better than the gyros' axes before they are calibrated.
     fn encoder_uncertainty(&mut self) -> Matrix3<f64> {
         let axes_rad =
-            kalman_of(&self.config).map_or(0.0, |kalman| kalman.prior.of(Group::GyroMisalignment));
+            kalman_of(&self.config).map_or(0.0, |kalman| kalman.prior.of(ParameterGroup::GyroMisalignment));
         let sigma = self.config.screening.encoder_sigma_rad;
         let Bridge { start, gimbal, open, .. } = self.bridge;
         let turns = [

@@ -1,7 +1,7 @@
 //! The kinds of faults on connections.
 
-use crate::catalogue::{Bounds, Dimension, Example, Lasts, Parameter, Takes};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::catalogue::{ParameterBounds, Dimension, Example, Lasts, FaultParameter, Takes};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Value, Values};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ use octant_random::stream::Phase;
 
 /// A kind of fault on connections.
 #[derive(Debug)]
-pub struct Kind {
+pub struct ConnectionFaultKind {
     /// Name in lists of faults.
     pub name: &'static str,
     /// Summary in one sentence.
@@ -20,14 +20,14 @@ pub struct Kind {
     /// lines.
     pub model: &'static str,
     /// Parameters, beside those that every fault has.
-    pub parameters: &'static [Parameter],
+    pub parameters: &'static [FaultParameter],
     /// Duration of faults of this kind.
     pub lasts: Lasts,
     /// Example of the kind.
     pub example: Example,
     /// Types of inputs that it can act on.
     pub on: On,
-    build: fn(&Values, &Setup, &[Target]) -> Result<Rule, BuildError>,
+    build: fn(&Values, &Setup, &[Target]) -> Result<Rule, FaultBuildError>,
 }
 
 /// Types of inputs that a kind can act on.
@@ -81,20 +81,20 @@ impl Target {
 
 /// Finds a kind by its name.
 #[must_use]
-pub fn named(name: &str) -> Option<&'static Kind> {
+pub fn named(name: &str) -> Option<&'static ConnectionFaultKind> {
     KINDS.iter().copied().find(|kind| kind.name == name)
 }
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&Kind] = &[&STUCK, &BIAS, &SCALE, &NOISE, &DELAY, &DROP, &NAN];
+pub static KINDS: &[&ConnectionFaultKind] = &[&STUCK, &BIAS, &SCALE, &NOISE, &DELAY, &DROP, &NAN];
 
-static STUCK: Kind = Kind {
+static STUCK: ConnectionFaultKind = ConnectionFaultKind {
     name: "stuck",
     summary: "The input stays at one value.",
     model: "While it lasts, the input gets the same value at every communication point: `value`, or, \
             where that is left out, what was transferred last before the onset. At an onset with the \
             first step there is nothing before; then it is what is transferred first.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "value",
         takes: Takes::Value,
         default: Some("last"),
@@ -112,15 +112,15 @@ static STUCK: Kind = Kind {
     },
 };
 
-static BIAS: Kind = Kind {
+static BIAS: ConnectionFaultKind = ConnectionFaultKind {
     name: "bias",
     summary: "A constant is added.",
     model: "While it lasts,\n\n    y = x + strength · value\n\nwith strength 1, falling to 0 over the \
             recovery. Whole numbers are rounded to the nearest, ties to even, and end at the limits \
             of their type.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "value",
-        takes: Takes::Difference(Bounds::NotZero),
+        takes: Takes::Difference(ParameterBounds::NotZero),
         default: None,
         doc: "What is added, in the unit of the input or with a unit.",
     }],
@@ -130,15 +130,15 @@ static BIAS: Kind = Kind {
     build: |values, _, _| Ok(Rule::Bias(values.number("value")?)),
 };
 
-static SCALE: Kind = Kind {
+static SCALE: ConnectionFaultKind = ConnectionFaultKind {
     name: "scale",
     summary: "The value is multiplied.",
     model: "While it lasts,\n\n    y = x + strength · (factor − 1) · x\n\nwith strength 1, falling to \
             0 over the recovery. Whole numbers are rounded to the nearest, ties to even, and end at \
             the limits of their type.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "factor",
-        takes: Takes::Number(Bounds::Any),
+        takes: Takes::Number(ParameterBounds::Any),
         default: None,
         doc: "The factor; 1 would do nothing.",
     }],
@@ -148,13 +148,13 @@ static SCALE: Kind = Kind {
     build: |values, _, _| {
         let factor = values.number("factor")?;
         if factor == 1.0 {
-            return Err(BuildError::value("factor", "found 1, with which nothing would happen"));
+            return Err(FaultBuildError::value("factor", "found 1, with which nothing would happen"));
         }
         Ok(Rule::Scale(factor))
     },
 };
 
-static NOISE: Kind = Kind {
+static NOISE: ConnectionFaultKind = ConnectionFaultKind {
     name: "noise",
     summary: "White noise is added.",
     model: "While it lasts,\n\n    y = x + strength · sigma · n\n\nwith n standard normal, drawn anew \
@@ -162,9 +162,9 @@ static NOISE: Kind = Kind {
             the recovery. n depends on the seed, the id of the fault, the number of the step and \
             that of the element, and on nothing else. Whole numbers are rounded to the nearest, ties \
             to even, and end at the limits of their type.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "sigma",
-        takes: Takes::Difference(Bounds::Positive),
+        takes: Takes::Difference(ParameterBounds::Positive),
         default: None,
         doc: "Standard deviation, in the unit of the input or with a unit.",
     }],
@@ -183,16 +183,16 @@ static NOISE: Kind = Kind {
     },
 };
 
-static DELAY: Kind = Kind {
+static DELAY: ConnectionFaultKind = ConnectionFaultKind {
     name: "delay",
     summary: "Values arrive late.",
     model: "While it lasts, the input gets at every communication point what would have been \
             transferred `delay` before. In the first steps, when there is nothing so old, it gets \
             what was transferred first. At the end the input jumps to the present value: what was on \
             its way is lost.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "delay",
-        takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::Positive),
+        takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
         default: None,
         doc: "How late: a time, rounded to whole steps, or a number of steps, \"3 samples\".",
     }],
@@ -207,7 +207,7 @@ static DELAY: Kind = Kind {
         };
         if !(1.0..=DELAY_MAX as f64).contains(&steps) {
             let problem = alloc::format!("it is {steps} steps, expected 1 to {DELAY_MAX}");
-            return Err(BuildError::value("delay", problem));
+            return Err(FaultBuildError::value("delay", problem));
         }
         let steps = steps as usize;
         Ok(Rule::Delay { steps, kept: vec![0.0; (steps + 1) * targets.len()], first: 0 })
@@ -217,7 +217,7 @@ static DELAY: Kind = Kind {
 /// Longest delay, steps.
 pub const DELAY_MAX: usize = 1_000_000;
 
-static DROP: Kind = Kind {
+static DROP: ConnectionFaultKind = ConnectionFaultKind {
     name: "drop",
     summary: "Values don't arrive.",
     model: "While it lasts, the transfer at a communication point is lost with `probability`, and \
@@ -225,13 +225,13 @@ static DROP: Kind = Kind {
             connection are lost together. Which transfers are lost depends on the seed, the id of \
             the fault and the number of the step, and on nothing else.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "probability",
-            takes: Takes::Number(Bounds::Within(f64::MIN_POSITIVE, 1.0, "above 0, up to 1")),
+            takes: Takes::Number(ParameterBounds::Within(f64::MIN_POSITIVE, 1.0, "above 0, up to 1")),
             default: Some("1"),
             doc: "Probability that a transfer is lost.",
         },
-        Parameter {
+        FaultParameter {
             name: "becomes",
             takes: Takes::Choice(&[
                 ("hold", "the input keeps what it got last"),
@@ -255,12 +255,12 @@ static DROP: Kind = Kind {
     },
 };
 
-static NAN: Kind = Kind {
+static NAN: ConnectionFaultKind = ConnectionFaultKind {
     name: "nan",
     summary: "The value is not a number, or infinite.",
     model: "While it lasts, the input gets NaN (quiet, positive, no payload: 7ff8000000000000), +∞ or \
             −∞. An FMU that refuses such a value keeps the one before; the summary counts that.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "value",
         takes: Takes::Choice(&[
             ("not-a-number", "NaN"),
@@ -326,11 +326,11 @@ pub(super) struct Now {
 
 impl Rule {
     pub(super) fn new(
-        kind: &Kind,
+        kind: &ConnectionFaultKind,
         values: &Values,
         setup: &Setup,
         targets: &[Target],
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, FaultBuildError> {
         (kind.build)(values, setup, targets)
     }
 

@@ -12,5 +12,5 @@
 pub mod kinds;
 pub mod station;
 
-pub use kinds::{Kind, Target};
-pub use station::{Spec, Station};
+pub use kinds::{ConnectionFaultKind, Target};
+pub use station::{ConnectionFaultSpec, ConnectionStation};

@@ -1,9 +1,9 @@
 //! Active faults on connections at an epoch, and their receipts.
 
-use super::kinds::{Kind, Now, Rule, Target};
+use super::kinds::{ConnectionFaultKind, Now, Rule, Target};
 use crate::catalogue::Lasts;
 use crate::receipt::{Ledger, Receipt};
-use crate::setup::{BuildError, Setup};
+use crate::setup::{FaultBuildError, Setup};
 use crate::station::Occurrence;
 use crate::trigger::{Clock, Schedule, State, Trigger};
 use crate::values::Values;
@@ -13,11 +13,11 @@ use octant_random::stream::Phase;
 
 /// One fault on a connection.
 #[derive(Clone, Debug)]
-pub struct Spec {
+pub struct ConnectionFaultSpec {
     /// Id, unique in the run.
     pub id: String,
     /// Kind of the fault.
-    pub kind: &'static Kind,
+    pub kind: &'static ConnectionFaultKind,
     /// Values of every parameter of the kind, in the unit of the input.
     pub values: Values,
     /// Time of the fault. Triggers that depend on a core are not for connections: positions, moves,
@@ -30,7 +30,7 @@ pub struct Spec {
 #[derive(Debug)]
 struct Stage {
     id: String,
-    kind: &'static Kind,
+    kind: &'static ConnectionFaultKind,
     rule: Rule,
     clock: Clock,
     ledger: Ledger,
@@ -40,7 +40,7 @@ struct Stage {
 
 /// The faults of one run on all its connections.
 #[derive(Debug)]
-pub struct Station {
+pub struct ConnectionStation {
     stages: Vec<Stage>,
     /// For each element of the caller: the stages that act on it, and its index in each.
     on: Vec<Vec<(usize, usize)>>,
@@ -51,14 +51,14 @@ pub struct Station {
 /// Largest number of occurrences kept until the caller reads them.
 const OCCURRENCES_MAX: usize = 256;
 
-impl Station {
+impl ConnectionStation {
     /// Makes a station with the faults in the order in which they act. `period_s`: the length of a
     /// step.
     ///
     /// # Errors
     /// If a fault's values contradict each other, it can't act on the types of its elements, an id
     /// is given twice, or a fault waits for one that isn't there.
-    pub fn new(specs: &[Spec], seed: u64, period_s: f64) -> Result<Self, (String, BuildError)> {
+    pub fn new(specs: &[ConnectionFaultSpec], seed: u64, period_s: f64) -> Result<Self, (String, FaultBuildError)> {
         let mut stages: Vec<Stage> = Vec::with_capacity(specs.len());
         for spec in specs {
             let stage = stage(spec, specs, &stages, seed, period_s);
@@ -197,41 +197,41 @@ impl Station {
 }
 
 fn stage(
-    spec: &Spec,
-    specs: &[Spec],
+    spec: &ConnectionFaultSpec,
+    specs: &[ConnectionFaultSpec],
     before: &[Stage],
     seed: u64,
     period_s: f64,
-) -> Result<Stage, BuildError> {
+) -> Result<Stage, FaultBuildError> {
     if before.iter().any(|stage| stage.id == spec.id) {
-        return Err(BuildError::DuplicateId(spec.id.clone()));
+        return Err(FaultBuildError::DuplicateId(spec.id.clone()));
     }
     match &spec.schedule.trigger {
         Trigger::After { fault, .. }
             if !specs.iter().any(|other| other.id == *fault && other.id != spec.id) =>
         {
-            return Err(BuildError::NoSuchFault { id: spec.id.clone(), after: fault.clone() });
+            return Err(FaultBuildError::NoSuchFault { id: spec.id.clone(), after: fault.clone() });
         }
         Trigger::Position { .. }
         | Trigger::Move { .. }
         | Trigger::Mode { .. }
         | Trigger::Condition { .. } => {
             let problem = "it waits for a core, and a connection has none";
-            return Err(BuildError::value("trigger", problem));
+            return Err(FaultBuildError::value("trigger", problem));
         }
         _ => {}
     }
     if spec.kind.lasts == Lasts::Span && spec.schedule.recovery > 0 {
         let problem = "this kind doesn't fade: it is there or it isn't";
-        return Err(BuildError::value("recovery", problem));
+        return Err(FaultBuildError::value("recovery", problem));
     }
     if spec.schedule.duration == Some(0) {
-        return Err(BuildError::value("duration", "less than a step, at least one is expected"));
+        return Err(FaultBuildError::value("duration", "less than a step, at least one is expected"));
     }
     if let Some((_, target)) = spec.elements.iter().find(|(_, target)| !target.takes(spec.kind.on))
     {
         let problem = alloc::format!("{} can't act on {target:?}", spec.kind.name);
-        return Err(BuildError::value("kind", problem));
+        return Err(FaultBuildError::value("kind", problem));
     }
     let targets: Vec<Target> = spec.elements.iter().map(|(_, target)| *target).collect();
     let setup = Setup {

@@ -2,7 +2,7 @@
 
 use crate::catalogue::Dimension;
 use crate::kinds::channel::{read, saturated, write_saturating};
-use crate::setup::{BuildError, Setup};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use octant_sample::Sample;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -64,7 +64,7 @@ impl Added {
         channels: &'static str,
         amplitude: &'static str,
         setup: &Setup,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, FaultBuildError> {
         let channels = values.channels(channels)?;
         let value = fitting(values, channels, amplitude)?;
         let mut counts = [0.0; 6];
@@ -93,7 +93,7 @@ pub(crate) fn fitting(
     values: &Values,
     channels: Channels,
     name: &'static str,
-) -> Result<f64, BuildError> {
+) -> Result<f64, FaultBuildError> {
     use Dimension::*;
     let (value, dimension) = values.quantity_and_dimension(name)?;
     let gyro = matches!(
@@ -101,13 +101,13 @@ pub(crate) fn fitting(
         GyroBias | AngularRate | AngleRandomWalk | RateRandomWalk | Angle | SmallAngle
     );
     if gyro && !channels.gyros_only() {
-        return Err(BuildError::value(
+        return Err(FaultBuildError::value(
             name,
             "a value for gyros, and accelerometers are among the channels",
         ));
     }
     if !gyro && !channels.accelerometers_only() {
-        return Err(BuildError::value(
+        return Err(FaultBuildError::value(
             name,
             "a value for accelerometers, and gyros are among the channels",
         ));

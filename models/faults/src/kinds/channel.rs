@@ -1,6 +1,6 @@
 //! Single channels of a sample: 0 to 2 gyros, 3 to 5 accelerometers.
 
-use crate::setup::BuildError;
+use crate::setup::FaultBuildError;
 use crate::values::{Channels, Values};
 use octant_sample::Sample;
 use octant_sample::imu::Status;
@@ -39,22 +39,22 @@ pub(crate) fn saturated(channel: usize) -> Status {
 }
 
 /// Reads channels that have to be gyros.
-pub(crate) fn gyros(values: &Values, name: &'static str) -> Result<Channels, BuildError> {
+pub(crate) fn gyros(values: &Values, name: &'static str) -> Result<Channels, FaultBuildError> {
     let channels = values.channels(name)?;
     if channels.gyros_only() {
         Ok(channels)
     } else {
-        Err(BuildError::value(name, "accelerometers are among the channels, gyros are expected"))
+        Err(FaultBuildError::value(name, "accelerometers are among the channels, gyros are expected"))
     }
 }
 
 /// Reads a parameter that has to be one channel.
-pub(crate) fn single(values: &Values, name: &'static str) -> Result<usize, BuildError> {
+pub(crate) fn single(values: &Values, name: &'static str) -> Result<usize, FaultBuildError> {
     let channels = values.channels(name)?;
     let mut all = channels.iter();
     match (all.next(), all.next()) {
         (Some(channel), None) => Ok(channel),
-        _ => Err(BuildError::value(
+        _ => Err(FaultBuildError::value(
             name,
             alloc::format!("{} channels were found, one is expected", channels.iter().count()),
         )),
@@ -66,7 +66,7 @@ pub(crate) fn pair(
     values: &Values,
     first: &'static str,
     second: &'static str,
-) -> Result<[usize; 2], BuildError> {
+) -> Result<[usize; 2], FaultBuildError> {
     let pair = [single(values, first)?, single(values, second)?];
     let problem = if pair[0] == pair[1] {
         "the same channel was found twice, two different ones are expected"
@@ -75,5 +75,5 @@ pub(crate) fn pair(
     } else {
         return Ok(pair);
     };
-    Err(BuildError::value(second, problem))
+    Err(FaultBuildError::value(second, problem))
 }

@@ -1,15 +1,15 @@
 //! The harness's own host: processors, disk, recorder.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::host::HostAction;
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 
-pub(super) static KINDS: &[&Kind] = &[&STARVED, &FULL, &STALLED];
+pub(super) static KINDS: &[&FaultKind] = &[&STARVED, &FULL, &STALLED];
 
 /// Needs a run by the clock: in other runs no thread can be late.
-pub static STARVED: Kind = host(
+pub static STARVED: FaultKind = host(
     "host-cpu-starved",
     "Other work takes all processors from the harness.",
     "From its onset `threads` threads on each processor of the host compute without a pause, for \
@@ -24,7 +24,7 @@ pub static STARVED: Kind = host(
      starved.",
     &[
         time("length", "200 ms", "How long; host time."),
-        Parameter {
+        FaultParameter {
             name: "threads",
             takes: Takes::Integer(1, 64),
             default: Some("4"),
@@ -33,13 +33,13 @@ pub static STARVED: Kind = host(
     ],
     |values, _| {
         let threads = u32::try_from(values.integer("threads")?)
-            .map_err(|_| BuildError::missing("threads"))?;
-        Ok(Rule::Host(HostAction::Starve { lasts_s: above_zero(values, "length")?, threads }))
+            .map_err(|_| FaultBuildError::missing("threads"))?;
+        Ok(FaultRule::Host(HostAction::Starve { lasts_s: above_zero(values, "length")?, threads }))
     },
 );
 
 /// Needs a recording in a file.
-pub static FULL: Kind = host(
+pub static FULL: FaultKind = host(
     "host-disk-full",
     "The disk of the recording is full.",
     "From its onset on the system takes not one byte more of the recording: every write to its file \
@@ -47,11 +47,11 @@ pub static FULL: Kind = host(
      ends as a failure of the bench, exit status 4, within a second; what was written before stays \
      readable. It needs a recording: where a run keeps none, as in a sweep, it is refused.",
     &[],
-    |_, _| Ok(Rule::Host(HostAction::FillDisk)),
+    |_, _| Ok(FaultRule::Host(HostAction::FillDisk)),
 );
 
 /// Needs a recorder thread.
-pub static STALLED: Kind = host(
+pub static STALLED: FaultKind = host(
     "host-recorder-stalled",
     "The recorder stands still for a time.",
     "From the next time that the recorder's thread is handed something, at most 250 ms after the onset, \
@@ -61,32 +61,32 @@ pub static STALLED: Kind = host(
      has room for 8192 samples and the blocks of the recorder for 1024 more: 9 s at 1 kHz, 46 s at \
      200 Hz. A pause that is shorter is borne.",
     &[time("pause", "1 s", "How long it stands still; host time.")],
-    |values, _| Ok(Rule::Host(HostAction::StallRecorder { pause_s: above_zero(values, "pause")? })),
+    |values, _| Ok(FaultRule::Host(HostAction::StallRecorder { pause_s: above_zero(values, "pause")? })),
 );
 
 const fn host(
     name: &'static str,
     summary: &'static str,
     model: &'static str,
-    parameters: &'static [Parameter],
-    build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
-) -> Kind {
+    parameters: &'static [FaultParameter],
+    build: fn(&Values, &Setup) -> Result<FaultRule, FaultBuildError>,
+) -> FaultKind {
     let (family, acts, lasts) = (Family::Host, Acts::Host, Lasts::Instant);
     let example = Example::NONE;
-    Kind { name, family, acts, summary, model, parameters, lasts, example, build }
+    FaultKind { name, family, acts, summary, model, parameters, lasts, example, build }
 }
 
-const fn time(name: &'static str, default: &'static str, doc: &'static str) -> Parameter {
-    let bounds = Bounds::Within(0.0, 600.0, "above 0 s, up to 10 min");
+const fn time(name: &'static str, default: &'static str, doc: &'static str) -> FaultParameter {
+    let bounds = ParameterBounds::Within(0.0, 600.0, "above 0 s, up to 10 min");
     let takes = Takes::Quantity(&[Dimension::Time], bounds);
-    Parameter { name, takes, default: Some(default), doc }
+    FaultParameter { name, takes, default: Some(default), doc }
 }
 
 /// Reads a time, which has to be above zero to have an effect.
-fn above_zero(values: &Values, name: &'static str) -> Result<f64, BuildError> {
+fn above_zero(values: &Values, name: &'static str) -> Result<f64, FaultBuildError> {
     let time_s = values.quantity(name)?;
     if time_s > 0.0 {
         return Ok(time_s);
     }
-    Err(BuildError::value(name, alloc::format!("{time_s} s, a time above 0 s is expected")))
+    Err(FaultBuildError::value(name, alloc::format!("{time_s} s, a time above 0 s is expected")))
 }

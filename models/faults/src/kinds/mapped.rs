@@ -3,12 +3,12 @@
 use crate::kinds::added::Adder;
 use crate::kinds::channel::read;
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
+use crate::rule::{Context, FaultRule, SampleRule};
 use crate::values::Channels;
 use alloc::boxed::Box;
 use core::fmt;
 use octant_sample::Epoch;
-use octant_state::{Reader, State, StateError, Writer};
+use octant_state::{StateReader, State, StateError, Writer};
 
 /// Adds `strength · change(channel, count)` to every channel, in counts, remainder carried.
 #[derive(Clone)]
@@ -26,7 +26,7 @@ impl<F> State for Mapped<F> {
         to.value("onset", onset);
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.adder = from.value("adder")?;
         self.onset = from.value("onset")?;
         Ok(())
@@ -34,9 +34,9 @@ impl<F> State for Mapped<F> {
 }
 
 impl<F: Fn(usize, f64) -> f64 + Clone + Send + 'static> Mapped<F> {
-    pub(crate) fn rule(channels: Channels, change: F) -> Rule {
+    pub(crate) fn rule(channels: Channels, change: F) -> FaultRule {
         let (adder, onset) = (Adder::default(), Onset::default());
-        Rule::Samples(Box::new(Self { channels, change, adder, onset }))
+        FaultRule::Samples(Box::new(Self { channels, change, adder, onset }))
     }
 }
 

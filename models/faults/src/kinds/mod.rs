@@ -19,10 +19,10 @@ mod turntable;
 mod unit;
 pub mod wire;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] = &[
+pub static KINDS: &[&[&FaultKind]] = &[
     physics::KINDS,
     analogue::KINDS,
     ring_laser::KINDS,
@@ -36,12 +36,12 @@ pub static KINDS: &[&[&Kind]] = &[
 ];
 
 /// Iterates over all kinds.
-pub fn all() -> impl Iterator<Item = &'static Kind> {
+pub fn all() -> impl Iterator<Item = &'static FaultKind> {
     KINDS.iter().flat_map(|family| family.iter().copied())
 }
 
 /// Finds a kind by its name.
 #[must_use]
-pub fn named(name: &str) -> Option<&'static Kind> {
+pub fn named(name: &str) -> Option<&'static FaultKind> {
     all().find(|kind| kind.name == name)
 }

@@ -1,8 +1,8 @@
 //! Common parts of the kinds that act inside the plant.
 
-use crate::catalogue::{Bounds, Dimension, Parameter, Takes};
-use crate::rule::{Context, PlantRule, Rule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{ParameterBounds, Dimension, FaultParameter, Takes};
+use crate::rule::{Context, PlantRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
@@ -23,14 +23,14 @@ impl PlantRule for Fixed {
 }
 
 /// The rule of a disturbance that is the same at every onset.
-pub(crate) fn fixed(disturbance: Disturbance) -> Rule {
-    Rule::Plant(Box::new(Fixed { disturbance }))
+pub(crate) fn fixed(disturbance: Disturbance) -> FaultRule {
+    FaultRule::Plant(Box::new(Fixed { disturbance }))
 }
 
 /// Time over which a motion swells and fades.
-pub(crate) const EDGE: Parameter = Parameter {
+pub(crate) const EDGE: FaultParameter = FaultParameter {
     name: "edge",
-    takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+    takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
     default: Some("0.5 s"),
     doc: "Time over which it swells after the onset and fades after the end.",
 };
@@ -41,11 +41,11 @@ pub(crate) fn something(
     name: &'static str,
     limit: f64,
     unit: &str,
-) -> Result<[f64; 3], BuildError> {
+) -> Result<[f64; 3], FaultBuildError> {
     let vector = values.vector(name)?;
     if vector == [0.0; 3] {
         let problem = "three zeros were found, at least one that isn't zero is expected";
-        return Err(BuildError::value(name, problem));
+        return Err(FaultBuildError::value(name, problem));
     }
     within(name, &vector, limit, unit)?;
     Ok(vector)
@@ -57,11 +57,11 @@ pub(crate) fn within(
     values: &[f64],
     limit: f64,
     unit: &str,
-) -> Result<(), BuildError> {
+) -> Result<(), FaultBuildError> {
     match values.iter().find(|value| !(value.abs() <= limit)) {
         Some(value) => {
             let problem = format!("{value} {unit} was found, at most {limit} {unit} is expected");
-            Err(BuildError::value(name, problem))
+            Err(FaultBuildError::value(name, problem))
         }
         None => Ok(()),
     }
@@ -72,10 +72,10 @@ pub(crate) fn not_nothing(
     name: &'static str,
     other: &str,
     vectors: [&[f64; 3]; 2],
-) -> Result<(), BuildError> {
+) -> Result<(), FaultBuildError> {
     if vectors.iter().all(|vector| **vector == [0.0; 3]) {
         let problem = format!("zeros were found, here or in {other} one that isn't is expected");
-        return Err(BuildError::value(name, problem));
+        return Err(FaultBuildError::value(name, problem));
     }
     Ok(())
 }
@@ -85,7 +85,7 @@ pub(crate) fn frequency(
     values: &Values,
     name: &'static str,
     setup: &Setup,
-) -> Result<f64, BuildError> {
+) -> Result<f64, FaultBuildError> {
     let frequency = values.quantity(name)?;
     let limit = 100.0 / setup.dt_s();
     if frequency >= 1e-4 && frequency <= limit {
@@ -94,7 +94,7 @@ pub(crate) fn frequency(
     let problem = format!(
         "{frequency} Hz was found, 0.0001 Hz to {limit} Hz is expected, 100 periods in a sample"
     );
-    Err(BuildError::value(name, problem))
+    Err(FaultBuildError::value(name, problem))
 }
 
 /// Angular frequency, rad/s.

@@ -1,7 +1,7 @@
 //! Conversion of a time to a number of samples.
 
 use crate::catalogue::Dimension;
-use crate::setup::{BuildError, Setup};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use core::ops::RangeInclusive;
 
@@ -11,7 +11,7 @@ pub(crate) fn samples(
     name: &'static str,
     within: RangeInclusive<u64>,
     setup: &Setup,
-) -> Result<u64, BuildError> {
+) -> Result<u64, FaultBuildError> {
     let (value, dimension) = values.quantity_and_dimension(name)?;
     let samples = match dimension {
         Dimension::Samples => value,
@@ -28,5 +28,5 @@ pub(crate) fn samples(
         within.start(),
         within.end()
     );
-    Err(BuildError::value(name, problem))
+    Err(FaultBuildError::value(name, problem))
 }

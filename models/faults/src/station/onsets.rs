@@ -2,7 +2,7 @@
 
 use super::stage::{Shared, Stage};
 use super::{OCCURRENCES_MAX, Occurrence, Station, World};
-use crate::rule::{Context, Rule, SetPoints, UnitEvent};
+use crate::rule::{Context, FaultRule, SetPoints, UnitEvent};
 use crate::trigger::{News, Scene, Trigger};
 use octant_sample::{GimbalCommand, Output};
 
@@ -51,7 +51,7 @@ impl Station {
                 continue;
             }
             let now = stage.context(&shared, &self.last, output);
-            if let Rule::Command(rule) = &mut stage.rule {
+            if let FaultRule::Command(rule) = &mut stage.rule {
                 let clean = *command;
                 rule.on_command(command, &now);
                 if *command != clean {
@@ -110,7 +110,7 @@ impl Station {
         }
         let now = stage.context(shared, &self.last, output);
         match &mut stage.rule {
-            Rule::Unit(rule) => {
+            FaultRule::Unit(rule) => {
                 let event = rule.on_epoch(&now);
                 // An event of a unit that is already without power alters nothing.
                 if rule.cuts_power() || (event.is_some() && !self.without_power) {
@@ -118,25 +118,25 @@ impl Station {
                 }
                 self.events.extend(event);
             }
-            Rule::Plant(_) => stage.ledger.touched(shared.epoch),
-            Rule::Command(_)
-            | Rule::Samples(_)
-            | Rule::Delivery(_)
-            | Rule::Wire(_)
-            | Rule::Host(_) => {}
+            FaultRule::Plant(_) => stage.ledger.touched(shared.epoch),
+            FaultRule::Command(_)
+            | FaultRule::Samples(_)
+            | FaultRule::Delivery(_)
+            | FaultRule::Wire(_)
+            | FaultRule::Host(_) => {}
         }
     }
 }
 
 fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn World) {
-    if let (Rule::Plant(rule), Some(plant)) = (&mut stage.rule, world.disturbed()) {
+    if let (FaultRule::Plant(rule), Some(plant)) = (&mut stage.rule, world.disturbed()) {
         let disturbance = rule.begin(now, &plant.motor());
         plant.begin(handle, &disturbance);
     }
-    if let (Rule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
+    if let (FaultRule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
         wire.begin(handle, &rule.begin(now));
     }
-    if let (Rule::Host(action), Some(host)) = (&stage.rule, world.host())
+    if let (FaultRule::Host(action), Some(host)) = (&stage.rule, world.host())
         && host.begin(action)
     {
         stage.ledger.touched(now.epoch);
@@ -144,10 +144,10 @@ fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn Worl
 }
 
 fn end(stage: &Stage, handle: u32, world: &mut dyn World) {
-    if let (Rule::Plant(_), Some(plant)) = (&stage.rule, world.disturbed()) {
+    if let (FaultRule::Plant(_), Some(plant)) = (&stage.rule, world.disturbed()) {
         plant.end(handle);
     }
-    if let (Rule::Wire(_), Some(wire)) = (&stage.rule, world.wired()) {
+    if let (FaultRule::Wire(_), Some(wire)) = (&stage.rule, world.wired()) {
         wire.end(handle);
     }
 }

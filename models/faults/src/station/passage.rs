@@ -2,7 +2,7 @@
 
 use super::{Delivered, Station};
 use crate::catalogue::Lasts;
-use crate::rule::{Context, Rule};
+use crate::rule::{Context, FaultRule};
 use octant_sample::{Epoch, Output};
 
 impl Station {
@@ -20,7 +20,7 @@ impl Station {
             let instant = stage.kind.lasts == Lasts::Instant;
             let now = stage.context(&shared, &self.last, output);
             match &mut stage.rule {
-                Rule::Samples(rule) => {
+                FaultRule::Samples(rule) => {
                     engaged = true;
                     for epoch in &mut self.flight {
                         let clean = *epoch;
@@ -41,7 +41,7 @@ impl Station {
                         }
                     }
                 }
-                Rule::Delivery(rule) => {
+                FaultRule::Delivery(rule) => {
                     engaged = true;
                     self.landed.clear();
                     rule.on_step(&self.flight, acting, &now, &mut self.landed);
@@ -53,11 +53,11 @@ impl Station {
                     }
                     core::mem::swap(&mut self.flight, &mut self.landed);
                 }
-                Rule::Plant(_)
-                | Rule::Command(_)
-                | Rule::Unit(_)
-                | Rule::Wire(_)
-                | Rule::Host(_) => {}
+                FaultRule::Plant(_)
+                | FaultRule::Command(_)
+                | FaultRule::Unit(_)
+                | FaultRule::Wire(_)
+                | FaultRule::Host(_) => {}
             }
         }
         self.last = *epoch;

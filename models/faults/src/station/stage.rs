@@ -1,8 +1,8 @@
 //! One fault in the pipeline: its rule, its clock and its ledger.
 
-use crate::catalogue::{Kind, Lasts};
+use crate::catalogue::{FaultKind, Lasts};
 use crate::receipt::Ledger;
-use crate::rule::{Context, Rule, SetPoints};
+use crate::rule::{Context, FaultRule, SetPoints};
 use crate::trigger::{Clock, State};
 use alloc::string::String;
 use octant_random::stream::Phase;
@@ -11,8 +11,8 @@ use octant_sample::{Epoch, Output};
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) id: String,
-    pub(super) kind: &'static Kind,
-    pub(super) rule: Rule,
+    pub(super) kind: &'static FaultKind,
+    pub(super) rule: FaultRule,
     pub(super) clock: Clock,
     pub(super) ledger: Ledger,
     /// True if the fault has set in and its rule hasn't seen an epoch since.
@@ -28,11 +28,11 @@ impl Stage {
     /// left.
     pub(super) fn engaged(&self) -> bool {
         match &self.rule {
-            Rule::Delivery(rule) => self.acting() || rule.holds() > 0,
-            Rule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
-            Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => self.acting(),
+            FaultRule::Delivery(rule) => self.acting() || rule.holds() > 0,
+            FaultRule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
+            FaultRule::Command(_) | FaultRule::Unit(_) | FaultRule::Wire(_) => self.acting(),
             // Between onset and end the plant or the host realises the fault alone.
-            Rule::Plant(_) | Rule::Host(_) => false,
+            FaultRule::Plant(_) | FaultRule::Host(_) => false,
         }
     }
 
@@ -49,7 +49,7 @@ impl Stage {
     /// Returns whether the fault acts in the plant, which needs no call between its onset and its
     /// end.
     pub(super) fn acts_unseen(&self) -> bool {
-        matches!(self.rule, Rule::Plant(_)) && self.acting()
+        matches!(self.rule, FaultRule::Plant(_)) && self.acting()
     }
 
     /// Returns whether the fault's instant passed while faults before it held every epoch back: the
@@ -59,13 +59,13 @@ impl Stage {
     }
 
     pub(super) fn cuts_power(&self) -> bool {
-        self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
+        self.acting() && matches!(&self.rule, FaultRule::Unit(rule) if rule.cuts_power())
     }
 
     /// First epoch to be remembered as the one before an onset.
     pub(super) fn looks_back_from(&self) -> u64 {
         match (&self.rule, self.clock.state) {
-            (Rule::Samples(rule), state) if rule.looks_back() => match state {
+            (FaultRule::Samples(rule), state) if rule.looks_back() => match state {
                 State::Pending(at) => at.saturating_sub(1),
                 State::Spent => u64::MAX,
                 State::Waiting | State::Active { .. } | State::Fading { .. } => 0,

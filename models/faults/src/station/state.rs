@@ -3,18 +3,18 @@
 //! The bytes hold the changes since the start: of each fault its clock, its receipt and the state
 //! of its rule. A station to be loaded is built from the same faults.
 
-use super::{OCCURRENCES_MAX, Occurrence, Spec, Stage, Station};
+use super::{OCCURRENCES_MAX, Occurrence, FaultSpec, Stage, Station};
 use crate::rule::UnitEvent;
 use crate::setup::Setup;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
+use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
 
 /// Format of the state of a station. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
-pub const FORMAT: Format =
-    Format { magic: "OCTANTST", version: 1, what: "the state of a station of faults" };
+pub const FORMAT: StateFormat =
+    StateFormat { magic: "OCTANTST", version: 1, what: "the state of a station of faults" };
 
 impl Station {
     /// Appends everything that the station needs to continue bit for bit after this epoch: the same
@@ -30,7 +30,7 @@ impl Station {
     /// If the bytes are not those of a station of these faults and this version, whole and
     /// unaltered, or if the station can't be built. Neither this function nor the resulting station
     /// panics, whatever the bytes.
-    pub fn load(specs: &[Spec], setup: &Setup, bytes: &[u8]) -> Result<Self, StateError> {
+    pub fn load(specs: &[FaultSpec], setup: &Setup, bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let mut station = Self::new(specs, setup)
             .map_err(|(id, error)| StateError::value("faults", format!("{id:?}: {error}")))?;
@@ -91,7 +91,7 @@ impl State for Station {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.epoch = from.value("epoch")?;
         check_count("epoch", self.epoch)?;
         self.seen = from.value("seen")?;

@@ -2,9 +2,9 @@
 
 // `super` is the module that includes this file: the harness's tests include it too.
 use super::EPOCHS;
-use octant_faults::catalogue::{Acts, Bounds, Dimension, Kind, Lasts, Takes};
-use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
-use octant_faults::{Channels, Spec, Value, Values, kinds};
+use octant_faults::catalogue::{Acts, ParameterBounds, Dimension, FaultKind, Lasts, Takes};
+use octant_faults::trigger::{ThresholdSide, Repeat, Schedule, Signal, Trigger};
+use octant_faults::{Channels, FaultSpec, Value, Values, kinds};
 use octant_sample::{Health, Mode};
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -21,7 +21,7 @@ pub(crate) fn usual(dimension: Dimension) -> f64 {
     }
 }
 
-fn quantity(dimensions: &'static [Dimension], bounds: Bounds) -> BoxedStrategy<Value> {
+fn quantity(dimensions: &'static [Dimension], bounds: ParameterBounds) -> BoxedStrategy<Value> {
     let size = |dimension| {
         prop_oneof![
             8 => (-3.0..3.0f64).prop_map(move |power| usual(dimension) * 10f64.powf(power)),
@@ -33,13 +33,13 @@ fn quantity(dimensions: &'static [Dimension], bounds: Bounds) -> BoxedStrategy<V
         .prop_flat_map(move |dimension| {
             let size = size(dimension);
             let value = match bounds {
-                Bounds::NotZero => {
+                ParameterBounds::NotZero => {
                     (size, any::<bool>()).prop_map(|(v, minus)| if minus { -v } else { v }).boxed()
                 }
-                Bounds::Any => prop_oneof![Just(0.0), size.clone(), size.prop_map(|v| -v)].boxed(),
-                Bounds::Positive => size.boxed(),
-                Bounds::NotNegative => prop_oneof![Just(0.0), size].boxed(),
-                Bounds::Within(from, to, _) => prop_oneof![
+                ParameterBounds::Any => prop_oneof![Just(0.0), size.clone(), size.prop_map(|v| -v)].boxed(),
+                ParameterBounds::Positive => size.boxed(),
+                ParameterBounds::NotNegative => prop_oneof![Just(0.0), size].boxed(),
+                ParameterBounds::Within(from, to, _) => prop_oneof![
                     1 => Just(from),
                     1 => Just(to),
                     3 => from..=to,
@@ -61,7 +61,7 @@ fn value(takes: Takes) -> BoxedStrategy<Value> {
     match takes {
         Takes::Quantity(dimensions, bounds) => quantity(dimensions, bounds),
         Takes::Vector(dimensions) => {
-            let part = || quantity(dimensions, Bounds::Any);
+            let part = || quantity(dimensions, ParameterBounds::Any);
             (select(dimensions), part(), part(), part())
                 .prop_map(|(dimension, x, y, z)| {
                     let size = |value| match value {
@@ -86,7 +86,7 @@ fn value(takes: Takes) -> BoxedStrategy<Value> {
 }
 
 /// Values for every parameter of a kind, within their bounds.
-pub(crate) fn values(kind: &'static Kind) -> BoxedStrategy<Values> {
+pub(crate) fn values(kind: &'static FaultKind) -> BoxedStrategy<Values> {
     let names = kind.parameters.iter().map(|parameter| parameter.name);
     let names: Vec<_> = names.collect();
     let each: Vec<_> = kind.parameters.iter().map(|parameter| value(parameter.takes)).collect();
@@ -112,7 +112,7 @@ fn trigger() -> impl Strategy<Value = Trigger> {
         (0..2usize).prop_map(Signal::TrueGimbal),
         (0..3usize).prop_map(Signal::TrueVelocity),
     ];
-    let comparison = select(&[Comparison::Above, Comparison::Below][..]);
+    let comparison = select(&[ThresholdSide::Above, ThresholdSide::Below][..]);
     prop_oneof![
         3 => epoch().prop_map(Trigger::Epoch),
         1 => (0..10u16, mode(), delay())
@@ -149,8 +149,8 @@ fn schedule(lasts: Lasts) -> impl Strategy<Value = Schedule> {
     )
 }
 
-fn spec_of(kind: &'static Kind) -> impl Strategy<Value = Spec> {
-    (values(kind), schedule(kind.lasts)).prop_map(move |(values, schedule)| Spec {
+fn spec_of(kind: &'static FaultKind) -> impl Strategy<Value = FaultSpec> {
+    (values(kind), schedule(kind.lasts)).prop_map(move |(values, schedule)| FaultSpec {
         id: "f0".into(),
         kind,
         values,
@@ -159,7 +159,7 @@ fn spec_of(kind: &'static Kind) -> impl Strategy<Value = Spec> {
 }
 
 /// A fault of any kind.
-pub(crate) fn spec() -> impl Strategy<Value = Spec> {
+pub(crate) fn spec() -> impl Strategy<Value = FaultSpec> {
     // Faults of the wire alter frames, of which there are none here; those of the host alter no
     // sample.
     let here = kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host));

@@ -12,7 +12,7 @@ use octant_faults::catalogue::{Acts, Family, Takes};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{BuildError, Receipt, Spec, Station, kinds};
+use octant_faults::{FaultBuildError, Receipt, FaultSpec, Station, kinds};
 use octant_sample::imu::Status;
 use octant_sample::{
     Aiding, Epoch, GimbalAngles, GimbalCommand, Health, Mode, Output, Reference, Truth,
@@ -76,7 +76,7 @@ struct Told {
 }
 
 /// Faults with a manual trigger are fired at epoch 20.
-fn run(specs: &[Spec]) -> Result<Told, (String, BuildError)> {
+fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
     let mut station = Station::new(specs, &setup())?;
     let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
     let (mut delivered, mut commands) = (Vec::new(), Vec::new());
@@ -130,10 +130,10 @@ fn same(delivered: &[Epoch], k: u64) -> bool {
 }
 
 /// Checks that a refusal names the cause: a parameter of the kind, or the fault that it waits for.
-fn refusal_is_fair(specs: &[Spec], (id, error): &(String, BuildError)) {
+fn refusal_is_fair(specs: &[FaultSpec], (id, error): &(String, FaultBuildError)) {
     let spec = specs.iter().find(|spec| spec.id == *id).unwrap();
     match error {
-        BuildError::Value { parameter, problem } => {
+        FaultBuildError::Value { parameter, problem } => {
             assert!(
                 spec.kind.parameter(parameter).is_some() || *parameter == "kind",
                 "{}: {parameter}",
@@ -141,8 +141,8 @@ fn refusal_is_fair(specs: &[Spec], (id, error): &(String, BuildError)) {
             );
             assert!(!problem.is_empty());
         }
-        BuildError::NoSuchFault { after, .. } => assert_eq!(after, "f0"),
-        BuildError::DuplicateId(_) => panic!("{error}"),
+        FaultBuildError::NoSuchFault { after, .. } => assert_eq!(after, "f0"),
+        FaultBuildError::DuplicateId(_) => panic!("{error}"),
     }
 }
 
@@ -172,7 +172,7 @@ fn active(told: &Told) -> Vec<u64> {
     (1..=EPOCHS).filter(|k| is(*k)).collect()
 }
 
-fn one_fault_adds_up(spec: &Spec, told: &Told) {
+fn one_fault_adds_up(spec: &FaultSpec, told: &Told) {
     receipt_is_sound(told, 0);
     let receipt = &told.receipts[0];
     let first_onset = told.occurrences.first().map_or(u64::MAX, |it| it.epoch);
@@ -290,7 +290,7 @@ fn every_kind_can_be_built_and_leaves_a_trace() {
                 recovery: 0,
                 repeat: Repeat::Once,
             };
-            let spec = Spec { id: "f0".into(), kind, values, schedule };
+            let spec = FaultSpec { id: "f0".into(), kind, values, schedule };
             run(&[spec]).is_ok_and(|told| told.receipts[0].fired() || !told.events.is_empty())
         });
         assert!(traced, "{}", kind.name);

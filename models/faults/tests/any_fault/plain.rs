@@ -1,12 +1,12 @@
 //! Plain values of every kind, the same on every run.
 
 use super::draw::usual;
-use octant_faults::catalogue::{Bounds, Kind, Takes};
+use octant_faults::catalogue::{ParameterBounds, FaultKind, Takes};
 use octant_faults::{Channels, Value, Values};
 
 /// The first values of a small grid with which a fault of the kind can be built, the same on every
 /// run.
-pub(crate) fn plain(kind: &'static Kind) -> Values {
+pub(crate) fn plain(kind: &'static FaultKind) -> Values {
     for scale in [1.0, 0.1, 10.0, 0.01, 100.0, 1e-3] {
         for turn in 0..12 {
             let mut values = Values::default();
@@ -30,7 +30,7 @@ fn plain_value(takes: Takes, scale: f64, turn: usize, index: usize) -> Value {
         Takes::Quantity(dimensions, bounds) => {
             let dimension = dimensions[turn % dimensions.len()];
             let value = match bounds {
-                Bounds::Within(from, to, _) => size(dimension).clamp(from, to),
+                ParameterBounds::Within(from, to, _) => size(dimension).clamp(from, to),
                 _ => size(dimension),
             };
             Value::Quantity(value, dimension)

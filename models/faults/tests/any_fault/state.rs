@@ -8,7 +8,7 @@ use crate::common::{Log, bytes, setup};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, STATE_FORMAT};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Kind, Receipt, Spec, Station, kinds};
+use octant_faults::{FaultKind, Receipt, FaultSpec, Station, kinds};
 use octant_sample::disturbance::Disturbance;
 use octant_sample::{GimbalCommand, Truth};
 use octant_state::{StateError, Writer, assert_layout};
@@ -28,7 +28,7 @@ struct Step {
     receipts: Vec<Receipt>,
 }
 
-fn step(station: &mut Station, specs: &[Spec], k: u64) -> Step {
+fn step(station: &mut Station, specs: &[FaultSpec], k: u64) -> Step {
     if k == 20 {
         for spec in specs {
             station.fire(&spec.id);
@@ -55,12 +55,12 @@ fn saved(station: &Station) -> Vec<u8> {
     bytes
 }
 
-fn load(specs: &[Spec], bytes: &[u8]) -> Result<Station, StateError> {
+fn load(specs: &[FaultSpec], bytes: &[u8]) -> Result<Station, StateError> {
     Station::load(specs, &setup(), bytes)
 }
 
 /// Runs a station, and beside it copies made at some epochs by saving and loading, and by cloning.
-fn goes_on(specs: &[Spec], points: &[u64]) {
+fn goes_on(specs: &[FaultSpec], points: &[u64]) {
     let mut station = Station::new(specs, &setup()).unwrap();
     let mut copies = Vec::new();
     for k in 1..=EPOCHS {
@@ -84,7 +84,7 @@ fn goes_on(specs: &[Spec], points: &[u64]) {
 }
 
 /// A fault that lasts from epoch 15 to 300, then fades if it can; twice.
-fn long(kind: &'static Kind, id: &str) -> Spec {
+fn long(kind: &'static FaultKind, id: &str) -> FaultSpec {
     let fades = kind.lasts == octant_faults::catalogue::Lasts::Fading;
     let schedule = Schedule {
         trigger: Trigger::Epoch(15),
@@ -92,11 +92,11 @@ fn long(kind: &'static Kind, id: &str) -> Spec {
         recovery: if fades { 30 } else { 0 },
         repeat: Repeat::Times { times: 2, every: 200 },
     };
-    Spec { id: id.into(), kind, values: plain(kind), schedule }
+    FaultSpec { id: id.into(), kind, values: plain(kind), schedule }
 }
 
 /// All kinds at once.
-fn all_at_once() -> Vec<Spec> {
+fn all_at_once() -> Vec<FaultSpec> {
     kinds::all().map(|kind| long(kind, kind.name)).collect()
 }
 
@@ -124,7 +124,7 @@ fn a_station_of_other_faults_does_not_take_it() {
     step(&mut station, &[], 1);
     let bytes = saved(&station);
     assert!(load(std::slice::from_ref(&one), &bytes).is_ok());
-    let said = |specs: &[Spec]| load(specs, &bytes).unwrap_err().to_string();
+    let said = |specs: &[FaultSpec]| load(specs, &bytes).unwrap_err().to_string();
     assert_eq!(
         said(std::slice::from_ref(&other)),
         "fault: \"a\" (spike) was found, \"b\" (spike) is expected"
@@ -167,7 +167,7 @@ fn payload(bytes: &[u8]) -> &[u8] {
 }
 
 /// Every kind alone, saved while it lasts, and once while it fades or is over.
-static SAVED: LazyLock<Vec<(Spec, Vec<u8>)>> = LazyLock::new(|| {
+static SAVED: LazyLock<Vec<(FaultSpec, Vec<u8>)>> = LazyLock::new(|| {
     let mut all = Vec::new();
     for kind in kinds::all() {
         let spec = long(kind, "f0");

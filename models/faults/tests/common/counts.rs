@@ -2,7 +2,7 @@
 
 use super::{Outcome, PERIOD_NS, clean, fault, run};
 use octant_faults::catalogue::Dimension;
-use octant_faults::{BuildError, Channels, Spec, Station, Value};
+use octant_faults::{FaultBuildError, Channels, FaultSpec, Station, Value};
 use octant_sample::Epoch;
 use octant_sample::imu::Status;
 
@@ -107,7 +107,7 @@ pub fn acceleration(counts: f64) -> f64 {
 /// Returns the parameter for which a fault is refused.
 pub fn refused(kind: &str, values: &[(&'static str, Value)]) -> &'static str {
     match Station::new(&[fault(kind, values, 1, 1)], &super::setup()) {
-        Err((id, BuildError::Value { parameter, problem })) => {
+        Err((id, FaultBuildError::Value { parameter, problem })) => {
             assert_eq!(id, "f");
             assert!(problem.contains("expected") || problem.contains("channels"), "{problem}");
             parameter
@@ -117,13 +117,13 @@ pub fn refused(kind: &str, values: &[(&'static str, Value)]) -> &'static str {
 }
 
 /// Adds a recovery.
-pub fn fading(mut spec: Spec, recovery: u64) -> Spec {
+pub fn fading(mut spec: FaultSpec, recovery: u64) -> FaultSpec {
     spec.schedule.recovery = recovery;
     spec
 }
 
 /// Additions by a fault to a channel from `first` on, over a number of epochs.
-pub fn series(spec: Spec, channel: usize, first: u64, epochs: u64) -> Vec<f64> {
+pub fn series(spec: FaultSpec, channel: usize, first: u64, epochs: u64) -> Vec<f64> {
     let outcome = run(&[spec], first + epochs - 1);
     let steps = added(&outcome);
     steps[first as usize - 1..].iter().map(|(step, _)| step[channel] as f64).collect()

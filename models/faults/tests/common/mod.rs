@@ -5,7 +5,7 @@ pub mod counts;
 
 use octant_faults::catalogue::Dimension;
 use octant_faults::rule::UnitEvent;
-use octant_faults::station::{Delivered, Occurrence, Spec, World};
+use octant_faults::station::{Delivered, Occurrence, FaultSpec, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Setup, Station, Value, Values};
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
@@ -49,7 +49,7 @@ pub fn clean(epoch: u64) -> Epoch {
 }
 
 /// Makes a fault of a kind from an epoch on, for a number of epochs.
-pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u64) -> Spec {
+pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u64) -> FaultSpec {
     let mut all = Values::default();
     for (name, value) in values {
         all.set(name, *value);
@@ -58,7 +58,7 @@ pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u
     for parameter in kind.parameters {
         assert!(all.get(parameter.name).is_some(), "{}: {} is missing", kind.name, parameter.name);
     }
-    Spec {
+    FaultSpec {
         id: "f".into(),
         kind,
         values: all,
@@ -123,7 +123,7 @@ impl Outcome {
 
 /// Runs clean epochs 1 to `epochs` through a station. `answer` is the core's output to epoch k (0:
 /// before the first); its set point goes to the turntable.
-pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> Outcome {
+pub fn run_with(specs: &[FaultSpec], epochs: u64, answer: impl Fn(u64) -> Output) -> Outcome {
     let mut station = Station::new(specs, &setup()).unwrap();
     let mut outcome = Outcome::default();
     for k in 1..=epochs {
@@ -147,12 +147,12 @@ pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> 
 }
 
 /// Runs with a core that gives only default outputs.
-pub fn run(specs: &[Spec], epochs: u64) -> Outcome {
+pub fn run(specs: &[FaultSpec], epochs: u64) -> Outcome {
     run_with(specs, epochs, |_| Output::default())
 }
 
 /// Returns the message with which a fault is refused.
-pub fn refused(spec: &Spec) -> String {
+pub fn refused(spec: &FaultSpec) -> String {
     Station::new(std::slice::from_ref(spec), &setup()).unwrap_err().1.to_string()
 }
 

@@ -4,7 +4,7 @@ use super::motion::Motion;
 use super::smooth::{Jet, over, product, rise};
 use super::span::Span;
 use nalgebra::Vector3;
-use octant_sample::disturbance::Line;
+use octant_sample::disturbance::SpectralLine;
 
 /// Pieces in a period of the highest line, three nodes each: the relative error of an increment is
 /// 2e-10.
@@ -32,7 +32,7 @@ fn sum((s, c): (f64, f64), (ds, dc): (f64, f64)) -> (f64, f64) {
 }
 
 impl Tone {
-    fn new(line: &Line) -> Self {
+    fn new(line: &SpectralLine) -> Self {
         let (s, c) = libm::sincos(line.angle_phase_rad - line.phase_rad);
         let turn = Vector3::from(line.angle_rad);
         Self {
@@ -90,7 +90,7 @@ pub(super) struct Shake {
 }
 
 impl Shake {
-    pub(super) fn new(span: Span, lines: &[Line], edge_s: f64) -> Self {
+    pub(super) fn new(span: Span, lines: &[SpectralLine], edge_s: f64) -> Self {
         let highest = lines.iter().fold(0.0f64, |high, line| high.max(line.frequency_hz));
         let edge_s = edge_s.max(1e-9);
         Self {

@@ -38,7 +38,7 @@ impl octant_state::State for Body {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         from.part("case", &mut self.case)?;
         from.part("azimuth", &mut self.azimuth)?;

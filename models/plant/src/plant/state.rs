@@ -5,12 +5,12 @@
 //! need no state.
 
 use super::Plant;
-use crate::config::Config;
-use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
+use crate::config::PlantConfig;
+use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
 
 /// Format of the state of a plant. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
-pub const FORMAT: Format = Format { magic: "OCTANTPL", version: 1, what: "the state of a plant" };
+pub const FORMAT: StateFormat = StateFormat { magic: "OCTANTPL", version: 1, what: "the state of a plant" };
 
 impl Plant {
     /// Appends everything that the plant needs to continue bit for bit after this step: the same
@@ -29,7 +29,7 @@ impl Plant {
     /// function nor the resulting plant panics, whatever the bytes.
     pub fn load(bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
-        let config: Config = from.value("config")?;
+        let config: PlantConfig = from.value("config")?;
         let mut plant =
             Self::new(&config).map_err(|error| StateError::value("config", error.to_string()))?;
         from.part("plant", &mut plant)?;
@@ -75,7 +75,7 @@ impl State for Plant {
         to.value("flags", flags);
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         self.sequence = from.value("sequence")?;
         let period_ns = self.body.period_ns();
         check_below("sequence", self.sequence, octant_state::COUNT_MAX / period_ns)?;

@@ -3,14 +3,14 @@
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Setup, Spec, Station, Value, Values, kinds};
-use octant_plant::config::Config;
-use octant_plant::{Plant, Step, Truth};
+use octant_faults::{Setup, FaultSpec, Station, Value, Values, kinds};
+use octant_plant::config::PlantConfig;
+use octant_plant::{Plant, PlantStep, Truth};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output};
 
-pub(crate) fn setup(config: &Config) -> Setup {
+pub(crate) fn setup(config: &PlantConfig) -> Setup {
     Setup {
         seed: config.seed,
         sample_period_ns: config.sample_period_ns,
@@ -28,7 +28,7 @@ pub(crate) fn fault(
     values: &[(&'static str, Value)],
     first: u64,
     samples: u64,
-) -> Spec {
+) -> FaultSpec {
     let kind = kinds::named(kind).unwrap();
     let mut all = Values::default();
     for (name, value) in values {
@@ -43,15 +43,15 @@ pub(crate) fn fault(
         recovery: 0,
         repeat: Repeat::Once,
     };
-    Spec { id: format!("{}-{first}", kind.name), kind, values: all, schedule }
+    FaultSpec { id: format!("{}-{first}", kind.name), kind, values: all, schedule }
 }
 
 /// One sample with truth at its stamp, of the faulted plant and of its twin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
-    pub(crate) step: Step,
+    pub(crate) step: PlantStep,
     pub(crate) truth: Truth,
-    pub(crate) twin: Step,
+    pub(crate) twin: PlantStep,
     pub(crate) twin_truth: Truth,
 }
 
@@ -86,8 +86,8 @@ impl World for Behind<'_> {
 
 /// Runs samples 1 to `samples`; `target` is the set point passed with the call for sample k.
 pub(crate) fn run_pair(
-    config: &Config,
-    specs: &[Spec],
+    config: &PlantConfig,
+    specs: &[FaultSpec],
     samples: u64,
     target: impl Fn(u64) -> GimbalCommand,
 ) -> Vec<Pair> {

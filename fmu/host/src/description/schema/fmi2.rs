@@ -1,32 +1,32 @@
 //! The schema of FMI 2.0 (`fmi2ModelDescription.xsd`).
 
-use super::{Child, MANY, Node, Open, Type, any, may, must, node, one, optional, some};
+use super::{Child, MANY, ElementRule, Open, AttributeType, any, may, must, node, one, optional, some};
 
-const CAUSALITY: Type =
-    Type::Word(&["parameter", "calculatedParameter", "input", "output", "local", "independent"]);
-pub(super) const VARIABILITY: Type =
-    Type::Word(&["constant", "fixed", "tunable", "discrete", "continuous"]);
-pub(super) const INITIAL: Type = Type::Word(&["exact", "approx", "calculated"]);
-pub(super) const KINDS: Type =
-    Type::List(&Type::Word(&["dependent", "constant", "fixed", "tunable", "discrete"]));
-pub(super) const NAMING: Type = Type::Word(&["flat", "structured"]);
+const CAUSALITY: AttributeType =
+    AttributeType::Word(&["parameter", "calculatedParameter", "input", "output", "local", "independent"]);
+pub(super) const VARIABILITY: AttributeType =
+    AttributeType::Word(&["constant", "fixed", "tunable", "discrete", "continuous"]);
+pub(super) const INITIAL: AttributeType = AttributeType::Word(&["exact", "approx", "calculated"]);
+pub(super) const KINDS: AttributeType =
+    AttributeType::List(&AttributeType::Word(&["dependent", "constant", "fixed", "tunable", "discrete"]));
+pub(super) const NAMING: AttributeType = AttributeType::Word(&["flat", "structured"]);
 
 /// The root element.
-pub static MODEL_DESCRIPTION: Node = node(
+pub static MODEL_DESCRIPTION: ElementRule = node(
     "fmiModelDescription",
     &[
-        must("fmiVersion", Type::Word(&["2.0"])),
-        must("modelName", Type::Text),
-        must("guid", Type::Line),
-        may("description", Type::Text),
-        may("author", Type::Text),
-        may("version", Type::Line),
-        may("copyright", Type::Text),
-        may("license", Type::Text),
-        may("generationTool", Type::Line),
-        may("generationDateAndTime", Type::DateTime),
+        must("fmiVersion", AttributeType::Word(&["2.0"])),
+        must("modelName", AttributeType::Text),
+        must("guid", AttributeType::Line),
+        may("description", AttributeType::Text),
+        may("author", AttributeType::Text),
+        may("version", AttributeType::Line),
+        may("copyright", AttributeType::Text),
+        may("license", AttributeType::Text),
+        may("generationTool", AttributeType::Line),
+        may("generationDateAndTime", AttributeType::DateTime),
         may("variableNamingConvention", NAMING),
-        may("numberOfEventIndicators", Type::UNSIGNED_INT),
+        may("numberOfEventIndicators", AttributeType::UNSIGNED_INT),
     ],
     &[
         // At least one of both, in any order.
@@ -42,71 +42,71 @@ pub static MODEL_DESCRIPTION: Node = node(
     ],
 );
 
-static MODEL_EXCHANGE: Node = node(
+static MODEL_EXCHANGE: ElementRule = node(
     "ModelExchange",
     &[
-        must("modelIdentifier", Type::Line),
-        may("needsExecutionTool", Type::Boolean),
-        may("completedIntegratorStepNotNeeded", Type::Boolean),
-        may("canBeInstantiatedOnlyOncePerProcess", Type::Boolean),
-        may("canNotUseMemoryManagementFunctions", Type::Boolean),
-        may("canGetAndSetFMUstate", Type::Boolean),
-        may("canSerializeFMUstate", Type::Boolean),
-        may("providesDirectionalDerivative", Type::Boolean),
+        must("modelIdentifier", AttributeType::Line),
+        may("needsExecutionTool", AttributeType::Boolean),
+        may("completedIntegratorStepNotNeeded", AttributeType::Boolean),
+        may("canBeInstantiatedOnlyOncePerProcess", AttributeType::Boolean),
+        may("canNotUseMemoryManagementFunctions", AttributeType::Boolean),
+        may("canGetAndSetFMUstate", AttributeType::Boolean),
+        may("canSerializeFMUstate", AttributeType::Boolean),
+        may("providesDirectionalDerivative", AttributeType::Boolean),
     ],
     &[optional(0, &SOURCE_FILES)],
 );
 
-static CO_SIMULATION: Node = node(
+static CO_SIMULATION: ElementRule = node(
     "CoSimulation",
     &[
-        must("modelIdentifier", Type::Line),
-        may("needsExecutionTool", Type::Boolean),
-        may("canHandleVariableCommunicationStepSize", Type::Boolean),
-        may("canInterpolateInputs", Type::Boolean),
-        may("maxOutputDerivativeOrder", Type::UNSIGNED_INT),
-        may("canRunAsynchronuously", Type::Boolean),
-        may("canBeInstantiatedOnlyOncePerProcess", Type::Boolean),
-        may("canNotUseMemoryManagementFunctions", Type::Boolean),
-        may("canGetAndSetFMUstate", Type::Boolean),
-        may("canSerializeFMUstate", Type::Boolean),
-        may("providesDirectionalDerivative", Type::Boolean),
+        must("modelIdentifier", AttributeType::Line),
+        may("needsExecutionTool", AttributeType::Boolean),
+        may("canHandleVariableCommunicationStepSize", AttributeType::Boolean),
+        may("canInterpolateInputs", AttributeType::Boolean),
+        may("maxOutputDerivativeOrder", AttributeType::UNSIGNED_INT),
+        may("canRunAsynchronuously", AttributeType::Boolean),
+        may("canBeInstantiatedOnlyOncePerProcess", AttributeType::Boolean),
+        may("canNotUseMemoryManagementFunctions", AttributeType::Boolean),
+        may("canGetAndSetFMUstate", AttributeType::Boolean),
+        may("canSerializeFMUstate", AttributeType::Boolean),
+        may("providesDirectionalDerivative", AttributeType::Boolean),
     ],
     &[optional(0, &SOURCE_FILES)],
 );
 
-static SOURCE_FILES: Node = node("SourceFiles", &[], &[some(0, &FILE)]);
-static FILE: Node = node("File", &[must("name", Type::Line)], &[]);
+static SOURCE_FILES: ElementRule = node("SourceFiles", &[], &[some(0, &FILE)]);
+static FILE: ElementRule = node("File", &[must("name", AttributeType::Line)], &[]);
 
-static UNIT_DEFINITIONS: Node = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
-static UNIT: Node =
-    node("Unit", &[must("name", Type::Line)], &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)]);
-pub(super) static BASE_UNIT: Node = node(
+static UNIT_DEFINITIONS: ElementRule = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
+static UNIT: ElementRule =
+    node("Unit", &[must("name", AttributeType::Line)], &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)]);
+pub(super) static BASE_UNIT: ElementRule = node(
     "BaseUnit",
     &[
-        may("kg", Type::INT),
-        may("m", Type::INT),
-        may("s", Type::INT),
-        may("A", Type::INT),
-        may("K", Type::INT),
-        may("mol", Type::INT),
-        may("cd", Type::INT),
-        may("rad", Type::INT),
-        may("factor", Type::Double),
-        may("offset", Type::Double),
+        may("kg", AttributeType::INT),
+        may("m", AttributeType::INT),
+        may("s", AttributeType::INT),
+        may("A", AttributeType::INT),
+        may("K", AttributeType::INT),
+        may("mol", AttributeType::INT),
+        may("cd", AttributeType::INT),
+        may("rad", AttributeType::INT),
+        may("factor", AttributeType::Double),
+        may("offset", AttributeType::Double),
     ],
     &[],
 );
-static DISPLAY_UNIT: Node = node(
+static DISPLAY_UNIT: ElementRule = node(
     "DisplayUnit",
-    &[must("name", Type::Line), may("factor", Type::Double), may("offset", Type::Double)],
+    &[must("name", AttributeType::Line), may("factor", AttributeType::Double), may("offset", AttributeType::Double)],
     &[],
 );
 
-static TYPE_DEFINITIONS: Node = node("TypeDefinitions", &[], &[some(0, &SIMPLE_TYPE)]);
-static SIMPLE_TYPE: Node = node(
+static TYPE_DEFINITIONS: ElementRule = node("TypeDefinitions", &[], &[some(0, &SIMPLE_TYPE)]);
+static SIMPLE_TYPE: ElementRule = node(
     "SimpleType",
-    &[must("name", Type::Line), may("description", Type::Text)],
+    &[must("name", AttributeType::Line), may("description", AttributeType::Text)],
     &[
         one(0, &REAL_TYPE),
         one(0, &INTEGER_TYPE),
@@ -115,72 +115,72 @@ static SIMPLE_TYPE: Node = node(
         one(0, &ENUMERATION_TYPE),
     ],
 );
-static REAL_TYPE: Node = node(
+static REAL_TYPE: ElementRule = node(
     "Real",
     &[
-        may("quantity", Type::Line),
-        may("unit", Type::Line),
-        may("displayUnit", Type::Line),
-        may("relativeQuantity", Type::Boolean),
-        may("min", Type::Double),
-        may("max", Type::Double),
-        may("nominal", Type::Double),
-        may("unbounded", Type::Boolean),
+        may("quantity", AttributeType::Line),
+        may("unit", AttributeType::Line),
+        may("displayUnit", AttributeType::Line),
+        may("relativeQuantity", AttributeType::Boolean),
+        may("min", AttributeType::Double),
+        may("max", AttributeType::Double),
+        may("nominal", AttributeType::Double),
+        may("unbounded", AttributeType::Boolean),
     ],
     &[],
 );
-static INTEGER_TYPE: Node = node(
+static INTEGER_TYPE: ElementRule = node(
     "Integer",
-    &[may("quantity", Type::Line), may("min", Type::INT), may("max", Type::INT)],
+    &[may("quantity", AttributeType::Line), may("min", AttributeType::INT), may("max", AttributeType::INT)],
     &[],
 );
 // The schema gives no type at all to these two.
-static BOOLEAN_TYPE: Node =
-    Node { name: "Boolean", attributes: &[], children: &[], open: Open::Everything };
-static STRING_TYPE: Node =
-    Node { name: "String", attributes: &[], children: &[], open: Open::Everything };
-static ENUMERATION_TYPE: Node =
-    node("Enumeration", &[may("quantity", Type::Line)], &[some(0, &ITEM)]);
-static ITEM: Node = node(
+static BOOLEAN_TYPE: ElementRule =
+    ElementRule { name: "Boolean", attributes: &[], children: &[], open: Open::Everything };
+static STRING_TYPE: ElementRule =
+    ElementRule { name: "String", attributes: &[], children: &[], open: Open::Everything };
+static ENUMERATION_TYPE: ElementRule =
+    node("Enumeration", &[may("quantity", AttributeType::Line)], &[some(0, &ITEM)]);
+static ITEM: ElementRule = node(
     "Item",
-    &[must("name", Type::Line), must("value", Type::INT), may("description", Type::Text)],
+    &[must("name", AttributeType::Line), must("value", AttributeType::INT), may("description", AttributeType::Text)],
     &[],
 );
 
-static LOG_CATEGORIES: Node = node("LogCategories", &[], &[some(0, &CATEGORY)]);
-static CATEGORY: Node =
-    node("Category", &[must("name", Type::Line), may("description", Type::Text)], &[]);
-static DEFAULT_EXPERIMENT: Node = node(
+static LOG_CATEGORIES: ElementRule = node("LogCategories", &[], &[some(0, &CATEGORY)]);
+static CATEGORY: ElementRule =
+    node("Category", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static DEFAULT_EXPERIMENT: ElementRule = node(
     "DefaultExperiment",
     &[
-        may("startTime", Type::Double),
-        may("stopTime", Type::Double),
-        may("tolerance", Type::Double),
-        may("stepSize", Type::Double),
+        may("startTime", AttributeType::Double),
+        may("stopTime", AttributeType::Double),
+        may("tolerance", AttributeType::Double),
+        may("stepSize", AttributeType::Double),
     ],
     &[],
 );
 
-static VENDOR_ANNOTATIONS: Node = node("VendorAnnotations", &[], &[some(0, &TOOL)]);
-static ANNOTATIONS: Node = node("Annotations", &[], &[some(0, &TOOL)]);
-static TOOL: Node = Node {
+static VENDOR_ANNOTATIONS: ElementRule = node("VendorAnnotations", &[], &[some(0, &TOOL)]);
+static ANNOTATIONS: ElementRule = node("Annotations", &[], &[some(0, &TOOL)]);
+static TOOL: ElementRule = ElementRule {
     name: "Tool",
-    attributes: &[must("name", Type::Line)],
+    attributes: &[must("name", AttributeType::Line)],
     children: &[],
     open: Open::Everything,
 };
 
-static MODEL_VARIABLES: Node = node("ModelVariables", &[], &[some(0, &SCALAR_VARIABLE)]);
-static SCALAR_VARIABLE: Node = node(
+static MODEL_VARIABLES: ElementRule = node("ModelVariables", &[], &[some(0, &SCALAR_VARIABLE)]);
+static SCALAR_VARIABLE: ElementRule = node(
     "ScalarVariable",
     &[
-        must("name", Type::Line),
-        must("valueReference", Type::UNSIGNED_INT),
-        may("description", Type::Text),
+        must("name", AttributeType::Line),
+        must("valueReference", AttributeType::UNSIGNED_INT),
+        may("description", AttributeType::Text),
         may("causality", CAUSALITY),
         may("variability", VARIABILITY),
         may("initial", INITIAL),
-        may("canHandleMultipleSetPerTimeInstant", Type::Boolean),
+        may("canHandleMultipleSetPerTimeInstant", AttributeType::Boolean),
     ],
     &[
         one(0, &REAL),
@@ -191,65 +191,65 @@ static SCALAR_VARIABLE: Node = node(
         optional(1, &ANNOTATIONS),
     ],
 );
-static REAL: Node = node(
+static REAL: ElementRule = node(
     "Real",
     &[
-        may("declaredType", Type::Line),
-        may("quantity", Type::Line),
-        may("unit", Type::Line),
-        may("displayUnit", Type::Line),
-        may("relativeQuantity", Type::Boolean),
-        may("min", Type::Double),
-        may("max", Type::Double),
-        may("nominal", Type::Double),
-        may("unbounded", Type::Boolean),
-        may("start", Type::Double),
-        may("derivative", Type::UNSIGNED_INT),
-        may("reinit", Type::Boolean),
+        may("declaredType", AttributeType::Line),
+        may("quantity", AttributeType::Line),
+        may("unit", AttributeType::Line),
+        may("displayUnit", AttributeType::Line),
+        may("relativeQuantity", AttributeType::Boolean),
+        may("min", AttributeType::Double),
+        may("max", AttributeType::Double),
+        may("nominal", AttributeType::Double),
+        may("unbounded", AttributeType::Boolean),
+        may("start", AttributeType::Double),
+        may("derivative", AttributeType::UNSIGNED_INT),
+        may("reinit", AttributeType::Boolean),
     ],
     &[],
 );
-static INTEGER: Node = node(
+static INTEGER: ElementRule = node(
     "Integer",
     &[
-        may("declaredType", Type::Line),
-        may("quantity", Type::Line),
-        may("min", Type::INT),
-        may("max", Type::INT),
-        may("start", Type::INT),
+        may("declaredType", AttributeType::Line),
+        may("quantity", AttributeType::Line),
+        may("min", AttributeType::INT),
+        may("max", AttributeType::INT),
+        may("start", AttributeType::INT),
     ],
     &[],
 );
-static BOOLEAN: Node =
-    node("Boolean", &[may("declaredType", Type::Line), may("start", Type::Boolean)], &[]);
-static STRING: Node =
-    node("String", &[may("declaredType", Type::Line), may("start", Type::Text)], &[]);
-static ENUMERATION: Node = node(
+static BOOLEAN: ElementRule =
+    node("Boolean", &[may("declaredType", AttributeType::Line), may("start", AttributeType::Boolean)], &[]);
+static STRING: ElementRule =
+    node("String", &[may("declaredType", AttributeType::Line), may("start", AttributeType::Text)], &[]);
+static ENUMERATION: ElementRule = node(
     "Enumeration",
     &[
-        must("declaredType", Type::Line),
-        may("quantity", Type::Line),
-        may("min", Type::INT),
-        may("max", Type::INT),
-        may("start", Type::INT),
+        must("declaredType", AttributeType::Line),
+        may("quantity", AttributeType::Line),
+        may("min", AttributeType::INT),
+        may("max", AttributeType::INT),
+        may("start", AttributeType::INT),
     ],
     &[],
 );
 
-static MODEL_STRUCTURE: Node = node(
+static MODEL_STRUCTURE: ElementRule = node(
     "ModelStructure",
     &[],
     &[optional(0, &OUTPUTS), optional(1, &DERIVATIVES), optional(2, &INITIAL_UNKNOWNS)],
 );
-static OUTPUTS: Node = node("Outputs", &[], UNKNOWNS);
-static DERIVATIVES: Node = node("Derivatives", &[], UNKNOWNS);
-static INITIAL_UNKNOWNS: Node = node("InitialUnknowns", &[], UNKNOWNS);
+static OUTPUTS: ElementRule = node("Outputs", &[], UNKNOWNS);
+static DERIVATIVES: ElementRule = node("Derivatives", &[], UNKNOWNS);
+static INITIAL_UNKNOWNS: ElementRule = node("InitialUnknowns", &[], UNKNOWNS);
 const UNKNOWNS: &[Child] = &[Child { node: &UNKNOWN, place: 0, min: 1, max: MANY }];
-static UNKNOWN: Node = node(
+static UNKNOWN: ElementRule = node(
     "Unknown",
     &[
-        must("index", Type::UNSIGNED_INT),
-        may("dependencies", Type::List(&Type::UNSIGNED_INT)),
+        must("index", AttributeType::UNSIGNED_INT),
+        may("dependencies", AttributeType::List(&AttributeType::UNSIGNED_INT)),
         may("dependenciesKind", KINDS),
     ],
     &[],

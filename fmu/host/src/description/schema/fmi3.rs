@@ -1,9 +1,9 @@
 //! The schemas of FMI 3.0 (`fmi3ModelDescription.xsd`, `fmi3BuildDescription.xsd`).
 
 use super::fmi2::{BASE_UNIT, INITIAL, KINDS, NAMING, VARIABILITY};
-use super::{Attribute, Child, Node, Open, Type, any, may, must, node, one, optional, some};
+use super::{AttributeRule, Child, ElementRule, Open, AttributeType, any, may, must, node, one, optional, some};
 
-const CAUSALITY: Type = Type::Word(&[
+const CAUSALITY: AttributeType = AttributeType::Word(&[
     "parameter",
     "calculatedParameter",
     "input",
@@ -12,23 +12,23 @@ const CAUSALITY: Type = Type::Word(&[
     "independent",
     "structuralParameter",
 ]);
-const INTERVAL: Type =
-    Type::Word(&["constant", "fixed", "tunable", "changing", "countdown", "triggered"]);
+const INTERVAL: AttributeType =
+    AttributeType::Word(&["constant", "fixed", "tunable", "changing", "countdown", "triggered"]);
 
 /// The root element.
-pub static MODEL_DESCRIPTION: Node = node(
+pub static MODEL_DESCRIPTION: ElementRule = node(
     "fmiModelDescription",
     &[
-        must("fmiVersion", Type::Version3),
-        must("modelName", Type::Text),
-        must("instantiationToken", Type::Line),
-        may("description", Type::Text),
-        may("author", Type::Text),
-        may("version", Type::Line),
-        may("copyright", Type::Text),
-        may("license", Type::Text),
-        may("generationTool", Type::Line),
-        may("generationDateAndTime", Type::DateTime),
+        must("fmiVersion", AttributeType::Version3),
+        must("modelName", AttributeType::Text),
+        must("instantiationToken", AttributeType::Line),
+        may("description", AttributeType::Text),
+        may("author", AttributeType::Text),
+        may("version", AttributeType::Line),
+        may("copyright", AttributeType::Text),
+        may("license", AttributeType::Text),
+        may("generationTool", AttributeType::Line),
+        may("generationDateAndTime", AttributeType::DateTime),
         may("variableNamingConvention", NAMING),
     ],
     &[
@@ -45,10 +45,10 @@ pub static MODEL_DESCRIPTION: Node = node(
     ],
 );
 
-pub(super) static ANNOTATIONS: Node = node("Annotations", &[], &[some(0, &ANNOTATION)]);
-static ANNOTATION: Node = Node {
+pub(super) static ANNOTATIONS: ElementRule = node("Annotations", &[], &[some(0, &ANNOTATION)]);
+static ANNOTATION: ElementRule = ElementRule {
     name: "Annotation",
-    attributes: &[must("type", Type::Line)],
+    attributes: &[must("type", AttributeType::Line)],
     children: &[],
     open: Open::Everything,
 };
@@ -57,17 +57,17 @@ const ANNOTATED: &[Child] = &[optional(0, &ANNOTATIONS)];
 /// Common part of all interfaces.
 macro_rules! interface {
     ($name:literal, [$($more:expr),*]) => {
-        Node {
+        ElementRule {
             name: $name,
             attributes: &[
-                must("modelIdentifier", Type::Line),
-                may("needsExecutionTool", Type::Boolean),
-                may("canBeInstantiatedOnlyOncePerProcess", Type::Boolean),
-                may("canGetAndSetFMUState", Type::Boolean),
-                may("canSerializeFMUState", Type::Boolean),
-                may("providesDirectionalDerivatives", Type::Boolean),
-                may("providesAdjointDerivatives", Type::Boolean),
-                may("providesPerElementDependencies", Type::Boolean),
+                must("modelIdentifier", AttributeType::Line),
+                may("needsExecutionTool", AttributeType::Boolean),
+                may("canBeInstantiatedOnlyOncePerProcess", AttributeType::Boolean),
+                may("canGetAndSetFMUState", AttributeType::Boolean),
+                may("canSerializeFMUState", AttributeType::Boolean),
+                may("providesDirectionalDerivatives", AttributeType::Boolean),
+                may("providesAdjointDerivatives", AttributeType::Boolean),
+                may("providesPerElementDependencies", AttributeType::Boolean),
                 $($more),*
             ],
             children: ANNOTATED,
@@ -76,56 +76,56 @@ macro_rules! interface {
     };
 }
 
-static MODEL_EXCHANGE: Node = interface!(
+static MODEL_EXCHANGE: ElementRule = interface!(
     "ModelExchange",
     [
-        may("needsCompletedIntegratorStep", Type::Boolean),
-        may("providesEvaluateDiscreteStates", Type::Boolean)
+        may("needsCompletedIntegratorStep", AttributeType::Boolean),
+        may("providesEvaluateDiscreteStates", AttributeType::Boolean)
     ]
 );
-static CO_SIMULATION: Node = interface!(
+static CO_SIMULATION: ElementRule = interface!(
     "CoSimulation",
     [
-        may("canHandleVariableCommunicationStepSize", Type::Boolean),
-        may("fixedInternalStepSize", Type::Double),
-        may("maxOutputDerivativeOrder", Type::UNSIGNED_INT),
-        may("recommendedIntermediateInputSmoothness", Type::INT),
-        may("providesIntermediateUpdate", Type::Boolean),
-        may("mightReturnEarlyFromDoStep", Type::Boolean),
-        may("canReturnEarlyAfterIntermediateUpdate", Type::Boolean),
-        may("hasEventMode", Type::Boolean),
-        may("providesEvaluateDiscreteStates", Type::Boolean)
+        may("canHandleVariableCommunicationStepSize", AttributeType::Boolean),
+        may("fixedInternalStepSize", AttributeType::Double),
+        may("maxOutputDerivativeOrder", AttributeType::UNSIGNED_INT),
+        may("recommendedIntermediateInputSmoothness", AttributeType::INT),
+        may("providesIntermediateUpdate", AttributeType::Boolean),
+        may("mightReturnEarlyFromDoStep", AttributeType::Boolean),
+        may("canReturnEarlyAfterIntermediateUpdate", AttributeType::Boolean),
+        may("hasEventMode", AttributeType::Boolean),
+        may("providesEvaluateDiscreteStates", AttributeType::Boolean)
     ]
 );
-static SCHEDULED_EXECUTION: Node = interface!("ScheduledExecution", []);
+static SCHEDULED_EXECUTION: ElementRule = interface!("ScheduledExecution", []);
 
-static UNIT_DEFINITIONS: Node = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
-static UNIT: Node = node(
+static UNIT_DEFINITIONS: ElementRule = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
+static UNIT: ElementRule = node(
     "Unit",
-    &[must("name", Type::Line)],
+    &[must("name", AttributeType::Line)],
     &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT), optional(2, &ANNOTATIONS)],
 );
-static DISPLAY_UNIT: Node = node(
+static DISPLAY_UNIT: ElementRule = node(
     "DisplayUnit",
     &[
-        must("name", Type::Line),
-        may("factor", Type::Double),
-        may("offset", Type::Double),
-        may("inverse", Type::Boolean),
+        must("name", AttributeType::Line),
+        may("factor", AttributeType::Double),
+        may("offset", AttributeType::Double),
+        may("inverse", AttributeType::Boolean),
     ],
     ANNOTATED,
 );
 
-static LOG_CATEGORIES: Node = node("LogCategories", &[], &[some(0, &CATEGORY)]);
-static CATEGORY: Node =
-    node("Category", &[must("name", Type::Line), may("description", Type::Text)], ANNOTATED);
-static DEFAULT_EXPERIMENT: Node = node(
+static LOG_CATEGORIES: ElementRule = node("LogCategories", &[], &[some(0, &CATEGORY)]);
+static CATEGORY: ElementRule =
+    node("Category", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], ANNOTATED);
+static DEFAULT_EXPERIMENT: ElementRule = node(
     "DefaultExperiment",
     &[
-        may("startTime", Type::Double),
-        may("stopTime", Type::Double),
-        may("tolerance", Type::Double),
-        may("stepSize", Type::Double),
+        may("startTime", AttributeType::Double),
+        may("stopTime", AttributeType::Double),
+        may("tolerance", AttributeType::Double),
+        may("stepSize", AttributeType::Double),
     ],
     ANNOTATED,
 );
@@ -136,26 +136,26 @@ macro_rules! typed {
     ($variable:ident $name:literal, $definition:ident $type_name:literal,
      both [$($both:expr),*], definition [$($own:expr),*], items $items:expr,
      variable [$($more:expr),*], children $children:expr) => {
-        static $variable: Node = node(
+        static $variable: ElementRule = node(
             $name,
             &[
-                must("name", Type::Line),
-                must("valueReference", Type::UNSIGNED_INT),
-                may("description", Type::Text),
+                must("name", AttributeType::Line),
+                must("valueReference", AttributeType::UNSIGNED_INT),
+                may("description", AttributeType::Text),
                 may("causality", CAUSALITY),
                 may("variability", VARIABILITY),
-                may("canHandleMultipleSetPerTimeInstant", Type::Boolean),
-                may("clocks", Type::List(&Type::UNSIGNED_INT)),
+                may("canHandleMultipleSetPerTimeInstant", AttributeType::Boolean),
+                may("clocks", AttributeType::List(&AttributeType::UNSIGNED_INT)),
                 $($both,)*
                 $($more),*
             ],
             $children,
         );
-        static $definition: Node = node(
+        static $definition: ElementRule = node(
             $type_name,
             &[
-                must("name", Type::Line),
-                may("description", Type::Text),
+                must("name", AttributeType::Line),
+                may("description", AttributeType::Text),
                 $($both,)*
                 $($own),*
             ],
@@ -172,35 +172,35 @@ const TEXT_ARRAY: &[Child] =
 const HEX_ARRAY: &[Child] =
     &[optional(0, &ANNOTATIONS), any(1, &DIMENSION), any(2, &HEX_START), any(3, &ALIAS)];
 
-static DIMENSION: Node = node(
+static DIMENSION: ElementRule = node(
     "Dimension",
-    &[may("start", Type::UNSIGNED_LONG), may("valueReference", Type::UNSIGNED_INT)],
+    &[may("start", AttributeType::UNSIGNED_LONG), may("valueReference", AttributeType::UNSIGNED_INT)],
     &[],
 );
-static ALIAS: Node =
-    node("Alias", &[must("name", Type::Line), may("description", Type::Text)], &[]);
-static FLOAT_ALIAS: Node = node(
+static ALIAS: ElementRule =
+    node("Alias", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static FLOAT_ALIAS: ElementRule = node(
     "Alias",
-    &[must("name", Type::Line), may("description", Type::Text), may("displayUnit", Type::Line)],
+    &[must("name", AttributeType::Line), may("description", AttributeType::Text), may("displayUnit", AttributeType::Line)],
     &[],
 );
-static TEXT_START: Node = node("Start", &[may("value", Type::Text)], &[]);
-static HEX_START: Node = node("Start", &[may("value", Type::Hex)], &[]);
+static TEXT_START: ElementRule = node("Start", &[may("value", AttributeType::Text)], &[]);
+static HEX_START: ElementRule = node("Start", &[may("value", AttributeType::Hex)], &[]);
 
-const DECLARED: Attribute = may("declaredType", Type::Line);
-const INTERMEDIATE: Attribute = may("intermediateUpdate", Type::Boolean);
-const PREVIOUS: Attribute = may("previous", Type::UNSIGNED_INT);
-const INITIALIZED: Attribute = may("initial", INITIAL);
+const DECLARED: AttributeRule = may("declaredType", AttributeType::Line);
+const INTERMEDIATE: AttributeRule = may("intermediateUpdate", AttributeType::Boolean);
+const PREVIOUS: AttributeRule = may("previous", AttributeType::UNSIGNED_INT);
+const INITIALIZED: AttributeRule = may("initial", INITIAL);
 
 macro_rules! float {
     ($variable:ident $name:literal, $definition:ident $type_name:literal, $type:expr) => {
         typed!($variable $name, $definition $type_name,
             both [
-                may("quantity", Type::Line),
-                may("unit", Type::Line),
-                may("displayUnit", Type::Line),
-                may("relativeQuantity", Type::Boolean),
-                may("unbounded", Type::Boolean),
+                may("quantity", AttributeType::Line),
+                may("unit", AttributeType::Line),
+                may("displayUnit", AttributeType::Line),
+                may("relativeQuantity", AttributeType::Boolean),
+                may("unbounded", AttributeType::Boolean),
                 may("min", $type),
                 may("max", $type),
                 may("nominal", $type)
@@ -208,9 +208,9 @@ macro_rules! float {
             definition [], items ANNOTATED,
             variable [
                 DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED,
-                may("start", Type::List(&$type)),
-                may("derivative", Type::UNSIGNED_INT),
-                may("reinit", Type::Boolean)
+                may("start", AttributeType::List(&$type)),
+                may("derivative", AttributeType::UNSIGNED_INT),
+                may("reinit", AttributeType::Boolean)
             ],
             children FLOAT_ARRAY);
     };
@@ -219,29 +219,29 @@ macro_rules! float {
 macro_rules! whole {
     ($variable:ident $name:literal, $definition:ident $type_name:literal, $type:expr) => {
         typed!($variable $name, $definition $type_name,
-            both [may("quantity", Type::Line), may("min", $type), may("max", $type)],
+            both [may("quantity", AttributeType::Line), may("min", $type), may("max", $type)],
             definition [], items ANNOTATED,
             variable [
-                DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED, may("start", Type::List(&$type))
+                DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED, may("start", AttributeType::List(&$type))
             ],
             children ARRAY);
     };
 }
 
-float!(FLOAT32 "Float32", FLOAT32_TYPE "Float32Type", Type::Float);
-float!(FLOAT64 "Float64", FLOAT64_TYPE "Float64Type", Type::Double);
-whole!(INT8 "Int8", INT8_TYPE "Int8Type", Type::BYTE);
-whole!(UINT8 "UInt8", UINT8_TYPE "UInt8Type", Type::UNSIGNED_BYTE);
-whole!(INT16 "Int16", INT16_TYPE "Int16Type", Type::SHORT);
-whole!(UINT16 "UInt16", UINT16_TYPE "UInt16Type", Type::UNSIGNED_SHORT);
-whole!(INT32 "Int32", INT32_TYPE "Int32Type", Type::INT);
-whole!(UINT32 "UInt32", UINT32_TYPE "UInt32Type", Type::UNSIGNED_INT);
-whole!(INT64 "Int64", INT64_TYPE "Int64Type", Type::LONG);
-whole!(UINT64 "UInt64", UINT64_TYPE "UInt64Type", Type::UNSIGNED_LONG);
+float!(FLOAT32 "Float32", FLOAT32_TYPE "Float32Type", AttributeType::Float);
+float!(FLOAT64 "Float64", FLOAT64_TYPE "Float64Type", AttributeType::Double);
+whole!(INT8 "Int8", INT8_TYPE "Int8Type", AttributeType::BYTE);
+whole!(UINT8 "UInt8", UINT8_TYPE "UInt8Type", AttributeType::UNSIGNED_BYTE);
+whole!(INT16 "Int16", INT16_TYPE "Int16Type", AttributeType::SHORT);
+whole!(UINT16 "UInt16", UINT16_TYPE "UInt16Type", AttributeType::UNSIGNED_SHORT);
+whole!(INT32 "Int32", INT32_TYPE "Int32Type", AttributeType::INT);
+whole!(UINT32 "UInt32", UINT32_TYPE "UInt32Type", AttributeType::UNSIGNED_INT);
+whole!(INT64 "Int64", INT64_TYPE "Int64Type", AttributeType::LONG);
+whole!(UINT64 "UInt64", UINT64_TYPE "UInt64Type", AttributeType::UNSIGNED_LONG);
 typed!(BOOLEAN "Boolean", BOOLEAN_TYPE "BooleanType",
     both [], definition [], items ANNOTATED,
     variable [
-        DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED, may("start", Type::List(&Type::Boolean))
+        DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED, may("start", AttributeType::List(&AttributeType::Boolean))
     ],
     children ARRAY);
 typed!(STRING "String", STRING_TYPE "StringType",
@@ -249,41 +249,41 @@ typed!(STRING "String", STRING_TYPE "StringType",
     variable [DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED],
     children TEXT_ARRAY);
 typed!(BINARY "Binary", BINARY_TYPE "BinaryType",
-    both [may("mimeType", Type::Line), may("maxSize", Type::NON_NEGATIVE)],
+    both [may("mimeType", AttributeType::Line), may("maxSize", AttributeType::NON_NEGATIVE)],
     definition [], items ANNOTATED,
     variable [DECLARED, INTERMEDIATE, PREVIOUS, INITIALIZED],
     children HEX_ARRAY);
 typed!(ENUMERATION "Enumeration", ENUMERATION_TYPE "EnumerationType",
-    both [may("quantity", Type::Line), may("min", Type::LONG), may("max", Type::LONG)],
+    both [may("quantity", AttributeType::Line), may("min", AttributeType::LONG), may("max", AttributeType::LONG)],
     definition [], items &[optional(0, &ANNOTATIONS), some(1, &ITEM)],
     variable [
-        must("declaredType", Type::Line), INTERMEDIATE, PREVIOUS, INITIALIZED,
-        may("start", Type::List(&Type::LONG))
+        must("declaredType", AttributeType::Line), INTERMEDIATE, PREVIOUS, INITIALIZED,
+        may("start", AttributeType::List(&AttributeType::LONG))
     ],
     children ARRAY);
 typed!(CLOCK "Clock", CLOCK_TYPE "ClockType",
     both [
-        may("canBeDeactivated", Type::Boolean),
-        may("priority", Type::UNSIGNED_INT),
+        may("canBeDeactivated", AttributeType::Boolean),
+        may("priority", AttributeType::UNSIGNED_INT),
         must("intervalVariability", INTERVAL),
-        may("intervalDecimal", Type::Float),
-        may("shiftDecimal", Type::Float),
-        may("supportsFraction", Type::Boolean),
-        may("resolution", Type::UNSIGNED_LONG),
-        may("intervalCounter", Type::UNSIGNED_LONG),
-        may("shiftCounter", Type::UNSIGNED_LONG)
+        may("intervalDecimal", AttributeType::Float),
+        may("shiftDecimal", AttributeType::Float),
+        may("supportsFraction", AttributeType::Boolean),
+        may("resolution", AttributeType::UNSIGNED_LONG),
+        may("intervalCounter", AttributeType::UNSIGNED_LONG),
+        may("shiftCounter", AttributeType::UNSIGNED_LONG)
     ],
     definition [], items ANNOTATED,
     variable [DECLARED],
     children &[optional(0, &ANNOTATIONS), any(1, &ALIAS)]);
 
-static ITEM: Node = node(
+static ITEM: ElementRule = node(
     "Item",
-    &[must("name", Type::Line), must("value", Type::LONG), may("description", Type::Text)],
+    &[must("name", AttributeType::Line), must("value", AttributeType::LONG), may("description", AttributeType::Text)],
     ANNOTATED,
 );
 
-static TYPE_DEFINITIONS: Node = node(
+static TYPE_DEFINITIONS: ElementRule = node(
     "TypeDefinitions",
     &[],
     &[
@@ -304,7 +304,7 @@ static TYPE_DEFINITIONS: Node = node(
         some(0, &CLOCK_TYPE),
     ],
 );
-static MODEL_VARIABLES: Node = node(
+static MODEL_VARIABLES: ElementRule = node(
     "ModelVariables",
     &[],
     &[
@@ -326,7 +326,7 @@ static MODEL_VARIABLES: Node = node(
     ],
 );
 
-static MODEL_STRUCTURE: Node = node(
+static MODEL_STRUCTURE: ElementRule = node(
     "ModelStructure",
     &[],
     &[
@@ -337,39 +337,39 @@ static MODEL_STRUCTURE: Node = node(
         any(4, &EVENT_INDICATOR),
     ],
 );
-const UNKNOWN: &[Attribute] = &[
-    must("valueReference", Type::UNSIGNED_INT),
-    may("dependencies", Type::List(&Type::UNSIGNED_INT)),
+const UNKNOWN: &[AttributeRule] = &[
+    must("valueReference", AttributeType::UNSIGNED_INT),
+    may("dependencies", AttributeType::List(&AttributeType::UNSIGNED_INT)),
     may("dependenciesKind", KINDS),
 ];
-static OUTPUT: Node = node("Output", UNKNOWN, ANNOTATED);
-static CONTINUOUS_STATE_DERIVATIVE: Node = node("ContinuousStateDerivative", UNKNOWN, ANNOTATED);
-static CLOCKED_STATE: Node = node("ClockedState", UNKNOWN, ANNOTATED);
-static INITIAL_UNKNOWN: Node = node("InitialUnknown", UNKNOWN, ANNOTATED);
-static EVENT_INDICATOR: Node = node("EventIndicator", UNKNOWN, ANNOTATED);
+static OUTPUT: ElementRule = node("Output", UNKNOWN, ANNOTATED);
+static CONTINUOUS_STATE_DERIVATIVE: ElementRule = node("ContinuousStateDerivative", UNKNOWN, ANNOTATED);
+static CLOCKED_STATE: ElementRule = node("ClockedState", UNKNOWN, ANNOTATED);
+static INITIAL_UNKNOWN: ElementRule = node("InitialUnknown", UNKNOWN, ANNOTATED);
+static EVENT_INDICATOR: ElementRule = node("EventIndicator", UNKNOWN, ANNOTATED);
 
 /// The root element of `sources/buildDescription.xml`.
-pub static BUILD_DESCRIPTION: Node = node(
+pub static BUILD_DESCRIPTION: ElementRule = node(
     "fmiBuildDescription",
-    &[must("fmiVersion", Type::Version3)],
+    &[must("fmiVersion", AttributeType::Version3)],
     &[some(0, &BUILD_CONFIGURATION), optional(1, &ANNOTATIONS)],
 );
-static BUILD_CONFIGURATION: Node = node(
+static BUILD_CONFIGURATION: ElementRule = node(
     "BuildConfiguration",
     &[
-        must("modelIdentifier", Type::Line),
-        may("platform", Type::Line),
-        may("description", Type::Text),
+        must("modelIdentifier", AttributeType::Line),
+        may("platform", AttributeType::Line),
+        may("description", AttributeType::Text),
     ],
     &[any(0, &SOURCE_FILE_SET), any(1, &LIBRARY), optional(2, &ANNOTATIONS)],
 );
-static SOURCE_FILE_SET: Node = node(
+static SOURCE_FILE_SET: ElementRule = node(
     "SourceFileSet",
     &[
-        may("name", Type::Line),
-        may("language", Type::Line),
-        may("compiler", Type::Line),
-        may("compilerOptions", Type::Text),
+        may("name", AttributeType::Line),
+        may("language", AttributeType::Line),
+        may("compiler", AttributeType::Line),
+        may("compilerOptions", AttributeType::Text),
     ],
     &[
         some(0, &SOURCE_FILE),
@@ -378,27 +378,27 @@ static SOURCE_FILE_SET: Node = node(
         optional(3, &ANNOTATIONS),
     ],
 );
-static SOURCE_FILE: Node = node("SourceFile", &[must("name", Type::Line)], ANNOTATED);
-static INCLUDE_DIRECTORY: Node = node("IncludeDirectory", &[must("name", Type::Line)], ANNOTATED);
-static PREPROCESSOR_DEFINITION: Node = node(
+static SOURCE_FILE: ElementRule = node("SourceFile", &[must("name", AttributeType::Line)], ANNOTATED);
+static INCLUDE_DIRECTORY: ElementRule = node("IncludeDirectory", &[must("name", AttributeType::Line)], ANNOTATED);
+static PREPROCESSOR_DEFINITION: ElementRule = node(
     "PreprocessorDefinition",
     &[
-        must("name", Type::Line),
-        may("optional", Type::Boolean),
-        may("value", Type::Line),
-        may("description", Type::Text),
+        must("name", AttributeType::Line),
+        may("optional", AttributeType::Boolean),
+        may("value", AttributeType::Line),
+        may("description", AttributeType::Text),
     ],
     &[any(0, &OPTION), optional(1, &ANNOTATIONS)],
 );
-static OPTION: Node =
-    node("Option", &[may("value", Type::Line), may("description", Type::Text)], &[]);
-static LIBRARY: Node = node(
+static OPTION: ElementRule =
+    node("Option", &[may("value", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static LIBRARY: ElementRule = node(
     "Library",
     &[
-        must("name", Type::Line),
-        may("version", Type::Line),
-        may("external", Type::Boolean),
-        may("description", Type::Text),
+        must("name", AttributeType::Line),
+        may("version", AttributeType::Line),
+        may("external", AttributeType::Boolean),
+        may("description", AttributeType::Text),
     ],
     ANNOTATED,
 );

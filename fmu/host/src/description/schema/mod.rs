@@ -11,7 +11,7 @@ mod values;
 pub use fmi2::MODEL_DESCRIPTION as FMI2;
 pub use fmi3::{BUILD_DESCRIPTION, MODEL_DESCRIPTION as FMI3};
 pub use terminals::TERMINALS_AND_ICONS;
-pub use values::Type;
+pub use values::AttributeType;
 
 use super::xml::Element;
 
@@ -20,11 +20,11 @@ const DEPTH_MAX: usize = 64;
 
 /// An element in the standard.
 #[derive(Debug)]
-pub struct Node {
+pub struct ElementRule {
     /// Name of the element.
     pub name: &'static str,
     /// Attributes.
-    pub attributes: &'static [Attribute],
+    pub attributes: &'static [AttributeRule],
     /// Child elements, in their order.
     pub children: &'static [Child],
     /// Other content that is allowed.
@@ -44,11 +44,11 @@ pub enum Open {
 
 /// An attribute in the standard.
 #[derive(Debug)]
-pub struct Attribute {
+pub struct AttributeRule {
     /// Name of the attribute.
     pub name: &'static str,
     /// Type of the value.
-    pub of: Type,
+    pub of: AttributeType,
     /// True if the attribute is required.
     pub required: bool,
 }
@@ -57,7 +57,7 @@ pub struct Attribute {
 #[derive(Debug)]
 pub struct Child {
     /// Definition of the child.
-    pub node: &'static Node,
+    pub node: &'static ElementRule,
     /// Position in the order. Elements of one position may be in any order.
     pub place: u8,
     /// Smallest total number of elements of this position.
@@ -71,37 +71,37 @@ const MANY: u32 = u32::MAX;
 
 const fn node(
     name: &'static str,
-    attributes: &'static [Attribute],
+    attributes: &'static [AttributeRule],
     children: &'static [Child],
-) -> Node {
-    Node { name, attributes, children, open: Open::No }
+) -> ElementRule {
+    ElementRule { name, attributes, children, open: Open::No }
 }
 
-const fn may(name: &'static str, of: Type) -> Attribute {
-    Attribute { name, of, required: false }
+const fn may(name: &'static str, of: AttributeType) -> AttributeRule {
+    AttributeRule { name, of, required: false }
 }
 
-const fn must(name: &'static str, of: Type) -> Attribute {
-    Attribute { name, of, required: true }
+const fn must(name: &'static str, of: AttributeType) -> AttributeRule {
+    AttributeRule { name, of, required: true }
 }
 
 /// Makes an optional element.
-const fn optional(place: u8, node: &'static Node) -> Child {
+const fn optional(place: u8, node: &'static ElementRule) -> Child {
     Child { node, place, min: 0, max: 1 }
 }
 
 /// Makes an element that occurs exactly once.
-const fn one(place: u8, node: &'static Node) -> Child {
+const fn one(place: u8, node: &'static ElementRule) -> Child {
     Child { node, place, min: 1, max: 1 }
 }
 
 /// Makes an element that may occur any number of times.
-const fn any(place: u8, node: &'static Node) -> Child {
+const fn any(place: u8, node: &'static ElementRule) -> Child {
     Child { node, place, min: 0, max: MANY }
 }
 
 /// Makes an element that has to occur at least once.
-const fn some(place: u8, node: &'static Node) -> Child {
+const fn some(place: u8, node: &'static ElementRule) -> Child {
     Child { node, place, min: 1, max: MANY }
 }
 
@@ -140,7 +140,7 @@ pub enum Breaks {
 }
 
 /// Reports every violation of the schema to `report`.
-pub fn walk(root: Element<'_, '_>, node: &Node, report: &mut impl FnMut(Violation)) {
+pub fn walk(root: Element<'_, '_>, node: &ElementRule, report: &mut impl FnMut(Violation)) {
     if root.name() == node.name {
         walk_element(root, node, 0, report);
     } else {
@@ -156,7 +156,7 @@ pub fn walk(root: Element<'_, '_>, node: &Node, report: &mut impl FnMut(Violatio
 
 fn walk_element(
     element: Element<'_, '_>,
-    node: &Node,
+    node: &ElementRule,
     depth: usize,
     report: &mut impl FnMut(Violation),
 ) {
@@ -229,7 +229,7 @@ fn walk_element(
     }
 }
 
-fn attributes(element: Element<'_, '_>, node: &Node, report: &mut impl FnMut(Violation)) {
+fn attributes(element: Element<'_, '_>, node: &ElementRule, report: &mut impl FnMut(Violation)) {
     let mut violation = |breaks, attribute: &str, found: String, expected: String| {
         report(Violation {
             breaks,

@@ -1,48 +1,48 @@
 //! The schema of `terminalsAndIcons.xml` (`fmi3TerminalsAndIcons.xsd`).
 
 use super::fmi3::ANNOTATIONS;
-use super::{Node, Type, any, may, must, node, optional, some};
+use super::{ElementRule, AttributeType, any, may, must, node, optional, some};
 
 /// The root element.
-pub static TERMINALS_AND_ICONS: Node = node(
+pub static TERMINALS_AND_ICONS: ElementRule = node(
     "fmiTerminalsAndIcons",
-    &[must("fmiVersion", Type::Version3)],
+    &[must("fmiVersion", AttributeType::Version3)],
     &[optional(0, &GRAPHICAL_REPRESENTATION), optional(1, &TERMINALS), optional(2, &ANNOTATIONS)],
 );
-static GRAPHICAL_REPRESENTATION: Node = node(
+static GRAPHICAL_REPRESENTATION: ElementRule = node(
     "GraphicalRepresentation",
     &[],
     &[optional(0, &COORDINATE_SYSTEM), optional(1, &ICON), optional(2, &ANNOTATIONS)],
 );
-static COORDINATE_SYSTEM: Node = node(
+static COORDINATE_SYSTEM: ElementRule = node(
     "CoordinateSystem",
     &[
-        must("x1", Type::Double),
-        must("y1", Type::Double),
-        must("x2", Type::Double),
-        must("y2", Type::Double),
-        must("suggestedScalingFactorTo_mm", Type::Double),
+        must("x1", AttributeType::Double),
+        must("y1", AttributeType::Double),
+        must("x2", AttributeType::Double),
+        must("y2", AttributeType::Double),
+        must("suggestedScalingFactorTo_mm", AttributeType::Double),
     ],
     &[],
 );
-static ICON: Node = node(
+static ICON: ElementRule = node(
     "Icon",
     &[
-        must("x1", Type::Double),
-        must("y1", Type::Double),
-        must("x2", Type::Double),
-        must("y2", Type::Double),
+        must("x1", AttributeType::Double),
+        must("y1", AttributeType::Double),
+        must("x2", AttributeType::Double),
+        must("y2", AttributeType::Double),
     ],
     &[],
 );
-static TERMINALS: Node = node("Terminals", &[], &[some(0, &TERMINAL)]);
-static TERMINAL: Node = node(
+static TERMINALS: ElementRule = node("Terminals", &[], &[some(0, &TERMINAL)]);
+static TERMINAL: ElementRule = node(
     "Terminal",
     &[
-        must("name", Type::Line),
-        must("matchingRule", Type::Line),
-        may("terminalKind", Type::Line),
-        may("description", Type::Text),
+        must("name", AttributeType::Line),
+        must("matchingRule", AttributeType::Line),
+        may("terminalKind", AttributeType::Line),
+        may("description", AttributeType::Text),
     ],
     &[
         any(0, &MEMBER),
@@ -52,35 +52,35 @@ static TERMINAL: Node = node(
         optional(4, &ANNOTATIONS),
     ],
 );
-static MEMBER: Node = node(
+static MEMBER: ElementRule = node(
     "TerminalMemberVariable",
     &[
-        must("variableName", Type::Line),
-        may("memberName", Type::Line),
-        must("variableKind", Type::Line),
+        must("variableName", AttributeType::Line),
+        may("memberName", AttributeType::Line),
+        must("variableKind", AttributeType::Line),
     ],
     &[optional(0, &ANNOTATIONS)],
 );
-static STREAM_MEMBER: Node = node(
+static STREAM_MEMBER: ElementRule = node(
     "TerminalStreamMemberVariable",
     &[
-        must("inStreamMemberName", Type::Line),
-        must("outStreamMemberName", Type::Line),
-        must("inStreamVariableName", Type::Line),
-        must("outStreamVariableName", Type::Line),
+        must("inStreamMemberName", AttributeType::Line),
+        must("outStreamMemberName", AttributeType::Line),
+        must("inStreamVariableName", AttributeType::Line),
+        must("outStreamVariableName", AttributeType::Line),
     ],
     &[optional(0, &ANNOTATIONS)],
 );
-static TERMINAL_GRAPHIC: Node = node(
+static TERMINAL_GRAPHIC: ElementRule = node(
     "TerminalGraphicalRepresentation",
     &[
-        may("defaultConnectionColor", Type::List(&Type::UNSIGNED_BYTE)),
-        may("defaultConnectionStrokeSize", Type::Double),
-        must("x1", Type::Double),
-        must("y1", Type::Double),
-        must("x2", Type::Double),
-        must("y2", Type::Double),
-        must("iconBaseName", Type::Text),
+        may("defaultConnectionColor", AttributeType::List(&AttributeType::UNSIGNED_BYTE)),
+        may("defaultConnectionStrokeSize", AttributeType::Double),
+        must("x1", AttributeType::Double),
+        must("y1", AttributeType::Double),
+        must("x2", AttributeType::Double),
+        must("y2", AttributeType::Double),
+        must("iconBaseName", AttributeType::Text),
     ],
     &[optional(0, &ANNOTATIONS)],
 );

@@ -2,7 +2,7 @@
 
 /// Type of an attribute's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
+pub enum AttributeType {
     /// `xs:string`.
     Text,
     /// `xs:normalizedString`.
@@ -27,7 +27,7 @@ pub enum Type {
     Version3,
 }
 
-impl Type {
+impl AttributeType {
     /// `xs:byte`.
     pub const BYTE: Self = Self::Whole(i8::MIN as i128, i8::MAX as i128);
     /// `xs:unsignedByte`.
@@ -71,7 +71,7 @@ impl Type {
     }
 }
 
-impl std::fmt::Display for Type {
+impl std::fmt::Display for AttributeType {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Text => f.write_str("a text"),
@@ -155,17 +155,17 @@ mod tests {
     #[test]
     fn values_are_told_apart() {
         for (of, yes, no) in [
-            (Type::Line, &["a b", ""][..], &["a\nb", "\t"][..]),
+            (AttributeType::Line, &["a b", ""][..], &["a\nb", "\t"][..]),
             (
-                Type::Double,
+                AttributeType::Double,
                 &["1", "-1.5e-3", " 1 ", "INF", "-INF", "NaN", ".5", "5.", "+1E+2"],
                 &["", "inf", "nan", "Infinity", "1,5", "0x10", "1 2", "1f", "e", "1e"],
             ),
-            (Type::Boolean, &["true", "false", "1", "0"], &["True", "yes", ""]),
-            (Type::BYTE, &["-128", "127", "+5", "007"], &["128", "-129", "1.0", ""]),
-            (Type::UNSIGNED_LONG, &["18446744073709551615"], &["18446744073709551616", "-1"]),
+            (AttributeType::Boolean, &["true", "false", "1", "0"], &["True", "yes", ""]),
+            (AttributeType::BYTE, &["-128", "127", "+5", "007"], &["128", "-129", "1.0", ""]),
+            (AttributeType::UNSIGNED_LONG, &["18446744073709551615"], &["18446744073709551616", "-1"]),
             (
-                Type::DateTime,
+                AttributeType::DateTime,
                 &["2009-12-08T14:33:22Z", "2024-02-29T00:00:00.125+01:00", "2024-02-29T00:00:00"],
                 &[
                     "2009-12-08",
@@ -175,11 +175,11 @@ mod tests {
                     "2009-12-08T14:33:22.Z",
                 ],
             ),
-            (Type::Hex, &["", "0aFF"], &["0", "0g"]),
-            (Type::List(&Type::UNSIGNED_INT), &["", "1 2  3"], &["1,2", "-1"]),
-            (Type::Word(&["a", "b"]), &["a", "b"], &["c", "A", ""]),
+            (AttributeType::Hex, &["", "0aFF"], &["0", "0g"]),
+            (AttributeType::List(&AttributeType::UNSIGNED_INT), &["", "1 2  3"], &["1,2", "-1"]),
+            (AttributeType::Word(&["a", "b"]), &["a", "b"], &["c", "A", ""]),
             (
-                Type::Version3,
+                AttributeType::Version3,
                 &["3.0", "3.1", "3.0.2", "3.0-beta.1"],
                 &["3", "2.0", "3.01", "3.0-", "3.0.0.0", "3."],
             ),

@@ -15,7 +15,7 @@ fn description(definitions: &str, attributes: &str) -> Description {
 }
 
 fn factor(from: &str, to: &str) -> f64 {
-    let conversion = Conversion::between(&description("", ""), from, to).expect("converts");
+    let conversion = UnitConversion::between(&description("", ""), from, to).expect("converts");
     assert_eq!(conversion.offset, 0.0);
     conversion.factor
 }
@@ -23,7 +23,7 @@ fn factor(from: &str, to: &str) -> f64 {
 #[test]
 fn the_same_unit_changes_no_bit() {
     for unit in ["rad", "m/s", "deg", "furlong", "degC"] {
-        let same = Conversion::between(&description("", ""), unit, unit).expect("the same");
+        let same = UnitConversion::between(&description("", ""), unit, unit).expect("the same");
         assert!(same.is_identity());
         for number in [0.1, -0.0, 1e-300, f64::INFINITY] {
             assert_eq!(same.apply(number).to_bits(), number.to_bits());
@@ -90,14 +90,14 @@ fn factors_are_those_of_the_textbook() {
 #[test]
 fn temperatures_have_offsets_and_differences_have_none() {
     let plain = description("", r#"unit="degC""#);
-    let conversion = Conversion::of(&plain, &plain.variables[0], "K").expect("converts");
+    let conversion = UnitConversion::of(&plain, &plain.variables[0], "K").expect("converts");
     assert_eq!(conversion.apply(20.0), 293.15);
-    let back = Conversion::between(&plain, "K", "degC").expect("converts");
+    let back = UnitConversion::between(&plain, "K", "degC").expect("converts");
     assert!((back.apply(293.15) - 20.0).abs() < 1e-12);
-    let fahrenheit = Conversion::between(&plain, "degF", "degC").expect("converts");
+    let fahrenheit = UnitConversion::between(&plain, "degF", "degC").expect("converts");
     assert!((fahrenheit.apply(212.0) - 100.0).abs() < 1e-12);
     let difference = description("", r#"unit="degC" relativeQuantity="true""#);
-    let conversion = Conversion::of(&difference, &difference.variables[0], "K").expect("converts");
+    let conversion = UnitConversion::of(&difference, &difference.variables[0], "K").expect("converts");
     assert!(conversion.is_identity());
 }
 
@@ -113,7 +113,7 @@ fn definitions_count_before_names() {
            <Unit name="Umin"><BaseUnit s="-1" factor="0.01666666666666667"/></Unit>"#,
         "",
     );
-    let factor = |from, to| Conversion::between(&tool, from, to).expect("converts").factor;
+    let factor = |from, to| UnitConversion::between(&tool, from, to).expect("converts").factor;
     assert_eq!(factor("deg", "rad").to_bits(), 0.017_453_292_519_943_295_f64.to_bits());
     assert_eq!(factor("Grad", "rad"), 0.015_707_963_267_949);
     assert_eq!(factor("deg/h", "rad/s"), 0.5);
@@ -121,16 +121,16 @@ fn definitions_count_before_names() {
     assert!((factor("Strich", "deg") - 360.0 / 6400.0).abs() < 1e-15);
     // A survey mile is 3 mm longer, and is left so.
     let survey = description(r#"<Unit name="mi"><BaseUnit m="1" factor="1609.3472"/></Unit>"#, "");
-    let mile = Conversion::between(&survey, "mi", "m").expect("converts");
+    let mile = UnitConversion::between(&survey, "mi", "m").expect("converts");
     assert_eq!(mile.factor, 1609.3472);
     // A number of turns isn't an angle, even if a tool leaves the radian out of "rad".
-    assert!(Conversion::between(&tool, "Umin", "rad/s").is_err());
+    assert!(UnitConversion::between(&tool, "Umin", "rad/s").is_err());
 }
 
 #[test]
 fn what_measures_something_else_is_refused_with_both_names() {
     let plain = description("", r#"unit="m""#);
-    let error = |from, to| Conversion::between(&plain, from, to).expect_err("refused").to_string();
+    let error = |from, to| UnitConversion::between(&plain, from, to).expect_err("refused").to_string();
     assert_eq!(error("m", "rad"), "unit \"m\" (m) can't become \"rad\" (rad)");
     assert_eq!(error("Hz", "rad/s"), "unit \"Hz\" (s^-1) can't become \"rad/s\" (s^-1·rad)");
     assert_eq!(error("1", "rad"), "unit \"1\" (no dimension) can't become \"rad\" (rad)");
@@ -141,7 +141,7 @@ fn what_measures_something_else_is_refused_with_both_names() {
         "unit \"furlong\" is neither defined in m.xml nor a known one, expected one like \"m\""
     );
     let none = description("", "");
-    let error = Conversion::of(&none, &none.variables[0], "rad").expect_err("refused");
+    let error = UnitConversion::of(&none, &none.variables[0], "rad").expect_err("refused");
     assert_eq!(error.to_string(), "variable \"v\" of m.xml has no unit, expected one like \"rad\"");
 }
 
@@ -176,8 +176,8 @@ proptest::proptest! {
     fn there_and_back_is_where_it_was(number in -1e6..1e6f64, a in 0..8usize, b in 0..8usize) {
         let units = ["deg", "rad", "arcsec", "arcmin", "rev", "mrad", "urad", "°"];
         let plain = description("", "");
-        let there = Conversion::between(&plain, units[a], units[b]).expect("converts");
-        let back = Conversion::between(&plain, units[b], units[a]).expect("converts");
+        let there = UnitConversion::between(&plain, units[a], units[b]).expect("converts");
+        let back = UnitConversion::between(&plain, units[b], units[a]).expect("converts");
         let again = back.apply(there.apply(number));
         proptest::prop_assert!((again - number).abs() <= 4.0 * f64::EPSILON * number.abs());
     }

@@ -2,7 +2,7 @@
 
 use crate::c::call::call;
 use crate::c::instance::Instance;
-use crate::c::mode::{Refusal, Standard};
+use crate::c::mode::{Refusal, ServedStandard};
 use core::ffi::c_void;
 use octant_fmi::fmi3::{Boolean, Status};
 
@@ -16,5 +16,5 @@ pub(super) fn enter(
     function: &'static str,
     work: impl FnOnce(&mut Instance) -> Result<Status, Refusal>,
 ) -> Status {
-    call(handle, Standard::Fmi3, function, work)
+    call(handle, ServedStandard::Fmi3, function, work)
 }

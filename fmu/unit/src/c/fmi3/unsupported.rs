@@ -1,7 +1,7 @@
 //! Functions that are exported but that no model supports.
 
 use super::entry::enter;
-use crate::c::mode::{self, Modes, Refusal, Standard};
+use crate::c::mode::{self, Modes, Refusal, ServedStandard};
 use octant_fmi::fmi3::{
     Boolean, Instance as Handle, OK, Status, String, ValueReference, signature,
 };
@@ -32,7 +32,7 @@ fn no_variables(
     })
 }
 
-const GET: Modes = mode::get(Standard::Fmi3);
+const GET: Modes = mode::get(ServedStandard::Fmi3);
 /// Modes in which clocks may be read.
 pub(super) const CLOCKS: Modes = Modes::of(&[mode::Mode::Initialization, mode::Mode::Event]);
 

@@ -1,29 +1,29 @@
 //! A model that panics, fails and makes several periods on demand.
 
 use crate::c::models::Maker;
-use crate::component::Component;
-use crate::table::{Enumeration, Kind, Model, Variable};
-use crate::values::Values;
+use crate::component::ModelComponent;
+use crate::table::{DeclaredEnumeration, ElementType, Model, DeclaredVariable};
+use crate::values::CellValues;
 
-static LEVEL: Enumeration = Enumeration {
+static LEVEL: DeclaredEnumeration = DeclaredEnumeration {
     name: "Level",
     description: "Two levels that are not neighbours.",
     items: &[(1, "low", ""), (5, "high", "")],
 };
 
-static VARIABLES: [Variable; 9] = [
-    Variable::input("u", Kind::Real).elements(2),
-    Variable::input("trouble", Kind::Integer).within(0.0, 9.0),
-    Variable::input("anything", Kind::Real).non_finite(),
-    Variable::input("level", Kind::Enumeration(&LEVEL)).start(&[1.0]),
-    Variable::input("on", Kind::Boolean),
-    Variable::parameter("gain", Kind::Real).start(&[2.0]).tunable(),
-    Variable::parameter("limit", Kind::Count).within(1.0, 1000.0).start(&[100.0]),
-    depending(Variable::output("y", Kind::Real)),
-    Variable::output("count", Kind::Count),
+static VARIABLES: [DeclaredVariable; 9] = [
+    DeclaredVariable::input("u", ElementType::Real).elements(2),
+    DeclaredVariable::input("trouble", ElementType::Integer).within(0.0, 9.0),
+    DeclaredVariable::input("anything", ElementType::Real).non_finite(),
+    DeclaredVariable::input("level", ElementType::Enumeration(&LEVEL)).start(&[1.0]),
+    DeclaredVariable::input("on", ElementType::Boolean),
+    DeclaredVariable::parameter("gain", ElementType::Real).start(&[2.0]).tunable(),
+    DeclaredVariable::parameter("limit", ElementType::Count).within(1.0, 1000.0).start(&[100.0]),
+    depending(DeclaredVariable::output("y", ElementType::Real)),
+    DeclaredVariable::output("count", ElementType::Count),
 ];
 
-const fn depending(mut variable: Variable) -> Variable {
+const fn depending(mut variable: DeclaredVariable) -> DeclaredVariable {
     variable.depends_on = &["u", "on"];
     variable
 }
@@ -61,12 +61,12 @@ struct Counter {
 #[error("{0}")]
 pub(super) struct Trouble(&'static str);
 
-impl Component for Counter {
+impl ModelComponent for Counter {
     const MODEL: &'static Model = &MODEL;
 
     type Error = Trouble;
 
-    fn initialize(values: &mut Values) -> Result<Self, Trouble> {
+    fn initialize(values: &mut CellValues) -> Result<Self, Trouble> {
         if values.count(LIMIT) == 13 {
             return Err(Trouble("limit is 13, a lucky number is expected"));
         }
@@ -79,7 +79,7 @@ impl Component for Counter {
         10_000_000
     }
 
-    fn step(&mut self, values: &mut Values) -> Result<(), Trouble> {
+    fn step(&mut self, values: &mut CellValues) -> Result<(), Trouble> {
         match values.integer(TROUBLE) {
             1 => panic!("trouble was asked for"),
             2 => return Err(Trouble("trouble is 2")),
@@ -93,7 +93,7 @@ impl Component for Counter {
         Ok(())
     }
 
-    fn terminate(&mut self, values: &mut Values) {
+    fn terminate(&mut self, values: &mut CellValues) {
         assert_ne!(values.integer(TROUBLE), 4, "trouble at the end");
         values.set_real(Y, 1000.0);
     }
@@ -103,7 +103,7 @@ impl Component for Counter {
         bytes.extend(self.sum.to_le_bytes());
     }
 
-    fn load(bytes: &[u8], _: &Values) -> Result<Self, Trouble> {
+    fn load(bytes: &[u8], _: &CellValues) -> Result<Self, Trouble> {
         let parts = bytes.split_first_chunk().map(|(count, sum)| (count, sum.try_into()));
         let Some((count, Ok(sum))) = parts else { return Err(Trouble("16 bytes are expected")) };
         Ok(Self { count: u64::from_le_bytes(*count), sum: f64::from_le_bytes(sum) })

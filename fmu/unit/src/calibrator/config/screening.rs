@@ -1,12 +1,12 @@
 //! Screens and gates.
 
 use super::field::{no_item, optional, put_optional, whole};
-use crate::calibrator::error::ValueError;
+use crate::calibrator::error::CalibratorValueError;
 use crate::calibrator::table::slot;
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_calibration::config::{Base, BaseMotion, Gate, Recovery, Screening};
 
-pub(super) fn put(screening: &Screening, values: &mut Values) {
+pub(super) fn put(screening: &Screening, values: &mut CellValues) {
     let Screening {
         gate,
         stuck_samples,
@@ -67,9 +67,9 @@ pub(super) fn put(screening: &Screening, values: &mut Values) {
     values.set_real(slot::VIBRATION_ACCELEROMETER, vibration.1);
 }
 
-pub(super) fn get(values: &Values) -> Result<Screening, ValueError> {
+pub(super) fn get(values: &CellValues) -> Result<Screening, CalibratorValueError> {
     let gate = || {
-        Ok::<_, ValueError>(Gate {
+        Ok::<_, CalibratorValueError>(Gate {
             nis: values.real(slot::GATE_NIS),
             rejections: whole(slot::GATE_REJECTIONS, values)?,
             recovery: match values.integer(slot::GATE_RECOVERY) {

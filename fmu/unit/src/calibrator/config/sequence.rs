@@ -1,9 +1,9 @@
 //! Sequences of stops: a named one, or a table of stops.
 
 use super::field::{label, no_item, whole};
-use crate::calibrator::error::ValueError;
+use crate::calibrator::error::CalibratorValueError;
 use crate::calibrator::table::slot;
-use crate::values::Values;
+use crate::values::CellValues;
 use octant_calibration::positions::{Degrees, SEQUENCES, SIXTEEN, from_degrees};
 use octant_calibration::sequence::{STOPS_MAX, Sequence, Stop};
 
@@ -60,7 +60,7 @@ fn bits(sequence: &Sequence) -> impl Iterator<Item = [u64; 3]> {
 }
 
 impl Slots {
-    pub(super) fn put(&self, sequence: &Sequence, values: &mut Values) {
+    pub(super) fn put(&self, sequence: &Sequence, values: &mut CellValues) {
         let passes = sequence.passes();
         let mut name = CUSTOM;
         for (stops, value) in self.named.iter().zip(CUSTOM + 1..) {
@@ -80,14 +80,14 @@ impl Slots {
         values.set_count(self.passes, passes.into());
     }
 
-    pub(super) fn get(&self, values: &Values) -> Result<Sequence, ValueError> {
+    pub(super) fn get(&self, values: &CellValues) -> Result<Sequence, CalibratorValueError> {
         let passes = whole(self.passes, values)?;
         let name = values.integer(self.name);
         let made = if name == CUSTOM {
             let count = values.integer(self.count);
             let stops = usize::try_from(count).unwrap_or(0);
             if !(1..=STOPS_MAX).contains(&stops) {
-                return Err(ValueError::Stops { label: label(self.count), found: count });
+                return Err(CalibratorValueError::Stops { label: label(self.count), found: count });
             }
             let stop = |i| Stop {
                 azimuth_rad: values.real(self.azimuth + i),
@@ -100,6 +100,6 @@ impl Slots {
             let known = index.and_then(|index| self.named.get(index));
             from_degrees(known.ok_or_else(|| no_item(self.name, values))?, passes)
         };
-        made.map_err(|error| ValueError::Sequence { label: label(self.name), error })
+        made.map_err(|error| CalibratorValueError::Sequence { label: label(self.name), error })
     }
 }

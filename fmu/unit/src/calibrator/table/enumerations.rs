@@ -1,9 +1,9 @@
 //! Types with named values.
 
-use crate::table::Enumeration;
+use crate::table::DeclaredEnumeration;
 
 /// Kind of the reference measurement.
-pub static REFERENCE_KIND: Enumeration = Enumeration {
+pub static REFERENCE_KIND: DeclaredEnumeration = DeclaredEnumeration {
     name: "ReferenceKind",
     description: "What comes with a sample as reference.",
     items: &[
@@ -14,7 +14,7 @@ pub static REFERENCE_KIND: Enumeration = Enumeration {
 };
 
 /// Mode of the core; values as [`octant_sample::Mode`].
-pub static MODE: Enumeration = Enumeration {
+pub static MODE: DeclaredEnumeration = DeclaredEnumeration {
     name: "Mode",
     description: "Mode of the calibration core.",
     items: &[
@@ -27,7 +27,7 @@ pub static MODE: Enumeration = Enumeration {
 };
 
 /// Method of finding the initial attitude.
-pub static ALIGNMENT: Enumeration = Enumeration {
+pub static ALIGNMENT: DeclaredEnumeration = DeclaredEnumeration {
     name: "AlignmentMethod",
     description: "How the initial attitude is found.",
     items: &[
@@ -37,7 +37,7 @@ pub static ALIGNMENT: Enumeration = Enumeration {
 };
 
 /// Sequences of a calibration; the named ones are those of [`octant_calibration::positions`].
-pub static POSITIONS: Enumeration = Enumeration {
+pub static POSITIONS: DeclaredEnumeration = DeclaredEnumeration {
     name: "Positions",
     description: "Sequence of positions of a calibration.",
     items: &[
@@ -53,7 +53,7 @@ pub static POSITIONS: Enumeration = Enumeration {
 };
 
 /// Rotations while navigating.
-pub static ROTATION: Enumeration = Enumeration {
+pub static ROTATION: DeclaredEnumeration = DeclaredEnumeration {
     name: "Rotation",
     description: "Rotation of the gimbals while navigating.",
     items: &[
@@ -64,7 +64,7 @@ pub static ROTATION: Enumeration = Enumeration {
 };
 
 /// Method of estimating the parameters.
-pub static ESTIMATOR: Enumeration = Enumeration {
+pub static ESTIMATOR: DeclaredEnumeration = DeclaredEnumeration {
     name: "Estimator",
     description: "How the parameters are estimated.",
     items: &[
@@ -75,7 +75,7 @@ pub static ESTIMATOR: Enumeration = Enumeration {
 };
 
 /// Form of the system error model.
-pub static ERROR_MODEL: Enumeration = Enumeration {
+pub static ERROR_MODEL: DeclaredEnumeration = DeclaredEnumeration {
     name: "ErrorModel",
     description: "Form of the filter's system error model.",
     items: &[
@@ -85,7 +85,7 @@ pub static ERROR_MODEL: Enumeration = Enumeration {
 };
 
 /// Reference of the filter's measurements.
-pub static AIDING: Enumeration = Enumeration {
+pub static AIDING: DeclaredEnumeration = DeclaredEnumeration {
     name: "AidingReference",
     description: "The reference that the filter measures against.",
     items: &[
@@ -99,7 +99,7 @@ pub static AIDING: Enumeration = Enumeration {
 };
 
 /// Reference of the gyros in the least-squares estimator.
-pub static GYRO_REFERENCE: Enumeration = Enumeration {
+pub static GYRO_REFERENCE: DeclaredEnumeration = DeclaredEnumeration {
     name: "GyroReference",
     description: "What the least-squares estimator measures the gyros against.",
     items: &[
@@ -109,7 +109,7 @@ pub static GYRO_REFERENCE: Enumeration = Enumeration {
 };
 
 /// Method of finding static intervals.
-pub static INTERVALS: Enumeration = Enumeration {
+pub static INTERVALS: DeclaredEnumeration = DeclaredEnumeration {
     name: "StaticIntervals",
     description: "How the least-squares estimator finds static intervals.",
     items: &[
@@ -119,7 +119,7 @@ pub static INTERVALS: Enumeration = Enumeration {
 };
 
 /// Action of a recovery.
-pub static RECOVERY: Enumeration = Enumeration {
+pub static RECOVERY: DeclaredEnumeration = DeclaredEnumeration {
     name: "Recovery",
     description: "What the core does when the gate has rejected too often in a row.",
     items: &[
@@ -129,7 +129,7 @@ pub static RECOVERY: Enumeration = Enumeration {
 };
 
 /// Motion of the base.
-pub static BASE: Enumeration = Enumeration {
+pub static BASE: DeclaredEnumeration = DeclaredEnumeration {
     name: "Base",
     description: "What the case of the instrument stands on.",
     items: &[

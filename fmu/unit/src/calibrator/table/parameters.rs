@@ -8,8 +8,8 @@ mod screening;
 use super::enumerations as of;
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, concatenated};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, concatenated};
 use octant_calibration::positions::{Degrees, EIGHT, SIXTEEN};
 use octant_calibration::sequence::STOPS_MAX;
 use octant_earth::units::{
@@ -40,11 +40,11 @@ const fn column(stops: &[Degrees], which: usize, rest: f64) -> [f64; STOPS_MAX] 
 macro_rules! stops {
     ($prefix:literal, $named:literal, $stops:expr) => {
         [
-            Variable::parameter(concat!($prefix, ".stops.count"), Integer)
+            DeclaredVariable::parameter(concat!($prefix, ".stops.count"), Integer)
                 .within(1.0, STOPS_MAX as f64)
                 .start(&[$stops.len() as f64])
                 .described(concat!("Number of stops, where ", $named, " is custom.")),
-            Variable::parameter(concat!($prefix, ".stops.azimuth"), Real)
+            DeclaredVariable::parameter(concat!($prefix, ".stops.azimuth"), Real)
                 .elements(STOPS_MAX)
                 .of(&q::ANGLE)
                 .within(-STOP_MAX_RAD, STOP_MAX_RAD)
@@ -55,7 +55,7 @@ macro_rules! stops {
                     $named,
                     " is custom; stops.count of them are used."
                 )),
-            Variable::parameter(concat!($prefix, ".stops.roll"), Real)
+            DeclaredVariable::parameter(concat!($prefix, ".stops.roll"), Real)
                 .elements(STOPS_MAX)
                 .of(&q::ANGLE)
                 .within(-STOP_MAX_RAD, STOP_MAX_RAD)
@@ -66,7 +66,7 @@ macro_rules! stops {
                     $named,
                     " is custom; stops.count of them are used."
                 )),
-            Variable::parameter(concat!($prefix, ".stops.weight"), Real)
+            DeclaredVariable::parameter(concat!($prefix, ".stops.weight"), Real)
                 .elements(STOPS_MAX)
                 .min(0.0)
                 .nominal(1.0)
@@ -80,50 +80,50 @@ macro_rules! stops {
     };
 }
 
-const INSTRUMENT: [Variable; 9] = [
-    Variable::parameter("imu.period_ns", Count)
+const INSTRUMENT: [DeclaredVariable; 9] = [
+    DeclaredVariable::parameter("imu.period_ns", Count)
         .of(&q::NANOSECONDS)
         .within(1.0, 1e9)
         .start(&[5e6])
         .described("Sample period, ns: the communication step."),
-    Variable::parameter("imu.external_stamps", Boolean).described(
+    DeclaredVariable::parameter("imu.external_stamps", Boolean).described(
         "Number and stamp of a sample are those of imu.sequence and imu.device_time_ns; else the \
          model counts its steps.",
     ),
-    Variable::parameter("imu.angle_random_walk", Real)
+    DeclaredVariable::parameter("imu.angle_random_walk", Real)
         .of(&q::ANGLE_RANDOM_WALK)
         .min(0.0)
         .nominal(0.0007 * DEG_PER_SQRT_HOUR)
         .start(&[0.0007 * DEG_PER_SQRT_HOUR])
         .described("Angle random walk of the gyros, as the core believes it."),
-    Variable::parameter("imu.velocity_random_walk", Real)
+    DeclaredVariable::parameter("imu.velocity_random_walk", Real)
         .of(&q::VELOCITY_RANDOM_WALK)
         .min(0.0)
         .nominal(50.0 * MICRO_G)
         .start(&[50.0 * MICRO_G])
         .described("Noise density of the accelerometers, as the core believes it."),
-    Variable::parameter("site.latitude", Real)
+    DeclaredVariable::parameter("site.latitude", Real)
         .of(&q::ANGLE)
         .within(-1.56, 1.56)
         .nominal(1.0)
         .start(&[30.5 * DEG])
         .described("Geodetic latitude of the instrument, north positive; navigation starts here."),
-    Variable::parameter("site.longitude", Real)
+    DeclaredVariable::parameter("site.longitude", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .start(&[114.4 * DEG])
         .described("Longitude of the instrument, east positive."),
-    Variable::parameter("site.height", Real)
+    DeclaredVariable::parameter("site.height", Real)
         .of(&q::LENGTH)
         .nominal(100.0)
         .described("Height of the instrument above the ellipsoid."),
-    Variable::parameter("turntable.rate", Real)
+    DeclaredVariable::parameter("turntable.rate", Real)
         .of(&q::TURN_RATE)
         .min(0.0)
         .nominal(10.0 * DEG)
         .start(&[10.0 * DEG])
         .described("Largest rate of a gimbal's move, above 0."),
-    Variable::parameter("turntable.acceleration", Real)
+    DeclaredVariable::parameter("turntable.acceleration", Real)
         .of(&q::ANGULAR_ACCELERATION)
         .min(0.0)
         .nominal(10.0 * DEG)
@@ -131,11 +131,11 @@ const INSTRUMENT: [Variable; 9] = [
         .described("Acceleration of a gimbal's move, above 0."),
 ];
 
-const ALIGNMENT: [Variable; 4] = [
-    Variable::parameter("procedure.alignment.method", Enumeration(&of::ALIGNMENT))
+const ALIGNMENT: [DeclaredVariable; 4] = [
+    DeclaredVariable::parameter("procedure.alignment.method", Enumeration(&of::ALIGNMENT))
         .start(&[1.0])
         .described("How the initial attitude is found."),
-    Variable::parameter("procedure.alignment.duration", Real)
+    DeclaredVariable::parameter("procedure.alignment.duration", Real)
         .of(&q::TIME)
         .min(0.0)
         .nominal(60.0)
@@ -144,7 +144,7 @@ const ALIGNMENT: [Variable; 4] = [
             "How long a coarse alignment averages, above 0. The first stop has to be at azimuth 0 \
              and roll 0, and to be held for so long.",
         ),
-    Variable::parameter("procedure.alignment.attitude", Real)
+    DeclaredVariable::parameter("procedure.alignment.attitude", Real)
         .elements(4)
         .within(-1.0, 1.0)
         .nominal(1.0)
@@ -153,53 +153,53 @@ const ALIGNMENT: [Variable; 4] = [
             "Attitude that is handed over: the unit quaternion q_nb (w, x, y, z) at the start, \
              which takes a vector in body axes into north, east, down.",
         ),
-    Variable::parameter("procedure.alignment.velocity", Real)
+    DeclaredVariable::parameter("procedure.alignment.velocity", Real)
         .elements(3)
         .of(&q::VELOCITY)
         .nominal(1.0)
         .described("Velocity over ground that is handed over: north, east, down."),
 ];
 
-const CALIBRATION: [Variable; 2] = [
-    Variable::parameter("procedure.calibration.enabled", Boolean)
+const CALIBRATION: [DeclaredVariable; 2] = [
+    DeclaredVariable::parameter("procedure.calibration.enabled", Boolean)
         .start(&[1.0])
         .described("There is a calibration; else the core navigates at once."),
-    Variable::parameter("procedure.calibration.positions", Enumeration(&of::POSITIONS))
+    DeclaredVariable::parameter("procedure.calibration.positions", Enumeration(&of::POSITIONS))
         .start(&[2.0])
         .described("Sequence of positions: one that is known, or custom."),
 ];
 
-const STOPS: [Variable; 4] =
+const STOPS: [DeclaredVariable; 4] =
     stops!("procedure.calibration", "procedure.calibration.positions", EIGHT);
 
-const ESTIMATION: [Variable; 4] = [
-    Variable::parameter("procedure.calibration.passes", Count)
+const ESTIMATION: [DeclaredVariable; 4] = [
+    DeclaredVariable::parameter("procedure.calibration.passes", Count)
         .within(1.0, U32_MAX)
         .start(&[1.0])
         .described("How often the sequence is walked within the duration."),
-    Variable::parameter("procedure.calibration.duration", Real)
+    DeclaredVariable::parameter("procedure.calibration.duration", Real)
         .of(&q::DURATION)
         .min(0.0)
         .nominal(14400.0)
         .start(&[14400.0])
         .described("Whole time of the calibration, above 0: moves and dwells of all passes."),
-    Variable::parameter("procedure.calibration.estimator", Enumeration(&of::ESTIMATOR))
+    DeclaredVariable::parameter("procedure.calibration.estimator", Enumeration(&of::ESTIMATOR))
         .described("How the parameters are estimated."),
-    Variable::parameter("procedure.calibration.error_model", Enumeration(&of::ERROR_MODEL))
+    DeclaredVariable::parameter("procedure.calibration.error_model", Enumeration(&of::ERROR_MODEL))
         .described("Form of the Kalman filter's system error model."),
 ];
 
 macro_rules! estimated {
     ($($group:literal $text:literal),*) => {
         [$(
-            Variable::parameter(concat!("procedure.calibration.estimated.", $group), Boolean)
+            DeclaredVariable::parameter(concat!("procedure.calibration.estimated.", $group), Boolean)
                 .start(&[1.0])
                 .described(concat!("The Kalman filter estimates the ", $text, ".")),
         )*]
     };
 }
 
-const ESTIMATED: [Variable; 7] = estimated!(
+const ESTIMATED: [DeclaredVariable; 7] = estimated!(
     "gyro_bias" "gyro biases",
     "gyro_scale" "gyro scale factor errors",
     "gyro_misalignment" "gyro misalignments",
@@ -212,7 +212,7 @@ const ESTIMATED: [Variable; 7] = estimated!(
 macro_rules! prior {
     ($($name:literal $quantity:ident $sigma:expr, $text:literal;)*) => {
         [$(
-            Variable::parameter(concat!("procedure.calibration.prior.", $name), Real)
+            DeclaredVariable::parameter(concat!("procedure.calibration.prior.", $name), Real)
                 .of(&q::$quantity)
                 .min(0.0)
                 .nominal($sigma)
@@ -224,8 +224,8 @@ macro_rules! prior {
     };
 }
 
-const PRIOR_ATTITUDE: [Variable; 1] =
-    [Variable::parameter("procedure.calibration.prior.attitude", Real)
+const PRIOR_ATTITUDE: [DeclaredVariable; 1] =
+    [DeclaredVariable::parameter("procedure.calibration.prior.attitude", Real)
         .elements(3)
         .of(&q::SMALL_ANGLE)
         .min(0.0)
@@ -236,7 +236,7 @@ const PRIOR_ATTITUDE: [Variable; 1] =
              east, down.",
         )];
 
-const PRIOR: [Variable; 9] = prior! {
+const PRIOR: [DeclaredVariable; 9] = prior! {
     "velocity" SMALL_VELOCITY 0.02, "velocity, each axis";
     "position" LENGTH 1.0, "position, each axis";
     "gyro_bias" GYRO_BIAS 0.005 * DEG_PER_HOUR, "each gyro bias";
@@ -248,56 +248,56 @@ const PRIOR: [Variable; 9] = prior! {
     "accel_misalignment" SMALL_ANGLE 40.0 * ARCSEC, "each accelerometer misalignment";
 };
 
-const AIDING: [Variable; 5] = [
-    Variable::parameter("procedure.calibration.refuse_above_mean_nis", Real)
+const AIDING: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("procedure.calibration.refuse_above_mean_nis", Real)
         .nominal(9.0)
         .start(&[9.0])
         .described(
             "Mean normalized innovation squared (three axes) above which the calibration is \
              refused.",
         ),
-    Variable::parameter("procedure.calibration.aiding.reference", Enumeration(&of::AIDING))
+    DeclaredVariable::parameter("procedure.calibration.aiding.reference", Enumeration(&of::AIDING))
         .described("The reference that the Kalman filter measures against."),
-    Variable::parameter("procedure.calibration.aiding.velocity_sigma", Real)
+    DeclaredVariable::parameter("procedure.calibration.aiding.velocity_sigma", Real)
         .of(&q::SMALL_VELOCITY)
         .min(0.0)
         .nominal(1e-3)
         .start(&[1e-3])
         .described("Standard deviation of each axis of a velocity reference, above 0."),
-    Variable::parameter("procedure.calibration.aiding.position_sigma", Real)
+    DeclaredVariable::parameter("procedure.calibration.aiding.position_sigma", Real)
         .of(&q::LENGTH)
         .min(0.0)
         .nominal(0.15)
         .start(&[0.15])
         .described("Standard deviation of each axis of a position reference, above 0."),
-    Variable::parameter("procedure.calibration.aiding.period_ns", Count)
+    DeclaredVariable::parameter("procedure.calibration.aiding.period_ns", Count)
         .of(&q::NANOSECONDS)
         .min(1.0)
         .start(&[1e9])
         .described("Time between references, ns: a multiple of the sample period."),
 ];
 
-const LEAST_SQUARES: [Variable; 8] = [
-    Variable::parameter("procedure.calibration.least_squares.gravity_given", Boolean).described(
+const LEAST_SQUARES: [DeclaredVariable; 8] = [
+    DeclaredVariable::parameter("procedure.calibration.least_squares.gravity_given", Boolean).described(
         "Least squares: local gravity is as given; else it is normal gravity at the site.",
     ),
-    Variable::parameter("procedure.calibration.least_squares.gravity", Real)
+    DeclaredVariable::parameter("procedure.calibration.least_squares.gravity", Real)
         .of(&q::ACCELERATION)
         .min(0.0)
         .nominal(9.8)
         .start(&[9.806_65])
         .described("Least squares: local gravity, where it is given."),
-    Variable::parameter(
+    DeclaredVariable::parameter(
         "procedure.calibration.least_squares.gyro",
         Enumeration(&of::GYRO_REFERENCE),
     )
     .described("Least squares: what the gyros are measured against."),
-    Variable::parameter(
+    DeclaredVariable::parameter(
         "procedure.calibration.least_squares.intervals",
         Enumeration(&of::INTERVALS),
     )
     .described("Least squares: how static intervals are found."),
-    Variable::parameter("procedure.calibration.least_squares.initial", Real)
+    DeclaredVariable::parameter("procedure.calibration.least_squares.initial", Real)
         .of(&q::TIME)
         .min(0.0)
         .nominal(50.0)
@@ -305,20 +305,20 @@ const LEAST_SQUARES: [Variable; 8] = [
         .described(
             "Least squares, intervals detected: length of the first one, known to be static.",
         ),
-    Variable::parameter("procedure.calibration.least_squares.window", Real)
+    DeclaredVariable::parameter("procedure.calibration.least_squares.window", Real)
         .of(&q::TIME)
         .min(0.0)
         .nominal(1.0)
         .start(&[1.0])
         .described("Least squares, intervals detected: window of the standard deviation."),
-    Variable::parameter("procedure.calibration.least_squares.threshold", Real)
+    DeclaredVariable::parameter("procedure.calibration.least_squares.threshold", Real)
         .min(0.0)
         .nominal(5.0)
         .start(&[5.0])
         .described(
             "Least squares, intervals detected: multiple of the first one's standard deviation.",
         ),
-    Variable::parameter("procedure.calibration.least_squares.shortest", Real)
+    DeclaredVariable::parameter("procedure.calibration.least_squares.shortest", Real)
         .of(&q::TIME)
         .min(0.0)
         .nominal(2.0)
@@ -326,8 +326,8 @@ const LEAST_SQUARES: [Variable; 8] = [
         .described("Least squares, intervals detected: shortest one to use."),
 ];
 
-const EXTERNAL_TURNTABLE: [Variable; 2] = [
-    Variable::parameter("procedure.calibration.external_turntable.attitude", Real)
+const EXTERNAL_TURNTABLE: [DeclaredVariable; 2] = [
+    DeclaredVariable::parameter("procedure.calibration.external_turntable.attitude", Real)
         .elements(4)
         .within(-1.0, 1.0)
         .nominal(1.0)
@@ -336,7 +336,7 @@ const EXTERNAL_TURNTABLE: [Variable; 2] = [
             "External turntable: attitude of its base from its survey, the unit quaternion q_nc \
              (w, x, y, z), which takes a vector in case axes into north, east, down.",
         ),
-    Variable::parameter("procedure.calibration.external_turntable.encoder_sigma", Real)
+    DeclaredVariable::parameter("procedure.calibration.external_turntable.encoder_sigma", Real)
         .of(&q::SMALL_ANGLE)
         .min(0.0)
         .nominal(ARCSEC)
@@ -344,36 +344,36 @@ const EXTERNAL_TURNTABLE: [Variable; 2] = [
         .described("External turntable: standard deviation of each of its angles."),
 ];
 
-const NAVIGATION: [Variable; 4] = [
-    Variable::parameter("procedure.navigation.enabled", Boolean)
+const NAVIGATION: [DeclaredVariable; 4] = [
+    DeclaredVariable::parameter("procedure.navigation.enabled", Boolean)
         .start(&[1.0])
         .described("There is navigation after the calibration; else the core is done with it."),
-    Variable::parameter("procedure.navigation.endless", Boolean)
+    DeclaredVariable::parameter("procedure.navigation.endless", Boolean)
         .start(&[1.0])
         .described("Navigation lasts for as long as there are samples."),
-    Variable::parameter("procedure.navigation.duration", Real)
+    DeclaredVariable::parameter("procedure.navigation.duration", Real)
         .of(&q::DURATION)
         .min(0.0)
         .nominal(86400.0)
         .start(&[86400.0])
         .described("Duration of the navigation, above 0, where it isn't endless."),
-    Variable::parameter("procedure.navigation.rotation", Enumeration(&of::ROTATION))
+    DeclaredVariable::parameter("procedure.navigation.rotation", Enumeration(&of::ROTATION))
         .start(&[1.0])
         .described("Rotation of the gimbals while navigating: one that is known, or custom."),
 ];
 
-const ROTATION: [Variable; 4] =
+const ROTATION: [DeclaredVariable; 4] =
     stops!("procedure.navigation", "procedure.navigation.rotation", SIXTEEN);
 
-const NAVIGATION_STOPS: [Variable; 2] = [
-    Variable::parameter("procedure.navigation.passes", Count)
+const NAVIGATION_STOPS: [DeclaredVariable; 2] = [
+    DeclaredVariable::parameter("procedure.navigation.passes", Count)
         .within(1.0, U32_MAX)
         .start(&[1.0])
         .described(
             "Passes that the sequence of the rotation was made with. It is repeated for as long as \
              the navigation lasts.",
         ),
-    Variable::parameter("procedure.navigation.dwell", Real)
+    DeclaredVariable::parameter("procedure.navigation.dwell", Real)
         .of(&q::TIME)
         .min(0.0)
         .nominal(300.0)
@@ -383,14 +383,14 @@ const NAVIGATION_STOPS: [Variable; 2] = [
         ),
 ];
 
-const INITIAL: [Variable; 7] = groups!(
+const INITIAL: [DeclaredVariable; 7] = groups!(
     parameter,
     "initial_parameters",
     "Parameters to start from, of an earlier calibration: ",
     ""
 );
 
-const PARTS: &[&[Variable]] = &[
+const PARTS: &[&[DeclaredVariable]] = &[
     &INSTRUMENT,
     &ALIGNMENT,
     &CALIBRATION,
@@ -421,4 +421,4 @@ const COUNT: usize = {
     count
 };
 
-pub(crate) const PARAMETERS: [Variable; COUNT] = concatenated(PARTS);
+pub(crate) const PARAMETERS: [DeclaredVariable; COUNT] = concatenated(PARTS);

@@ -3,16 +3,16 @@
 use super::enumerations as of;
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::Variable;
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::DeclaredVariable;
 
 /// Largest angle of a gimbal that its counts can hold, rad.
 const GIMBAL_MAX_RAD: f64 = 16.0;
 /// Limit above which whole numbers are not exact as Real.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 
-pub(super) const INPUTS: [Variable; 14] = [
-    Variable::input("gyro.delta_theta", Real)
+pub(super) const INPUTS: [DeclaredVariable; 14] = [
+    DeclaredVariable::input("gyro.delta_theta", Real)
         .elements(3)
         .of(&q::ANGLE_INCREMENT)
         .nominal(1e-3)
@@ -21,7 +21,7 @@ pub(super) const INPUTS: [Variable; 14] = [
              that ends at the sample; body axes x, y, z. Taken in counts of 2^-36 rad, whose \
              remainder is carried; beyond 2^-5 rad it saturates and is flagged.",
         ),
-    Variable::input("accelerometer.delta_velocity", Real)
+    DeclaredVariable::input("accelerometer.delta_velocity", Real)
         .elements(3)
         .of(&q::VELOCITY_INCREMENT)
         .nominal(0.05)
@@ -30,7 +30,7 @@ pub(super) const INPUTS: [Variable; 14] = [
              x, y, z. At rest it points up. Taken in counts of 2^-30 m/s, whose remainder is \
              carried; beyond 2 m/s it saturates and is flagged.",
         ),
-    Variable::input("gimbal.azimuth", Real)
+    DeclaredVariable::input("gimbal.azimuth", Real)
         .of(&q::ANGLE)
         .within(-GIMBAL_MAX_RAD, GIMBAL_MAX_RAD)
         .nominal(1.0)
@@ -38,7 +38,7 @@ pub(super) const INPUTS: [Variable; 14] = [
             "Encoder angle of the inner gimbal at the sample, about body z, cumulative. c_cb = \
              Rx(roll) Rz(azimuth). Taken in counts of 2^-27 rad.",
         ),
-    Variable::input("gimbal.roll", Real)
+    DeclaredVariable::input("gimbal.roll", Real)
         .of(&q::ANGLE)
         .within(-GIMBAL_MAX_RAD, GIMBAL_MAX_RAD)
         .nominal(1.0)
@@ -46,27 +46,27 @@ pub(super) const INPUTS: [Variable; 14] = [
             "Encoder angle of the outer gimbal at the sample, about case x, cumulative. Taken in \
              counts of 2^-27 rad.",
         ),
-    Variable::input("imu.valid", Boolean).described(
+    DeclaredVariable::input("imu.valid", Boolean).described(
         "A sample is there. Without one the core isn't stepped, and its outputs stay those of the \
          last sample.",
     ),
-    Variable::input("imu.status", Integer).within(0.0, 65535.0).described(
+    DeclaredVariable::input("imu.status", Integer).within(0.0, 65535.0).described(
         "Flags of the instrument, added up. 1: a gyro count saturated. 2: an accelerometer count \
          saturated. 4: the gimbal angles are not to be used. 8: the inertial counts are not to be \
          used.",
     ),
-    Variable::input("imu.sequence", Count).described(
+    DeclaredVariable::input("imu.sequence", Count).described(
         "Number of the sample, from 1; a jump means loss. Used where imu.external_stamps is true; \
          else the model counts its steps from the first sample on.",
     ),
-    Variable::input("imu.device_time_ns", Count).of(&q::NANOSECONDS).described(
+    DeclaredVariable::input("imu.device_time_ns", Count).of(&q::NANOSECONDS).described(
         "Stamp of the sample: end of its interval by the instrument's clock, ns since the start of \
          its first interval. Used where imu.external_stamps is true; else it is the number of the \
          sample times imu.period_ns.",
     ),
-    Variable::input("reference.kind", Enumeration(&of::REFERENCE_KIND))
+    DeclaredVariable::input("reference.kind", Enumeration(&of::REFERENCE_KIND))
         .described("What comes with this sample as reference, if anything."),
-    Variable::input("reference.velocity", Real)
+    DeclaredVariable::input("reference.velocity", Real)
         .elements(3)
         .of(&q::VELOCITY)
         .nominal(1.0)
@@ -75,19 +75,19 @@ pub(super) const INPUTS: [Variable; 14] = [
             "Velocity over ground at the reference's stamp: north, east, down. What isn't a number \
              is handed to the core, which answers for it.",
         ),
-    Variable::input("reference.latitude", Real).of(&q::ANGLE).nominal(1.0).non_finite().described(
+    DeclaredVariable::input("reference.latitude", Real).of(&q::ANGLE).nominal(1.0).non_finite().described(
         "Geodetic latitude at the reference's stamp, north positive. What isn't a number is handed \
          to the core, which answers for it.",
     ),
-    Variable::input("reference.longitude", Real).of(&q::ANGLE).nominal(1.0).non_finite().described(
+    DeclaredVariable::input("reference.longitude", Real).of(&q::ANGLE).nominal(1.0).non_finite().described(
         "Longitude at the reference's stamp, east positive. What isn't a number is handed to the \
          core, which answers for it.",
     ),
-    Variable::input("reference.height", Real).of(&q::LENGTH).nominal(100.0).non_finite().described(
+    DeclaredVariable::input("reference.height", Real).of(&q::LENGTH).nominal(100.0).non_finite().described(
         "Height above the ellipsoid at the reference's stamp. What isn't a number is handed to the \
          core, which answers for it.",
     ),
-    Variable::input("reference.age_ns", Real)
+    DeclaredVariable::input("reference.age_ns", Real)
         .of(&q::NANOSECONDS)
         .within(-EXACT_MAX, EXACT_MAX)
         .nominal(5e6)
@@ -97,61 +97,61 @@ pub(super) const INPUTS: [Variable; 14] = [
         ),
 ];
 
-const ESTIMATES: [Variable; 7] = groups!(
+const ESTIMATES: [DeclaredVariable; 7] = groups!(
     output,
     "parameters",
     "Estimate (error: measured less true, so compensation subtracts it): ",
     ""
 );
-const SIGMAS: [Variable; 7] = groups!(
+const SIGMAS: [DeclaredVariable; 7] = groups!(
     output,
     "sigma",
     "Standard deviation of the estimate: ",
     " No number where the estimator doesn't estimate it."
 );
 
-const SOLUTION: [Variable; 16] = [
-    Variable::output("gimbal_command.azimuth", Real).of(&q::ANGLE).nominal(1.0).described(
+const SOLUTION: [DeclaredVariable; 16] = [
+    DeclaredVariable::output("gimbal_command.azimuth", Real).of(&q::ANGLE).nominal(1.0).described(
         "Set point of the inner gimbal, about body z, cumulative. It acts from the end of the next \
          sample period on.",
     ),
-    Variable::output("gimbal_command.roll", Real).of(&q::ANGLE).nominal(1.0).described(
+    DeclaredVariable::output("gimbal_command.roll", Real).of(&q::ANGLE).nominal(1.0).described(
         "Set point of the outer gimbal, about case x, cumulative. It acts from the end of the next \
          sample period on.",
     ),
-    Variable::output("mode", Enumeration(&of::MODE)).described("Mode after the sample."),
-    Variable::output("stop", Integer).within(0.0, 65535.0).described(
+    DeclaredVariable::output("mode", Enumeration(&of::MODE)).described("Mode after the sample."),
+    DeclaredVariable::output("stop", Integer).within(0.0, 65535.0).described(
         "Stop of the sequence that the gimbals are at or move to, from 0, over all passes.",
     ),
-    Variable::output("moving", Boolean).described("The gimbals are on their way to the stop."),
-    Variable::output("navigation.latitude", Real)
+    DeclaredVariable::output("moving", Boolean).described("The gimbals are on their way to the stop."),
+    DeclaredVariable::output("navigation.latitude", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Geodetic latitude at the sample, north positive."),
-    Variable::output("navigation.longitude", Real)
+    DeclaredVariable::output("navigation.longitude", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Longitude at the sample, east positive, not wrapped."),
-    Variable::output("navigation.height", Real)
+    DeclaredVariable::output("navigation.height", Real)
         .of(&q::LENGTH)
         .nominal(100.0)
         .described("Height above the ellipsoid at the sample."),
-    Variable::output("navigation.velocity", Real)
+    DeclaredVariable::output("navigation.velocity", Real)
         .elements(3)
         .of(&q::VELOCITY)
         .nominal(1.0)
         .described("Velocity over ground at the sample: north, east, down."),
-    Variable::output("navigation.attitude", Real).elements(4).nominal(1.0).described(
+    DeclaredVariable::output("navigation.attitude", Real).elements(4).nominal(1.0).described(
         "Attitude at the sample as the unit quaternion q_nb (w, x, y, z), Hamilton: it takes a \
          vector in body axes into north, east, down.",
     ),
-    Variable::output("filter.nis", Real).nominal(3.0).described(
+    DeclaredVariable::output("filter.nis", Real).nominal(3.0).described(
         "Normalized innovation squared of the measurement that was used with the sample: 3 on \
          average, on three axes. 0 where there was none: see filter.measured.",
     ),
-    Variable::output("filter.measured", Boolean)
+    DeclaredVariable::output("filter.measured", Boolean)
         .described("A measurement was used with the sample."),
-    Variable::output("health", Integer).min(0.0).described(
+    DeclaredVariable::output("health", Integer).min(0.0).described(
         "Flags of the core for the sample, added up. 1: measurement rejected by the gate. 2: \
          recovering. 4: gyro stuck. 8: accelerometer stuck. 16: samples missing. 32: out of order, \
          not used. 64: inertial counts saturated or invalid. 128: encoders disagree with the set \
@@ -159,16 +159,16 @@ const SOLUTION: [Variable; 16] = [
          isn't one was kept out. 2048: increments jumped. 4096: gimbal slipped. 8192: parameters \
          drift. 16384: reference of another sample, not used.",
     ),
-    Variable::output("answer.sequence", Count)
+    DeclaredVariable::output("answer.sequence", Count)
         .described("Number of the sample that the outputs answer; 0 before the first."),
-    Variable::output("answer.device_time_ns", Count)
+    DeclaredVariable::output("answer.device_time_ns", Count)
         .of(&q::NANOSECONDS)
         .described("Stamp of the sample that the outputs answer."),
-    Variable::output("parameters.revision", Count)
+    DeclaredVariable::output("parameters.revision", Count)
         .described("Number of times that the estimated parameters have changed."),
 ];
 
-pub(crate) const OUTPUTS: [Variable; SOLUTION.len() + 2 * 7] =
+pub(crate) const OUTPUTS: [DeclaredVariable; SOLUTION.len() + 2 * 7] =
     crate::table::concatenated(&[&SOLUTION, &ESTIMATES, &SIGMAS]);
 
 #[cfg(test)]

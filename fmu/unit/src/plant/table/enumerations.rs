@@ -1,13 +1,13 @@
 //! Types with named values.
 
-use crate::table::Enumeration;
+use crate::table::DeclaredEnumeration;
 use octant_faults::catalogue::Acts;
 use octant_faults::kinds::KINDS;
 
 pub use crate::calibrator::table::REFERENCE_KIND;
 
 /// Motion of the case.
-pub static MOTION: Enumeration = Enumeration {
+pub static MOTION: DeclaredEnumeration = DeclaredEnumeration {
     name: "Motion",
     description: "How the case of the instrument moves.",
     items: &[
@@ -17,7 +17,7 @@ pub static MOTION: Enumeration = Enumeration {
 };
 
 /// Quantity that the reference measures.
-pub static AIDING: Enumeration = Enumeration {
+pub static AIDING: DeclaredEnumeration = DeclaredEnumeration {
     name: "AidingSource",
     description: "What the reference of the calibration measures, with white noise of its own.",
     items: &[
@@ -29,7 +29,7 @@ pub static AIDING: Enumeration = Enumeration {
 
 /// Kinds of faults that can act inside the plant. The values are the positions in the catalogue,
 /// from 1.
-pub static FAULT_KIND: Enumeration = Enumeration {
+pub static FAULT_KIND: DeclaredEnumeration = DeclaredEnumeration {
     name: "FaultKind",
     description: "Kind of a fault, with its name in the catalogue. Those that restart the unit \
                   under test, or deliver several samples at once, are not among them: a plant has \
@@ -54,7 +54,7 @@ const fn same(a: &str, b: &str) -> bool {
 }
 
 /// Returns whether a kind can act inside the plant.
-pub(crate) const fn acts_in_plant(kind: &octant_faults::Kind) -> bool {
+pub(crate) const fn acts_in_plant(kind: &octant_faults::FaultKind) -> bool {
     match kind.acts {
         Acts::Plant | Acts::Command | Acts::Samples => true,
         Acts::Delivery => {

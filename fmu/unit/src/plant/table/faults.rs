@@ -2,8 +2,8 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Real};
-use crate::table::{Variable, concatenated};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
+use crate::table::{DeclaredVariable, concatenated};
 
 /// Largest number of faults.
 pub const FAULT_SLOTS: usize = 4;
@@ -14,7 +14,7 @@ pub const FAULT_NUMBERS: usize = 14;
 macro_rules! inputs {
     ($($fault:literal)*) => {
         [$(
-            Variable::input(concat!("fault[", $fault, "].fire"), Boolean).described(concat!(
+            DeclaredVariable::input(concat!("fault[", $fault, "].fire"), Boolean).described(concat!(
                 "Where fault[", $fault, "].by_hand is true: the fault sets in with the step in \
                  which this becomes true. With a duration it lasts so long, else for as long as \
                  this is true."
@@ -26,13 +26,13 @@ macro_rules! inputs {
 macro_rules! outputs {
     ($($fault:literal)*) => {
         concatenated(&[$(&[
-            Variable::output(concat!("fault[", $fault, "].armed"), Boolean)
+            DeclaredVariable::output(concat!("fault[", $fault, "].armed"), Boolean)
                 .described("There is such a fault."),
-            Variable::output(concat!("fault[", $fault, "].active"), Boolean)
+            DeclaredVariable::output(concat!("fault[", $fault, "].active"), Boolean)
                 .described("It lasts, or fades, at the sample."),
-            Variable::output(concat!("fault[", $fault, "].fired"), Boolean)
+            DeclaredVariable::output(concat!("fault[", $fault, "].fired"), Boolean)
                 .described("It has altered something so far."),
-            Variable::output(concat!("fault[", $fault, "].samples_altered"), Count).described(
+            DeclaredVariable::output(concat!("fault[", $fault, "].samples_altered"), Count).described(
                 "Samples, or set points, that it has altered so far, found by comparison; of a \
                  fault inside the plant, samples during which it was active.",
             ),
@@ -43,15 +43,15 @@ macro_rules! outputs {
 macro_rules! parameters {
     ($($fault:literal)*) => {
         concatenated(&[$(&[
-            Variable::parameter(concat!("fault[", $fault, "].kind"), Enumeration(&of::FAULT_KIND))
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].kind"), Enumeration(&of::FAULT_KIND))
                 .described(concat!(
                     "Kind of the fault. Its random numbers are those of a fault with the id \
                      fault[", $fault, "]."
                 )),
-            Variable::parameter(concat!("fault[", $fault, "].by_hand"), Boolean).described(concat!(
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].by_hand"), Boolean).described(concat!(
                 "It waits for fault[", $fault, "].fire; else it sets in at its start."
             )),
-            Variable::parameter(concat!("fault[", $fault, "].start"), Real)
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].start"), Real)
                 .of(&q::TIME)
                 .min(0.0)
                 .nominal(100.0)
@@ -59,7 +59,7 @@ macro_rules! parameters {
                     "Time after the start at which it sets in, to the nearest sample: the first \
                      sample that it alters is the one whose interval begins there.",
                 ),
-            Variable::parameter(concat!("fault[", $fault, "].duration"), Real)
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].duration"), Real)
                 .of(&q::TIME)
                 .min(0.0)
                 .nominal(10.0)
@@ -67,7 +67,7 @@ macro_rules! parameters {
                     "How long it lasts, to the nearest sample; 0: to the end. Of no meaning for \
                      kinds that are over in an instant.",
                 ),
-            Variable::parameter(concat!("fault[", $fault, "].recovery"), Real)
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].recovery"), Real)
                 .of(&q::TIME)
                 .min(0.0)
                 .nominal(10.0)
@@ -75,7 +75,7 @@ macro_rules! parameters {
                     "How long it fades after that, down a straight line; 0 for kinds that don't \
                      fade.",
                 ),
-            Variable::parameter(concat!("fault[", $fault, "].values"), Real)
+            DeclaredVariable::parameter(concat!("fault[", $fault, "].values"), Real)
                 .elements(FAULT_NUMBERS)
                 .described(
                     "What the kind takes, SI, in the order of the catalogue; those that it doesn't \
@@ -89,6 +89,6 @@ macro_rules! parameters {
     };
 }
 
-pub(super) const INPUTS: [Variable; FAULT_SLOTS] = inputs!("1" "2" "3" "4");
-pub(super) const OUTPUTS: [Variable; 4 * FAULT_SLOTS] = outputs!("1" "2" "3" "4");
-pub(super) const PARAMETERS: [Variable; 6 * FAULT_SLOTS] = parameters!("1" "2" "3" "4");
+pub(super) const INPUTS: [DeclaredVariable; FAULT_SLOTS] = inputs!("1" "2" "3" "4");
+pub(super) const OUTPUTS: [DeclaredVariable; 4 * FAULT_SLOTS] = outputs!("1" "2" "3" "4");
+pub(super) const PARAMETERS: [DeclaredVariable; 6 * FAULT_SLOTS] = parameters!("1" "2" "3" "4");

@@ -2,31 +2,31 @@
 
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Real};
-use crate::table::{Variable, concatenated, count};
+use crate::table::ElementType::{Boolean, Count, Real};
+use crate::table::{DeclaredVariable, concatenated, count};
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G, PPM};
 
-const PERIOD: [Variable; 1] = [Variable::parameter("imu.period_ns", Count)
+const PERIOD: [DeclaredVariable; 1] = [DeclaredVariable::parameter("imu.period_ns", Count)
     .of(&q::NANOSECONDS)
     .within(10_000.0, 1e9)
     .start(&[5e6])
     .described("Sample period, ns: the communication step.")];
 
-const TRUE_PARAMETERS: [Variable; 7] = groups!(
+const TRUE_PARAMETERS: [DeclaredVariable; 7] = groups!(
     parameter,
     "imu.parameters",
     "True coefficients of the error model (measured less true): ",
     ""
 );
 
-const NOISE: [Variable; 2] = [
-    Variable::parameter("imu.angle_random_walk", Real)
+const NOISE: [DeclaredVariable; 2] = [
+    DeclaredVariable::parameter("imu.angle_random_walk", Real)
         .of(&q::ANGLE_RANDOM_WALK)
         .min(0.0)
         .nominal(0.0007 * DEG_PER_SQRT_HOUR)
         .start(&[0.0007 * DEG_PER_SQRT_HOUR])
         .described("Angle random walk of the gyros."),
-    Variable::parameter("imu.velocity_random_walk", Real)
+    DeclaredVariable::parameter("imu.velocity_random_walk", Real)
         .of(&q::VELOCITY_RANDOM_WALK)
         .min(0.0)
         .nominal(50.0 * MICRO_G)
@@ -38,18 +38,18 @@ const NOISE: [Variable; 2] = [
 macro_rules! gauss_markov {
     ($name:literal, $quantity:ident, $nominal:expr, $what:literal) => {
         [
-            Variable::parameter(concat!("imu.", $name, ".enabled"), Boolean).described(concat!(
+            DeclaredVariable::parameter(concat!("imu.", $name, ".enabled"), Boolean).described(concat!(
                 "The ",
                 $what,
                 " wander as a first-order Gauss-Markov process, which the filter doesn't model."
             )),
-            Variable::parameter(concat!("imu.", $name, ".sigma"), Real)
+            DeclaredVariable::parameter(concat!("imu.", $name, ".sigma"), Real)
                 .of(&q::$quantity)
                 .min(0.0)
                 .nominal($nominal)
                 .start(&[$nominal])
                 .described(concat!("Standard deviation of the wandering ", $what, ".")),
-            Variable::parameter(concat!("imu.", $name, ".correlation_time"), Real)
+            DeclaredVariable::parameter(concat!("imu.", $name, ".correlation_time"), Real)
                 .of(&q::TIME)
                 .min(0.0)
                 .nominal(3600.0)
@@ -59,101 +59,101 @@ macro_rules! gauss_markov {
     };
 }
 
-const WANDERING: [Variable; 6] = concatenated(&[
+const WANDERING: [DeclaredVariable; 6] = concatenated(&[
     &gauss_markov!("gyro_gauss_markov", GYRO_BIAS, 0.001 * DEG_PER_HOUR, "gyro biases"),
     &gauss_markov!("accel_gauss_markov", ACCEL_BIAS, 10.0 * MICRO_G, "accelerometer biases"),
 ]);
 
-const LIMITS: [Variable; 5] = [
-    Variable::parameter("imu.gyro_rate_random_walk", Real)
+const LIMITS: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("imu.gyro_rate_random_walk", Real)
         .of(&q::RATE_RANDOM_WALK)
         .min(0.0)
         .nominal(1e-9)
         .described("Rate random walk of the gyros; 0: none."),
-    Variable::parameter("imu.gyro_quantization", Real)
+    DeclaredVariable::parameter("imu.gyro_quantization", Real)
         .of(&q::ANGLE_INCREMENT)
         .min(0.0)
         .nominal(1e-6)
         .described("Quantum of the gyros, coarser than that of the counts; 0: none."),
-    Variable::parameter("imu.accel_quantization", Real)
+    DeclaredVariable::parameter("imu.accel_quantization", Real)
         .of(&q::VELOCITY_INCREMENT)
         .min(0.0)
         .nominal(1e-5)
         .described("Quantum of the accelerometers, coarser than that of the counts; 0: none."),
-    Variable::parameter("imu.gyro_range", Real)
+    DeclaredVariable::parameter("imu.gyro_range", Real)
         .of(&q::TURN_RATE)
         .min(0.0)
         .nominal(300.0 * DEG)
         .described("Range of the gyros; 0: that of the counts."),
-    Variable::parameter("imu.accel_range", Real)
+    DeclaredVariable::parameter("imu.accel_range", Real)
         .of(&q::ACCELERATION)
         .min(0.0)
         .nominal(400.0)
         .described("Range of the accelerometers; 0: that of the counts."),
 ];
 
-const TEMPERATURE: [Variable; 7] = [
-    Variable::parameter("imu.temperature.enabled", Boolean)
+const TEMPERATURE: [DeclaredVariable; 7] = [
+    DeclaredVariable::parameter("imu.temperature.enabled", Boolean)
         .described("Temperature departs along a ramp, and biases and scale factors with it."),
-    Variable::parameter("imu.temperature.ramp", Real)
+    DeclaredVariable::parameter("imu.temperature.ramp", Real)
         .of(&q::TEMPERATURE_RATE)
         .nominal(1e-3)
         .described("Temperature: rate of change."),
-    Variable::parameter("imu.temperature.plateau", Real)
+    DeclaredVariable::parameter("imu.temperature.plateau", Real)
         .of(&q::TEMPERATURE)
         .nominal(10.0)
         .described("Temperature: change at which the ramp ends, of the ramp's sign."),
-    Variable::parameter("imu.temperature.gyro_bias", Real)
+    DeclaredVariable::parameter("imu.temperature.gyro_bias", Real)
         .elements(3)
         .of(&q::GYRO_BIAS_PER_K)
         .nominal(1e-4 * DEG_PER_HOUR)
         .described("Temperature: sensitivity of the gyro biases, x, y, z."),
-    Variable::parameter("imu.temperature.accel_bias", Real)
+    DeclaredVariable::parameter("imu.temperature.accel_bias", Real)
         .elements(3)
         .of(&q::ACCEL_BIAS_PER_K)
         .nominal(MICRO_G)
         .described("Temperature: sensitivity of the accelerometer biases, x, y, z."),
-    Variable::parameter("imu.temperature.gyro_scale", Real)
+    DeclaredVariable::parameter("imu.temperature.gyro_scale", Real)
         .elements(3)
         .of(&q::SCALE_PER_K)
         .nominal(PPM)
         .described("Temperature: sensitivity of the gyro scale factors, x, y, z."),
-    Variable::parameter("imu.temperature.accel_scale", Real)
+    DeclaredVariable::parameter("imu.temperature.accel_scale", Real)
         .elements(3)
         .of(&q::SCALE_PER_K)
         .nominal(PPM)
         .described("Temperature: sensitivity of the accelerometer scale factors, x, y, z."),
 ];
 
-const VIBRATION: [Variable; 5] = [
-    Variable::parameter("imu.vibration.enabled", Boolean)
+const VIBRATION: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("imu.vibration.enabled", Boolean)
         .described("The sensor block vibrates sinusoidally against the gimballed body."),
-    Variable::parameter("imu.vibration.frequency", Real)
+    DeclaredVariable::parameter("imu.vibration.frequency", Real)
         .of(&q::FREQUENCY)
         .min(0.0)
         .nominal(50.0)
         .start(&[50.0])
         .described("Vibration: frequency, above 0, at most 100 periods in a sample."),
-    Variable::parameter("imu.vibration.displacement", Real)
+    DeclaredVariable::parameter("imu.vibration.displacement", Real)
         .elements(3)
         .of(&q::LENGTH)
         .within(-1.0, 1.0)
         .nominal(1e-5)
         .described("Vibration: amplitude of the displacement, body axes x, y, z."),
-    Variable::parameter("imu.vibration.angle", Real)
+    DeclaredVariable::parameter("imu.vibration.angle", Real)
         .elements(3)
         .of(&q::ANGLE)
         .within(-0.1, 0.1)
         .nominal(1e-5)
         .described("Vibration: amplitude of the rotation, body axes x, y, z."),
-    Variable::parameter("imu.vibration.phase", Real)
+    DeclaredVariable::parameter("imu.vibration.phase", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Vibration: phase of the rotation against the displacement."),
 ];
 
-const PLACE: [Variable; 2] = [
-    Variable::parameter("imu.lever_arm", Real)
+const PLACE: [DeclaredVariable; 2] = [
+    DeclaredVariable::parameter("imu.lever_arm", Real)
         .elements(9)
         .of(&q::LENGTH)
         .within(-10.0, 10.0)
@@ -162,7 +162,7 @@ const PLACE: [Variable; 2] = [
             "Position of each accelerometer's proof mass from the centre of rotation, in body axes: \
              that of the x accelerometer (x, y, z), then of the y and the z accelerometer.",
         ),
-    Variable::parameter("imu.time_skew", Real)
+    DeclaredVariable::parameter("imu.time_skew", Real)
         .of(&q::TIME)
         .within(0.0, 1.0)
         .nominal(1e-3)
@@ -172,7 +172,7 @@ const PLACE: [Variable; 2] = [
         ),
 ];
 
-const PARTS: &[&[Variable]] =
+const PARTS: &[&[DeclaredVariable]] =
     &[&PERIOD, &TRUE_PARAMETERS, &NOISE, &WANDERING, &LIMITS, &TEMPERATURE, &VIBRATION, &PLACE];
 
-pub(super) const PARAMETERS: [Variable; count(PARTS)] = concatenated(PARTS);
+pub(super) const PARAMETERS: [DeclaredVariable; count(PARTS)] = concatenated(PARTS);

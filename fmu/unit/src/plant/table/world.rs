@@ -5,8 +5,8 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, concatenated, count};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, concatenated, count};
 use octant_earth::units::{ARCSEC, DEG};
 
 /// Largest number of sinusoids of each motion of a ship.
@@ -15,20 +15,20 @@ pub const SINUSOIDS_MAX: usize = 64;
 /// Limit above which whole numbers are not exact as Real.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 
-const RANDOM: [Variable; 4] = [
-    Variable::parameter("random.seed", Count)
+const RANDOM: [DeclaredVariable; 4] = [
+    DeclaredVariable::parameter("random.seed", Count)
         .within(0.0, EXACT_MAX)
         .start(&[1.0])
         .described("Seed of every random stream: the same seed gives the same noise."),
-    Variable::parameter("random.seed_high", Count).within(0.0, u32::MAX as f64).described(
+    DeclaredVariable::parameter("random.seed_high", Count).within(0.0, u32::MAX as f64).described(
         "Upper 32 bits of the seed: 2^32 times this is added to random.seed, for seeds of 64 bits, \
          which a Real doesn't hold.",
     ),
-    Variable::parameter("random.calibration.endless", Boolean).described(
+    DeclaredVariable::parameter("random.calibration.endless", Boolean).described(
         "All samples are of the calibration; else what follows random.calibration.samples is \
          navigation.",
     ),
-    Variable::parameter("random.calibration.samples", Count)
+    DeclaredVariable::parameter("random.calibration.samples", Count)
         .within(0.0, EXACT_MAX)
         .start(&[2_880_000.0])
         .described(
@@ -37,41 +37,41 @@ const RANDOM: [Variable; 4] = [
         ),
 ];
 
-const SITE: [Variable; 3] = [
-    Variable::parameter("site.latitude", Real)
+const SITE: [DeclaredVariable; 3] = [
+    DeclaredVariable::parameter("site.latitude", Real)
         .of(&q::ANGLE)
         .within(-1.57, 1.57)
         .nominal(1.0)
         .start(&[30.5 * DEG])
         .described("Geodetic latitude of the dock or the ground, north positive."),
-    Variable::parameter("site.longitude", Real)
+    DeclaredVariable::parameter("site.longitude", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .start(&[114.4 * DEG])
         .described("Longitude of the dock or the ground, east positive."),
-    Variable::parameter("site.height", Real)
+    DeclaredVariable::parameter("site.height", Real)
         .of(&q::LENGTH)
         .within(-1e5, 1e5)
         .nominal(100.0)
         .described("Height of the dock or the ground above the ellipsoid."),
 ];
 
-const MOTION: [Variable; 5] = [
-    Variable::parameter("motion.kind", Enumeration(&of::MOTION))
+const MOTION: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("motion.kind", Enumeration(&of::MOTION))
         .described("How the case of the instrument moves."),
-    Variable::parameter("motion.mean.heading", Real)
+    DeclaredVariable::parameter("motion.mean.heading", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Mean heading of the case. c_nc = Rz(heading) Ry(pitch) Rx(roll)."),
-    Variable::parameter("motion.mean.pitch", Real)
+    DeclaredVariable::parameter("motion.mean.pitch", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Mean pitch of the case."),
-    Variable::parameter("motion.mean.roll", Real)
+    DeclaredVariable::parameter("motion.mean.roll", Real)
         .of(&q::ANGLE)
         .nominal(1.0)
         .described("Mean roll of the case (not of the gimbal)."),
-    Variable::parameter("motion.mooring_offset", Real)
+    DeclaredVariable::parameter("motion.mooring_offset", Real)
         .elements(3)
         .of(&q::LENGTH)
         .within(-1e4, 1e4)
@@ -86,10 +86,10 @@ const MOTION: [Variable; 5] = [
 macro_rules! sinusoids {
     ($name:literal, $quantity:ident, $nominal:literal, $what:literal) => {
         [
-            Variable::parameter(concat!("motion.", $name, ".count"), Integer)
+            DeclaredVariable::parameter(concat!("motion.", $name, ".count"), Integer)
                 .within(0.0, SINUSOIDS_MAX as f64)
                 .described(concat!("Dockside: number of sinusoids of ", $what, ".")),
-            Variable::parameter(concat!("motion.", $name, ".amplitude"), Real)
+            DeclaredVariable::parameter(concat!("motion.", $name, ".amplitude"), Real)
                 .elements(SINUSOIDS_MAX)
                 .of(&q::$quantity)
                 .nominal($nominal)
@@ -98,14 +98,14 @@ macro_rules! sinusoids {
                     $what,
                     ", A sin(2 pi t / period + phase); count of them are used."
                 )),
-            Variable::parameter(concat!("motion.", $name, ".period"), Real)
+            DeclaredVariable::parameter(concat!("motion.", $name, ".period"), Real)
                 .elements(SINUSOIDS_MAX)
                 .of(&q::TIME)
                 .within(0.01, 1e7)
                 .nominal(8.0)
                 .start(&[8.0])
                 .described(concat!("Dockside: periods of ", $what, "; count of them are used.")),
-            Variable::parameter(concat!("motion.", $name, ".phase"), Real)
+            DeclaredVariable::parameter(concat!("motion.", $name, ".phase"), Real)
                 .elements(SINUSOIDS_MAX)
                 .of(&q::ANGLE)
                 .nominal(1.0)
@@ -118,7 +118,7 @@ macro_rules! sinusoids {
     };
 }
 
-const SWAY: [Variable; 24] = concatenated(&[
+const SWAY: [DeclaredVariable; 24] = concatenated(&[
     &sinusoids!("roll", ANGLE, 0.05, "the ship's roll"),
     &sinusoids!("pitch", ANGLE, 0.05, "the ship's pitch"),
     &sinusoids!("yaw", ANGLE, 0.05, "the ship's yaw"),
@@ -127,20 +127,20 @@ const SWAY: [Variable; 24] = concatenated(&[
     &sinusoids!("heave", LENGTH, 0.2, "the ship's heave, positive down"),
 ]);
 
-const TURNTABLE: [Variable; 5] = [
-    Variable::parameter("turntable.rate", Real)
+const TURNTABLE: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("turntable.rate", Real)
         .of(&q::TURN_RATE)
         .within(0.0, 100.0)
         .nominal(10.0 * DEG)
         .start(&[10.0 * DEG])
         .described("Largest rate of a gimbal's move, above 0."),
-    Variable::parameter("turntable.acceleration", Real)
+    DeclaredVariable::parameter("turntable.acceleration", Real)
         .of(&q::ANGULAR_ACCELERATION)
         .min(0.0)
         .nominal(10.0 * DEG)
         .start(&[10.0 * DEG])
         .described("Acceleration of a gimbal's move, above 0."),
-    Variable::parameter("turntable.encoder_sigma", Real)
+    DeclaredVariable::parameter("turntable.encoder_sigma", Real)
         .of(&q::SMALL_ANGLE)
         .min(0.0)
         .nominal(18.0 * ARCSEC)
@@ -149,7 +149,7 @@ const TURNTABLE: [Variable; 5] = [
             "Encoder error, root mean square over a turn: a periodic curve of each gimbal, four \
              harmonics drawn from the seed. It is no white noise.",
         ),
-    Variable::parameter("turntable.non_orthogonality", Real)
+    DeclaredVariable::parameter("turntable.non_orthogonality", Real)
         .of(&q::SMALL_ANGLE)
         .within(-10.0 * DEG, 10.0 * DEG)
         .nominal(1e-4)
@@ -157,37 +157,37 @@ const TURNTABLE: [Variable; 5] = [
             "Angle eta by which the gimbal axes miss a right angle: c_cb = Rx(roll) Ry(eta) \
              Rz(azimuth).",
         ),
-    Variable::parameter("turntable.backlash", Real).of(&q::SMALL_ANGLE).min(0.0).nominal(1e-4).described(
+    DeclaredVariable::parameter("turntable.backlash", Real).of(&q::SMALL_ANGLE).min(0.0).nominal(1e-4).described(
         "Play of each gear: the body lags its drive by half of it, on the side it came from. The \
          encoders sit on the drives and don't see it.",
     ),
 ];
 
-const REFERENCE: [Variable; 5] = [
-    Variable::parameter("aiding.reference", Enumeration(&of::AIDING))
+const REFERENCE: [DeclaredVariable; 5] = [
+    DeclaredVariable::parameter("aiding.reference", Enumeration(&of::AIDING))
         .described("What the reference of the calibration measures."),
-    Variable::parameter("aiding.velocity_sigma", Real)
+    DeclaredVariable::parameter("aiding.velocity_sigma", Real)
         .of(&q::SMALL_VELOCITY)
         .min(0.0)
         .nominal(1e-3)
         .start(&[1e-3])
         .described("Reference of velocity: standard deviation of its noise, each axis."),
-    Variable::parameter("aiding.position_sigma", Real)
+    DeclaredVariable::parameter("aiding.position_sigma", Real)
         .of(&q::LENGTH)
         .min(0.0)
         .nominal(0.01)
         .start(&[0.01])
         .described("Reference of position: standard deviation of its noise, each axis."),
-    Variable::parameter("aiding.period_ns", Count)
+    DeclaredVariable::parameter("aiding.period_ns", Count)
         .of(&q::NANOSECONDS)
         .within(1.0, EXACT_MAX)
         .start(&[1e9])
         .described("Period of the reference, ns: a multiple of imu.period_ns."),
-    Variable::parameter("truth.enabled", Boolean).start(&[1.0]).described(
+    DeclaredVariable::parameter("truth.enabled", Boolean).start(&[1.0]).described(
         "The outputs of truth are computed in every step; else they stay as they are at the start.",
     ),
 ];
 
-const PARTS: &[&[Variable]] = &[&RANDOM, &SITE, &MOTION, &SWAY, &TURNTABLE, &REFERENCE];
+const PARTS: &[&[DeclaredVariable]] = &[&RANDOM, &SITE, &MOTION, &SWAY, &TURNTABLE, &REFERENCE];
 
-pub(super) const PARAMETERS: [Variable; count(PARTS)] = concatenated(PARTS);
+pub(super) const PARAMETERS: [DeclaredVariable; count(PARTS)] = concatenated(PARTS);

@@ -19,7 +19,7 @@ pub struct ClosedLoop {
 }
 
 impl ClosedLoop {
-    pub fn new(plant: &plant::Config, core: &core::Config) -> Self {
+    pub fn new(plant: &plant::PlantConfig, core: &core::CoreConfig) -> Self {
         Self {
             plant: Plant::new(plant).unwrap(),
             core: Core::new(core).unwrap(),

@@ -40,18 +40,18 @@ impl Case {
         }
     }
 
-    pub fn plant(&self) -> plant::Config {
+    pub fn plant(&self) -> plant::PlantConfig {
         let draws = ParameterDraws {
             g_dependent: Draw::Normal { sigma: self.g_dph_per_g * DEG_PER_HOUR_PER_G },
             ..ParameterDraws::table_1()
         };
-        plant::Config {
+        plant::PlantConfig {
             sample_period_ns: PERIOD_NS,
             seed: self.seed,
             calibration_samples: (self.calibration_h * 3600.0 * 200.0) as u64,
-            site: plant::Site { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
+            site: plant::PlantSite { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
             motion: plant::Motion::Static(plant::CaseAttitude::default()),
-            turntable: plant::Turntable {
+            turntable: plant::TurntableConfig {
                 rate_radps: 10.0 * DEG,
                 acceleration_radps2: 10.0 * DEG,
                 encoder_sigma_rad: 18.0 * ARCSEC,
@@ -71,12 +71,12 @@ impl Case {
         }
     }
 
-    pub fn core(&self) -> core::Config {
+    pub fn core(&self) -> core::CoreConfig {
         let error = alignment_error(self.seed, 60.0 * ARCSEC, 0.1 * DEG, 0.02);
         let phi = nalgebra::Vector3::from(error.phi_rad);
         let mut estimated = [true; 7];
-        estimated[octant_sample::parameters::Group::GDependent as usize] = self.g_states;
-        core::Config {
+        estimated[octant_sample::parameters::ParameterGroup::GDependent as usize] = self.g_states;
+        core::CoreConfig {
             sample_period_ns: PERIOD_NS,
             site: Site { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
             alignment: Alignment::Given {
@@ -147,7 +147,7 @@ pub fn base_of(ship: &plant::Dockside) -> Base {
     })
 }
 
-fn kalman(config: &mut Config) -> &mut Kalman {
+fn kalman(config: &mut CoreConfig) -> &mut Kalman {
     match &mut config.calibration.as_mut().unwrap().estimator {
         Estimator::Kalman(kalman) => kalman,
         _ => unreachable!(),
@@ -156,7 +156,7 @@ fn kalman(config: &mut Config) -> &mut Kalman {
 
 /// Configures the case on a moored ship: dock position, sway as white noise. The given attitude is
 /// level, unlike the ship's at time 0: the case rolls by up to 3°.
-pub fn dockside(case: &Case) -> (plant::Config, Config) {
+pub fn dockside(case: &Case) -> (plant::PlantConfig, CoreConfig) {
     let (mut plant, mut core) = (case.plant(), case.core());
     let ship = octant_plant::motion::dockside_default(case.seed);
     core.screening.base = base_of(&ship);

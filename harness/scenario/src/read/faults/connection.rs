@@ -4,13 +4,13 @@ use super::grid::{Grid, Waiting, check_chains};
 use super::value::value;
 use crate::arguments::fire;
 use crate::complete::complete;
-use crate::document::{self, Node, Value as Written, join, number};
+use crate::document::{self, DocumentNode, DocumentValue as Written, join, number};
 use crate::error::{Place, Problem, ScenarioError};
 use crate::keys;
-use crate::read::reader::Reader;
+use crate::read::reader::TableReader;
 use octant_faults::Values;
-use octant_faults::catalogue::{Parameter, Takes};
-use octant_faults::connection::kinds::{self, Kind};
+use octant_faults::catalogue::{FaultParameter, Takes};
+use octant_faults::connection::kinds::{self, ConnectionFaultKind};
 use octant_faults::trigger::{Schedule, Trigger};
 use std::path::Path;
 
@@ -22,11 +22,11 @@ pub struct ConnectionFault {
     /// Input that it acts on.
     pub connection: String,
     /// Kind.
-    pub kind: &'static Kind,
+    pub kind: &'static ConnectionFaultKind,
     /// Values with the same meaning on every connection.
     pub values: Values,
     /// Values in the unit of the connection.
-    pub given: Vec<(&'static Parameter, Given)>,
+    pub given: Vec<(&'static FaultParameter, Given)>,
     /// Schedule; with a condition, the part that follows it.
     pub schedule: Schedule,
     /// Condition that it waits for.
@@ -90,11 +90,11 @@ pub fn connection_faults(
     if !problems.is_empty() {
         return Err(with_file(problems));
     }
-    read(&Reader::root(&table), &Grid { period_ns: step_s * 1e9, step: "step" }, steps)
+    read(&TableReader::root(&table), &Grid { period_ns: step_s * 1e9, step: "step" }, steps)
         .map_err(|problem| with_file(vec![problem]))
 }
 
-fn read(root: &Reader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFault>, Problem> {
+fn read(root: &TableReader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFault>, Problem> {
     let tables = root.tables("faults");
     let mut all: Vec<ConnectionFault> = Vec::with_capacity(tables.len());
     for table in &tables {
@@ -128,7 +128,7 @@ fn read(root: &Reader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFaul
     Ok(all)
 }
 
-fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
+fn fault(table: &TableReader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
     let id = table.text("id")?;
     if id.trim().is_empty() {
         return Err(table.problem("id", "found an empty text, expected a name"));
@@ -176,10 +176,10 @@ fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
     })
 }
 
-fn given(table: &Reader<'_>, key: &str) -> Result<Given, Problem> {
+fn given(table: &TableReader<'_>, key: &str) -> Result<Given, Problem> {
     match table.node(key) {
-        Some(Node { value: Written::Text(text), .. }) => Ok(Given::Text(text.clone())),
-        Some(Node { value: Written::Boolean(value), .. }) => Ok(Given::Flag(*value)),
+        Some(DocumentNode { value: Written::Text(text), .. }) => Ok(Given::Text(text.clone())),
+        Some(DocumentNode { value: Written::Boolean(value), .. }) => Ok(Given::Flag(*value)),
         Some(node) => match number(&node.value) {
             Some(value) => Ok(Given::Number(value)),
             None => Err(table.problem(key, format!("found {}", node.value.describe()))),

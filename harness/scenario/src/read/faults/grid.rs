@@ -1,9 +1,9 @@
 //! Epochs at equal intervals, and schedules on them: the part of a schedule that needs no core.
 
-use crate::document::{Node, Value};
+use crate::document::{DocumentNode, DocumentValue};
 use crate::error::Problem;
-use crate::quantity::{self, Dimension};
-use crate::read::reader::Reader;
+use crate::quantity::{self, UnitDimension};
+use crate::read::reader::TableReader;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Lasts;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
@@ -22,10 +22,10 @@ impl Grid {
     }
 
     /// Converts a time, or a number of samples, to epochs.
-    pub(super) fn epochs(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
+    pub(super) fn epochs(&self, table: &TableReader<'_>, key: &str) -> Result<Option<u64>, Problem> {
         let Some(text) = table.optional_text(key) else { return Ok(None) };
         let quantity = quantity::parse(text).map_err(|_| table.problem(key, "missing"))?;
-        Ok(Some(if quantity.is(Dimension::SAMPLES) {
+        Ok(Some(if quantity.is(UnitDimension::SAMPLES) {
             quantity.si as u64
         } else {
             self.of_time(quantity.si)
@@ -38,7 +38,7 @@ impl Grid {
     }
 
     /// Converts as [`Self::epochs`] does, and requires at least one epoch.
-    pub(super) fn span(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
+    pub(super) fn span(&self, table: &TableReader<'_>, key: &str) -> Result<Option<u64>, Problem> {
         match self.epochs(table, key)? {
             Some(0) => {
                 let found = table.text(key)?;
@@ -53,19 +53,19 @@ impl Grid {
         }
     }
 
-    pub(super) fn or_zero(&self, table: &Reader<'_>, key: &str) -> Result<u64, Problem> {
+    pub(super) fn or_zero(&self, table: &TableReader<'_>, key: &str) -> Result<u64, Problem> {
         self.epochs(table, key).map(Option::unwrap_or_default)
     }
 
     /// Delay of a fault after the event that it waits for.
-    pub(super) fn delay(&self, table: &Reader<'_>) -> Result<u64, Problem> {
+    pub(super) fn delay(&self, table: &TableReader<'_>) -> Result<u64, Problem> {
         self.or_zero(table, "after")
     }
 
     /// Reads a schedule with a given trigger.
     pub(super) fn schedule(
         &self,
-        table: &Reader<'_>,
+        table: &TableReader<'_>,
         lasts: Lasts,
         trigger: Trigger,
         fires: &[u64],
@@ -82,7 +82,7 @@ impl Grid {
 
     /// Reads a trigger by time, after another fault or by hand, and the epochs at which it is fired by
     /// hand.
-    pub(super) fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
+    pub(super) fn trigger(&self, table: &TableReader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
         let first = || Ok(self.or_zero(table, "from")?.saturating_add(1));
         let last = || Ok(self.span(table, "until")?.map(|until| until.saturating_add(1)));
         let trigger = if table.node("at").is_some() {
@@ -95,7 +95,7 @@ impl Grid {
         } else if table.node("poisson").is_some() {
             let quantity = quantity::parse(table.text("poisson")?)
                 .map_err(|_| table.problem("poisson", "missing"))?;
-            let is_time = quantity.is(Dimension::TIME);
+            let is_time = quantity.is(UnitDimension::TIME);
             let mean_s = if is_time { quantity.si } else { 1.0 / quantity.si };
             Trigger::Poisson { first: first()?, last: last()?, mean: mean_s / self.period_s() }
         } else if table.node("after_fault").is_some() {
@@ -121,10 +121,10 @@ impl Grid {
         Ok((trigger, fires))
     }
 
-    fn repeat(&self, table: &Reader<'_>) -> Result<Repeat, Problem> {
+    fn repeat(&self, table: &TableReader<'_>) -> Result<Repeat, Problem> {
         match table.node("repeat") {
             None => Ok(Repeat::Once),
-            Some(Node { value: Value::Text(_), .. }) => Ok(Repeat::EveryTime),
+            Some(DocumentNode { value: DocumentValue::Text(_), .. }) => Ok(Repeat::EveryTime),
             Some(_) => {
                 let repeat = table.table("repeat")?;
                 let every = self.span(&repeat, "every")?.unwrap_or(1);
@@ -136,7 +136,7 @@ impl Grid {
     /// Checks that a repeated fault ends before it returns, and that the repetition has an effect.
     fn check_repetition(
         &self,
-        table: &Reader<'_>,
+        table: &TableReader<'_>,
         lasts: Lasts,
         schedule: &Schedule,
         fires: &[u64],
@@ -201,7 +201,7 @@ pub(super) struct Waiting<'a> {
 }
 
 /// Checks faults that wait for others: those exist and end, and something starts the chain.
-pub(super) fn check_chains(tables: &[Reader<'_>], all: &[Waiting<'_>]) -> Result<(), Problem> {
+pub(super) fn check_chains(tables: &[TableReader<'_>], all: &[Waiting<'_>]) -> Result<(), Problem> {
     let of = |id: &str| all.iter().position(|fault| fault.id == id);
     let waits_for = |fault: &Waiting<'_>| match &fault.schedule.trigger {
         Trigger::After { fault, .. } => Some(fault.clone()),

@@ -3,12 +3,12 @@
 use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
-use crate::model::{Alignment, Calibration, Fault, Method, Scenario};
-use crate::read::reader::Reader;
+use crate::model::{AlignmentSpec, CalibrationSpec, Fault, Method, Scenario};
+use crate::read::reader::TableReader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
 use octant_calibration::sequence::{Sequence, Stop};
-use octant_faults::catalogue::Kind;
+use octant_faults::catalogue::FaultKind;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Mode;
 
@@ -44,15 +44,15 @@ impl<'a> Timing<'a> {
     /// Schedule of a fault, and the epochs at which it is fired by hand.
     pub(super) fn schedule(
         &self,
-        table: &Reader<'_>,
-        kind: &Kind,
+        table: &TableReader<'_>,
+        kind: &FaultKind,
     ) -> Result<(Schedule, Vec<u64>), Problem> {
         let (trigger, fires) = self.trigger(&table.table("trigger")?)?;
         let schedule = self.grid.schedule(table, kind.lasts, trigger, &fires)?;
         Ok((schedule, fires))
     }
 
-    fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
+    fn trigger(&self, table: &TableReader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
         let delay = self.grid.delay(table)?;
         let mode = || {
             Ok(if table.text("phase")? == "calibration" {
@@ -93,7 +93,7 @@ impl<'a> Timing<'a> {
     /// Refuses a fault that can't fire, as far as that is known before the run.
     pub(super) fn check(
         &self,
-        table: &Reader<'_>,
+        table: &TableReader<'_>,
         all: &[Fault],
         index: usize,
     ) -> Result<(), Problem> {
@@ -128,7 +128,7 @@ impl<'a> Timing<'a> {
     }
 
     /// Checks that the run has the phase that a trigger waits for, and visits its position.
-    fn check_phase(&self, table: &Reader<'_>, trigger: &Trigger) -> Result<(), Problem> {
+    fn check_phase(&self, table: &TableReader<'_>, trigger: &Trigger) -> Result<(), Problem> {
         let (mode, key) = match trigger {
             Trigger::Position { mode, .. } => (*mode, "position"),
             Trigger::Move { mode, .. } => (*mode, "moving_to"),
@@ -136,7 +136,7 @@ impl<'a> Timing<'a> {
             _ => return Ok(()),
         };
         let there = match mode {
-            Mode::Aligning => matches!(self.scenario.alignment, Alignment::Coarse { .. }),
+            Mode::Aligning => matches!(self.scenario.alignment, AlignmentSpec::Coarse { .. }),
             Mode::Calibrating => self.scenario.calibration.is_some(),
             _ => self.scenario.navigation.is_some(),
         };
@@ -250,7 +250,7 @@ impl<'a> Timing<'a> {
     fn start(&self, mode: Mode) -> u64 {
         match (mode, self.scenario.alignment) {
             (Mode::Navigating, _) => self.calibration_samples,
-            (Mode::Calibrating, Alignment::Coarse { duration_s }) => self.grid.of_time(duration_s),
+            (Mode::Calibrating, AlignmentSpec::Coarse { duration_s }) => self.grid.of_time(duration_s),
             _ => 0,
         }
     }
@@ -279,7 +279,7 @@ impl Walk<'_> {
     }
 }
 
-fn positions(calibration: &Calibration) -> u64 {
+fn positions(calibration: &CalibrationSpec) -> u64 {
     calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
 }
 

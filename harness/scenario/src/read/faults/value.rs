@@ -1,14 +1,14 @@
 //! Values of the parameters of faults.
 
-use crate::document::{Node, Value as Written};
+use crate::document::{DocumentNode, DocumentValue as Written};
 use crate::error::Problem;
-use crate::read::reader::Reader;
+use crate::read::reader::TableReader;
 use crate::{keys, quantity};
-use octant_faults::catalogue::{Parameter, Takes};
+use octant_faults::catalogue::{FaultParameter, Takes};
 use octant_faults::{Channels, Value};
 
 /// Value of a parameter, which the check has already accepted.
-pub(super) fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result<Value, Problem> {
+pub(super) fn value(table: &TableReader<'_>, parameter: &'static FaultParameter) -> Result<Value, Problem> {
     let key = parameter.name;
     let missing = || table.problem(key, "missing");
     Ok(match parameter.takes {
@@ -35,7 +35,7 @@ pub(super) fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result
         }
         Takes::Channels => {
             let names = match table.node(key) {
-                Some(Node { value: Written::Array(_), .. }) => table.texts(key),
+                Some(DocumentNode { value: Written::Array(_), .. }) => table.texts(key),
                 _ => vec![table.text(key)?],
             };
             let sets: Option<Vec<_>> = names.into_iter().map(Channels::named).collect();

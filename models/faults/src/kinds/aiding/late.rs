@@ -1,16 +1,16 @@
 //! References that arrive late.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::span::samples;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::station::FLIGHT_MAX;
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::collections::VecDeque;
 use octant_sample::{Aiding, Epoch};
 
-pub(super) static AIDING_LATE: Kind = Kind {
+pub(super) static AIDING_LATE: FaultKind = FaultKind {
     name: "aiding-late",
     family: Family::Aiding,
     acts: Acts::Samples,
@@ -26,13 +26,13 @@ pub(super) static AIDING_LATE: Kind = Kind {
             has aiding of its own, which is on time again, the late one goes with the next sample \
             that has none. What is held at the end of the run never comes.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
             default: None,
             doc: "How late aiding is: at least one sample period, at most 4096.",
         },
-        Parameter {
+        FaultParameter {
             name: "stamp",
             takes: Takes::Choice(&[
                 ("old", "that of the sample that it was measured at"),
@@ -47,9 +47,9 @@ pub(super) static AIDING_LATE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let delay = samples(values, "delay", 1..=FLIGHT_MAX as u64, setup)?;
-    Ok(Rule::Samples(Box::new(AidingLate {
+    Ok(FaultRule::Samples(Box::new(AidingLate {
         delay,
         restamps: values.choice("stamp")? == "new",
         count: 0,

@@ -1,14 +1,14 @@
 //! References that are lost.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts};
 use crate::kinds::chance::{self, LOSS};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static AIDING_LOST: Kind = Kind {
+pub(super) static AIDING_LOST: FaultKind = FaultKind {
     name: "aiding-lost",
     family: Family::Aiding,
     acts: Acts::Samples,
@@ -26,9 +26,9 @@ pub(super) static AIDING_LOST: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let (loss, stream) = (chance::loss(values)?, setup.stream("loss"));
-    Ok(Rule::Samples(Box::new(AidingLost { loss, stream })))
+    Ok(FaultRule::Samples(Box::new(AidingLost { loss, stream })))
 }
 
 #[derive(Clone, Debug)]

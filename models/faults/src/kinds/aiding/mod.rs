@@ -4,9 +4,9 @@ mod late;
 mod lost;
 mod wrong;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &wrong::AIDING_WRONG,
     &wrong::POSITION_JUMP,
     &wrong::AIDING_NOISE,

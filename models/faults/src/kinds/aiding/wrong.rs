@@ -1,15 +1,15 @@
 //! References that are wrong.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Value, Values};
 use alloc::boxed::Box;
 use core::f64::consts::FRAC_PI_2;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_sample::{Epoch, Reference};
 
-pub(super) static AIDING_WRONG: Kind = Kind {
+pub(super) static AIDING_WRONG: FaultKind = FaultKind {
     name: "aiding-wrong",
     family: Family::Aiding,
     acts: Acts::Samples,
@@ -29,7 +29,7 @@ pub(super) static AIDING_WRONG: Kind = Kind {
             along the quay, or when it is spoofed. A filter whose gate the error passes takes it \
             for accelerometer and attitude errors; a constant position error mostly shifts the \
             position.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "error",
         takes: Takes::Vector(&[Dimension::Velocity, Dimension::Length]),
         default: None,
@@ -43,8 +43,8 @@ pub(super) static AIDING_WRONG: Kind = Kind {
     build: build_wrong,
 };
 
-fn build_wrong(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Samples(Box::new(AidingWrong { error: Offset::of(values, "error")? })))
+fn build_wrong(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Samples(Box::new(AidingWrong { error: Offset::of(values, "error")? })))
 }
 
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ impl SampleRule for AidingWrong {
     }
 }
 
-pub(super) static POSITION_JUMP: Kind = Kind {
+pub(super) static POSITION_JUMP: FaultKind = FaultKind {
     name: "position-jump",
     family: Family::Aiding,
     acts: Acts::Samples,
@@ -75,7 +75,7 @@ pub(super) static POSITION_JUMP: Kind = Kind {
             when it changes its satellites or its corrections, a survey when it changes its \
             datum.\n\n\
             A jump that is taken back, or fades, is `aiding-wrong` with a length.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "jump",
         takes: Takes::Vector(&[Dimension::Length]),
         default: None,
@@ -86,9 +86,9 @@ pub(super) static POSITION_JUMP: Kind = Kind {
     build: build_jump,
 };
 
-fn build_jump(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_jump(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let jump = Offset::of(values, "jump")?;
-    Ok(Rule::Samples(Box::new(PositionJump { jump, jumps: 0 })))
+    Ok(FaultRule::Samples(Box::new(PositionJump { jump, jumps: 0 })))
 }
 
 #[derive(Clone, Debug)]
@@ -116,7 +116,7 @@ impl SampleRule for PositionJump {
     }
 }
 
-pub(super) static AIDING_NOISE: Kind = Kind {
+pub(super) static AIDING_NOISE: FaultKind = FaultKind {
     name: "aiding-noise",
     family: Family::Aiding,
     acts: Acts::Samples,
@@ -130,9 +130,9 @@ pub(super) static AIDING_NOISE: Kind = Kind {
             untouched.\n\n\
             With a filter tuned to σ the mean NIS of three axes goes from 3 to about 3 σ'²/σ² \
             where the reference's noise dominates the innovation.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "sigma",
-        takes: Takes::Quantity(&[Dimension::Velocity, Dimension::Length], Bounds::Positive),
+        takes: Takes::Quantity(&[Dimension::Velocity, Dimension::Length], ParameterBounds::Positive),
         default: None,
         doc: "Standard deviation of the noise on each axis: a velocity or a length.",
     }],
@@ -141,10 +141,10 @@ pub(super) static AIDING_NOISE: Kind = Kind {
     build: build_noise,
 };
 
-fn build_noise(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_noise(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let (sigma, dimension) = values.quantity_and_dimension("sigma")?;
     let sigma = Offset { error: [sigma; 3], dimension };
-    Ok(Rule::Samples(Box::new(AidingNoise { sigma, stream: setup.stream("noise") })))
+    Ok(FaultRule::Samples(Box::new(AidingNoise { sigma, stream: setup.stream("noise") })))
 }
 
 #[derive(Clone, Debug)]
@@ -172,13 +172,13 @@ struct Offset {
 }
 
 impl Offset {
-    fn of(values: &Values, name: &'static str) -> Result<Self, BuildError> {
+    fn of(values: &Values, name: &'static str) -> Result<Self, FaultBuildError> {
         let Some(Value::Vector(error, dimension)) = values.get(name) else {
-            return Err(BuildError::missing(name));
+            return Err(FaultBuildError::missing(name));
         };
         if error == [0.0; 3] {
             let problem = "0 on all axes: the reference would be right, another value is expected";
-            return Err(BuildError::value(name, problem));
+            return Err(FaultBuildError::value(name, problem));
         }
         Ok(Self { error, dimension })
     }

@@ -1,23 +1,23 @@
 //! A constant error that sets in at once or grows.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::Added;
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-const CHANNELS: Parameter = Parameter {
+const CHANNELS: FaultParameter = FaultParameter {
     name: "channels",
     takes: Takes::Channels,
     default: None,
     doc: "Channels that get the bias: gyros or accelerometers.",
 };
-const BIAS: Takes = Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], Bounds::NotZero);
+const BIAS: Takes = Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::NotZero);
 
-pub(super) static BIAS_STEP: Kind = Kind {
+pub(super) static BIAS_STEP: FaultKind = FaultKind {
     name: "bias-step",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -34,7 +34,7 @@ pub(super) static BIAS_STEP: Kind = Kind {
             states follows it as far as its process noise lets it.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "amplitude",
             takes: BIAS,
             default: None,
@@ -47,7 +47,7 @@ pub(super) static BIAS_STEP: Kind = Kind {
     build: build_step,
 };
 
-pub(super) static BIAS_RAMP: Kind = Kind {
+pub(super) static BIAS_RAMP: FaultKind = FaultKind {
     name: "bias-ramp",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -63,16 +63,16 @@ pub(super) static BIAS_RAMP: Kind = Kind {
             longer than the fault.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "amplitude",
             takes: BIAS,
             default: None,
             doc: "The bias that is reached: an angular rate for gyros, an acceleration for \
                   accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "rise",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
             default: None,
             doc: "Time from the onset to the full bias.",
         },
@@ -86,15 +86,15 @@ pub(super) static BIAS_RAMP: Kind = Kind {
     build: build_ramp,
 };
 
-fn build_step(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_step(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let added = Added::of(values, "channels", "amplitude", setup)?;
-    Ok(Rule::Samples(Box::new(Bias { added, rise_s: 0.0, onset: Onset::default() })))
+    Ok(FaultRule::Samples(Box::new(Bias { added, rise_s: 0.0, onset: Onset::default() })))
 }
 
-fn build_ramp(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_ramp(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let added = Added::of(values, "channels", "amplitude", setup)?;
     let rise_s = values.quantity("rise")?;
-    Ok(Rule::Samples(Box::new(Bias { added, rise_s, onset: Onset::default() })))
+    Ok(FaultRule::Samples(Box::new(Bias { added, rise_s, onset: Onset::default() })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,16 +1,16 @@
 //! Cross-coupling of axes.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::{gyros, pair, read};
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static CROSS_AXIS: Kind = Kind {
+pub(super) static CROSS_AXIS: FaultKind = FaultKind {
     name: "cross-axis",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -25,21 +25,21 @@ pub(super) static CROSS_AXIS: Kind = Kind {
             A mounting that gives way under shock or heat does this: misalignment of the input \
             axis, IEEE Std 952; cross-axis sensitivity, IEEE Std 1293.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "from",
             takes: Takes::Channels,
             default: None,
             doc: "The axis that is felt: one gyro or one accelerometer.",
         },
-        Parameter {
+        FaultParameter {
             name: "into",
             takes: Takes::Channels,
             default: None,
             doc: "The sensor that tilts: another of the same triad.",
         },
-        Parameter {
+        FaultParameter {
             name: "angle",
-            takes: Takes::Quantity(&[Dimension::SmallAngle], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::SmallAngle], ParameterBounds::NotZero),
             default: None,
             doc: "γ: angle by which it tilts towards the other axis.",
         },
@@ -54,7 +54,7 @@ pub(super) static CROSS_AXIS: Kind = Kind {
     build: build_cross,
 };
 
-pub(super) static G_SENSITIVITY: Kind = Kind {
+pub(super) static G_SENSITIVITY: FaultKind = FaultKind {
     name: "g-sensitivity",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -70,13 +70,13 @@ pub(super) static G_SENSITIVITY: Kind = Kind {
             Table 1 values 1e-4 of G). It is the acceleration-sensitive drift of IEEE Std 952, \
             which the two tilted positions make observable (Zheng, Han and Zheng, 2015).",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Gyros whose row changes.",
         },
-        Parameter {
+        FaultParameter {
             name: "coefficients",
             takes: Takes::Vector(&[Dimension::GDependent]),
             default: None,
@@ -88,7 +88,7 @@ pub(super) static G_SENSITIVITY: Kind = Kind {
     build: build_g,
 };
 
-fn build_cross(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_cross(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let [from, into] = pair(values, "from", "into")?;
     let mut row = [0.0; 6];
     row[from] = values.quantity("angle")?;
@@ -96,12 +96,12 @@ fn build_cross(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Cross::rule(only, row))
 }
 
-fn build_g(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_g(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = gyros(values, "channels")?;
     let g = values.vector("coefficients")?;
     if g == [0.0; 3] {
         let problem = "three zeros were found, at least one that isn't zero is expected";
-        return Err(BuildError::value("coefficients", problem));
+        return Err(FaultBuildError::value("coefficients", problem));
     }
     let mut row = [0.0; 6];
     for axis in 0..3 {
@@ -122,9 +122,9 @@ struct Cross {
 octant_state::state! { Cross { values: adder, onset; parts: ; kept: channels, row } }
 
 impl Cross {
-    fn rule(channels: Channels, row: [f64; 6]) -> Rule {
+    fn rule(channels: Channels, row: [f64; 6]) -> FaultRule {
         let (adder, onset) = (Adder::default(), Onset::default());
-        Rule::Samples(Box::new(Self { channels, row, adder, onset }))
+        FaultRule::Samples(Box::new(Self { channels, row, adder, onset }))
     }
 }
 

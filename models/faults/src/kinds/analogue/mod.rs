@@ -8,9 +8,9 @@ mod range;
 mod scale;
 mod wander;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &bias::BIAS_STEP,
     &bias::BIAS_RAMP,
     &wander::RATE_RANDOM_WALK,

@@ -1,16 +1,16 @@
 //! Additional noise.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static NOISE_GAIN: Kind = Kind {
+pub(super) static NOISE_GAIN: FaultKind = FaultKind {
     name: "noise-gain",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -28,17 +28,17 @@ pub(super) static NOISE_GAIN: Kind = Kind {
             A fading beam, a loose shield or electronics near their end do this. On recorded data \
             N is what the scenario says of the instrument, whatever the recording's noise is.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels that get the noise; gyros and accelerometers together if you like.",
         },
-        Parameter {
+        FaultParameter {
             name: "gain",
             takes: Takes::Quantity(
                 &[Dimension::Ratio],
-                Bounds::Within(1.0, 1e6, "more than 1 (100 %), up to 1000000"),
+                ParameterBounds::Within(1.0, 1e6, "more than 1 (100 %), up to 1000000"),
             ),
             default: None,
             doc: "The noise afterwards in units of the noise before; more than 1.",
@@ -49,12 +49,12 @@ pub(super) static NOISE_GAIN: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let gain = values.quantity("gain")?;
     if !(gain > 1.0) {
         let problem = alloc::format!("{gain} was found, more than 1 is expected");
-        return Err(BuildError::value("gain", problem));
+        return Err(FaultBuildError::value("gain", problem));
     }
     let more = libm::sqrt((gain - 1.0) * (gain + 1.0)) * libm::sqrt(setup.dt_s());
     let mut counts = [0.0; 6];
@@ -64,11 +64,11 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
         if !(density > 0.0) {
             let problem = "the instrument has no noise on one of the channels: there is nothing to \
                            multiply";
-            return Err(BuildError::value("channels", problem));
+            return Err(FaultBuildError::value("channels", problem));
         }
         counts[channel] = more * density * counts_per_si(channel);
     }
-    Ok(Rule::Samples(Box::new(NoiseGain {
+    Ok(FaultRule::Samples(Box::new(NoiseGain {
         channels,
         counts,
         noise: Six::new(setup, channels, "noise"),

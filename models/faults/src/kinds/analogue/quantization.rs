@@ -1,16 +1,16 @@
 //! A coarser least significant bit.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, write_saturating};
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static QUANTIZATION: Kind = Kind {
+pub(super) static QUANTIZATION: FaultKind = FaultKind {
     name: "quantization",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -26,15 +26,15 @@ pub(super) static QUANTIZATION: Kind = Kind {
             saturates, its excess is lost and the saturation flag of its triad is set.\n\n\
             A readout that has lost its interpolation, one fringe a count, does this.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels with the coarser steps: gyros or accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "resolution",
-            takes: Takes::Quantity(&[Dimension::SmallAngle, Dimension::Velocity], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::SmallAngle, Dimension::Velocity], ParameterBounds::Positive),
             default: None,
             doc: "The step: an angle for gyros, a velocity for accelerometers.",
         },
@@ -44,7 +44,7 @@ pub(super) static QUANTIZATION: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let resolution = fitting(values, channels, "resolution")?;
     let channel = if channels.gyros_only() { 0 } else { 3 };
@@ -54,10 +54,10 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
             "{step} counts of the format were found, from 2 to {} are expected",
             i32::MAX
         );
-        return Err(BuildError::value("resolution", problem));
+        return Err(FaultBuildError::value("resolution", problem));
     }
     let step = step as i64;
-    Ok(Rule::Samples(Box::new(Quantization {
+    Ok(FaultRule::Samples(Box::new(Quantization {
         channels,
         step,
         remainder: [0; 6],

@@ -1,16 +1,16 @@
 //! Saturation and dead zone: the ends and the middle of the range.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, saturated, write};
 use crate::kinds::mapped::Mapped;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static SATURATION: Kind = Kind {
+pub(super) static SATURATION: FaultKind = FaultKind {
     name: "saturation",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -23,22 +23,22 @@ pub(super) static SATURATION: Kind = Kind {
             A rebalance loop or a readout that has lost a part of its power limits in this way. \
             The mean over the sample is limited: a peak within a sample passes.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels with the smaller range: gyros or accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "limit",
             takes: Takes::Quantity(
                 &[Dimension::AngularRate, Dimension::Acceleration],
-                Bounds::Positive,
+                ParameterBounds::Positive,
             ),
             default: None,
             doc: "R: largest magnitude that is still measured.",
         },
-        Parameter {
+        FaultParameter {
             name: "flag",
             takes: Takes::Flag,
             default: Some("true"),
@@ -55,7 +55,7 @@ pub(super) static SATURATION: Kind = Kind {
     build: build_saturation,
 };
 
-pub(super) static DEAD_ZONE: Kind = Kind {
+pub(super) static DEAD_ZONE: FaultKind = FaultKind {
     name: "dead-zone",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -72,19 +72,19 @@ pub(super) static DEAD_ZONE: Kind = Kind {
             `lock-in`. The threshold is applied to what the sample holds, the instrument's bias \
             and noise included.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels with the dead zone: gyros or accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "threshold",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::Positive),
             default: None,
             doc: "D: largest magnitude that gives no output.",
         },
-        Parameter {
+        FaultParameter {
             name: "beyond",
             takes: Takes::Choice(&[
                 ("whole", "the whole input comes through: the output jumps at the threshold"),
@@ -99,7 +99,7 @@ pub(super) static DEAD_ZONE: Kind = Kind {
     build: build_dead_zone,
 };
 
-fn build_saturation(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_saturation(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let limit = fitting(values, channels, "limit")?;
     let channel = if channels.gyros_only() { 0 } else { 3 };
@@ -110,10 +110,10 @@ fn build_saturation(values: &Values, setup: &Setup) -> Result<Rule, BuildError> 
              range ends there",
             i32::MAX - 1
         );
-        return Err(BuildError::value("limit", problem));
+        return Err(FaultBuildError::value("limit", problem));
     }
     let flag = values.flag("flag")?;
-    Ok(Rule::Samples(Box::new(Saturation { channels, limit: counts as i32, flag })))
+    Ok(FaultRule::Samples(Box::new(Saturation { channels, limit: counts as i32, flag })))
 }
 
 #[derive(Clone, Debug)]
@@ -141,7 +141,7 @@ impl SampleRule for Saturation {
     }
 }
 
-fn build_dead_zone(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_dead_zone(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let threshold = fitting(values, channels, "threshold")? * setup.dt_s();
     let excess = values.choice("beyond")? == "excess";

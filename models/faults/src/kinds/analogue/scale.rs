@@ -1,19 +1,19 @@
 //! Errors of scale factors.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::mapped::Mapped;
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 
-const CHANNELS: Parameter = Parameter {
+const CHANNELS: FaultParameter = FaultParameter {
     name: "channels",
     takes: Takes::Channels,
     default: None,
     doc: "Channels whose scale factor changes; gyros and accelerometers together if you like.",
 };
 
-pub(super) static SCALE_STEP: Kind = Kind {
+pub(super) static SCALE_STEP: FaultKind = FaultKind {
     name: "scale-step",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -29,9 +29,9 @@ pub(super) static SCALE_STEP: Kind = Kind {
             and noise too, a relative change of S.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "error",
-            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::NotZero),
             default: None,
             doc: "S: the change of the scale factor, as a part of it.",
         },
@@ -46,7 +46,7 @@ pub(super) static SCALE_STEP: Kind = Kind {
     build: build_step,
 };
 
-pub(super) static ASYMMETRY: Kind = Kind {
+pub(super) static ASYMMETRY: FaultKind = FaultKind {
     name: "asymmetry",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -62,9 +62,9 @@ pub(super) static ASYMMETRY: Kind = Kind {
             changes sign within a sample isn't rectified.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "error",
-            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::NotZero),
             default: None,
             doc: "A: scale factor for positive input less that for negative, as a part of their \
                   mean.",
@@ -80,12 +80,12 @@ pub(super) static ASYMMETRY: Kind = Kind {
     build: build_asymmetry,
 };
 
-fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_step(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let error = values.quantity("error")?;
     Ok(Mapped::rule(values.channels("channels")?, move |_, count| error * count))
 }
 
-fn build_asymmetry(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_asymmetry(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let half = 0.5 * values.quantity("error")?;
     Ok(Mapped::rule(values.channels("channels")?, move |_, count: f64| half * count.abs()))
 }

@@ -1,23 +1,23 @@
 //! Biases that wander at random.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si, fitting};
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-const CHANNELS: Parameter = Parameter {
+const CHANNELS: FaultParameter = FaultParameter {
     name: "channels",
     takes: Takes::Channels,
     default: None,
     doc: "Channels whose bias wanders, each on its own: gyros or accelerometers.",
 };
 
-pub(super) static RATE_RANDOM_WALK: Kind = Kind {
+pub(super) static RATE_RANDOM_WALK: FaultKind = FaultKind {
     name: "rate-random-walk",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -36,11 +36,11 @@ pub(super) static RATE_RANDOM_WALK: Kind = Kind {
             The numbers depend on the seed, the fault's id and the sample alone.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "coefficient",
             takes: Takes::Quantity(
                 &[Dimension::RateRandomWalk, Dimension::AccelRandomWalk],
-                Bounds::Positive,
+                ParameterBounds::Positive,
             ),
             default: None,
             doc: "K: that of a rate for gyros, that of an acceleration for accelerometers.",
@@ -51,7 +51,7 @@ pub(super) static RATE_RANDOM_WALK: Kind = Kind {
     build: build_walk,
 };
 
-pub(super) static GAUSS_MARKOV: Kind = Kind {
+pub(super) static GAUSS_MARKOV: FaultKind = FaultKind {
     name: "gauss-markov",
     family: Family::Analogue,
     acts: Acts::Samples,
@@ -68,20 +68,20 @@ pub(super) static GAUSS_MARKOV: Kind = Kind {
             bias instability: temperature control, mode hopping.",
     parameters: &[
         CHANNELS,
-        Parameter {
+        FaultParameter {
             name: "sigma",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::Positive),
             default: None,
             doc: "Standard deviation of the bias: an angular rate for gyros, an acceleration for \
                   accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "correlation_time",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
             default: None,
             doc: "Time over which the correlation falls to 1/e.",
         },
-        Parameter {
+        FaultParameter {
             name: "start",
             takes: Takes::Choice(&[
                 ("zero", "the bias starts from zero and begins to wander"),
@@ -100,7 +100,7 @@ pub(super) static GAUSS_MARKOV: Kind = Kind {
     build: build_markov,
 };
 
-fn build_walk(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_walk(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let coefficient = fitting(values, channels, "coefficient")?;
     let dt = setup.dt_s();
@@ -114,7 +114,7 @@ fn build_walk(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Wander::rule(channels, process, setup))
 }
 
-fn build_markov(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_markov(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let sigma = fitting(values, channels, "sigma")?;
     let steps = setup.dt_s() / values.quantity("correlation_time")?;
@@ -156,8 +156,8 @@ struct Wander {
 octant_state::state! { Wander { values: bias, adder, onset; parts: ; kept: channels, process, counts, walk, second } }
 
 impl Wander {
-    fn rule(channels: Channels, process: Process, setup: &Setup) -> Rule {
-        Rule::Samples(Box::new(Self {
+    fn rule(channels: Channels, process: Process, setup: &Setup) -> FaultRule {
+        FaultRule::Samples(Box::new(Self {
             channels,
             process,
             counts: core::array::from_fn(|channel| setup.dt_s() * counts_per_si(channel)),

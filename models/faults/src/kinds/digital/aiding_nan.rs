@@ -1,13 +1,13 @@
 //! NaN and infinity where a port has real numbers.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::{Epoch, Reference};
 
-pub(super) static AIDING_NAN: Kind = Kind {
+pub(super) static AIDING_NAN: FaultKind = FaultKind {
     name: "aiding-nan",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -21,7 +21,7 @@ pub(super) static AIDING_NAN: Kind = Kind {
             comes as 64-bit floating point, and a division by zero in the system that computes it \
             arrives like this.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "component",
             takes: Takes::Choice(&[
                 ("all", "all three"),
@@ -32,7 +32,7 @@ pub(super) static AIDING_NAN: Kind = Kind {
             default: Some("all"),
             doc: "Which components.",
         },
-        Parameter {
+        FaultParameter {
             name: "value",
             takes: Takes::Choice(&[
                 ("not-a-number", "NaN"),
@@ -48,7 +48,7 @@ pub(super) static AIDING_NAN: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let hit = match values.choice("component")? {
         "first" => [true, false, false],
         "second" => [false, true, false],
@@ -60,7 +60,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
         "minus-infinity" => f64::NEG_INFINITY,
         _ => f64::NAN,
     };
-    Ok(Rule::Samples(Box::new(AidingNan { hit, value })))
+    Ok(FaultRule::Samples(Box::new(AidingNan { hit, value })))
 }
 
 #[derive(Clone, Debug)]

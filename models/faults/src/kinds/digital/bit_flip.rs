@@ -1,15 +1,15 @@
 //! Single bits of counts.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::channel::{read, write};
 use crate::kinds::six::Six;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static BIT_FLIP: Kind = Kind {
+pub(super) static BIT_FLIP: FaultKind = FaultKind {
     name: "bit-flip",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -24,19 +24,19 @@ pub(super) static BIT_FLIP: Kind = Kind {
             A stuck line of a parallel bus or a register hit by radiation does this (single \
             events: a small probability, or a short duration).",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels whose counts are hit.",
         },
-        Parameter {
+        FaultParameter {
             name: "bit",
             takes: Takes::Integer(0, 31),
             default: None,
             doc: "n: number of the bit, 0 the least significant, 31 the sign.",
         },
-        Parameter {
+        FaultParameter {
             name: "becomes",
             takes: Takes::Choice(&[
                 ("inverted", "1 becomes 0 and 0 becomes 1"),
@@ -46,11 +46,11 @@ pub(super) static BIT_FLIP: Kind = Kind {
             default: Some("inverted"),
             doc: "What becomes of the bit.",
         },
-        Parameter {
+        FaultParameter {
             name: "probability",
             takes: Takes::Quantity(
                 &[Dimension::Ratio],
-                Bounds::Within(0.0, 1.0, "above 0, up to 1 (100 %)"),
+                ParameterBounds::Within(0.0, 1.0, "above 0, up to 1 (100 %)"),
             ),
             default: Some("100 %"),
             doc: "Probability that a sample of a channel is hit; above 0.",
@@ -61,17 +61,17 @@ pub(super) static BIT_FLIP: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let bit = values.integer("bit")?;
     let Some(mask) = u32::try_from(bit).ok().and_then(|bit| 1u32.checked_shl(bit)) else {
         let problem = alloc::format!("{bit} was found, 0 to 31 is expected");
-        return Err(BuildError::value("bit", problem));
+        return Err(FaultBuildError::value("bit", problem));
     };
     let probability = values.quantity("probability")?;
     if !(probability > 0.0) {
         let problem = alloc::format!("{probability} was found, more than 0 is expected");
-        return Err(BuildError::value("probability", problem));
+        return Err(FaultBuildError::value("probability", problem));
     }
     let becomes = match values.choice("becomes")? {
         "set" => Becomes::Set,
@@ -80,7 +80,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     };
     // With certainty no random number is needed.
     let dice = (probability < 1.0).then(|| (Six::new(setup, channels, "hit"), probability));
-    Ok(Rule::Samples(Box::new(BitFlip { channels, mask: mask as i32, becomes, dice })))
+    Ok(FaultRule::Samples(Box::new(BitFlip { channels, mask: mask as i32, becomes, dice })))
 }
 
 #[derive(Clone, Copy, Debug)]

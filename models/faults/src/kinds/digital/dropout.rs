@@ -1,28 +1,28 @@
 //! Samples without content: they arrive, but carry no new measurement.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::channel::{counts, write};
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::{Epoch, GimbalAngles, Sample};
 
-const CHANNELS: Parameter = Parameter {
+const CHANNELS: FaultParameter = FaultParameter {
     name: "channels",
     takes: Takes::Channels,
     default: Some("all"),
     doc: "Channels that drop out.",
 };
-const GIMBAL: Parameter = Parameter {
+const GIMBAL: FaultParameter = FaultParameter {
     name: "gimbal",
     takes: Takes::Flag,
     default: Some("false"),
     doc: "Whether the gimbal angles drop out with them.",
 };
 
-pub(super) static DROPOUT_ZERO: Kind = Kind {
+pub(super) static DROPOUT_ZERO: FaultKind = FaultKind {
     name: "dropout-zero",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -39,7 +39,7 @@ pub(super) static DROPOUT_ZERO: Kind = Kind {
     build: build_zero,
 };
 
-pub(super) static DROPOUT_HELD: Kind = Kind {
+pub(super) static DROPOUT_HELD: FaultKind = FaultKind {
     name: "dropout-held",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -57,7 +57,7 @@ pub(super) static DROPOUT_HELD: Kind = Kind {
     build: build_held,
 };
 
-pub(super) static INTERMITTENT: Kind = Kind {
+pub(super) static INTERMITTENT: FaultKind = FaultKind {
     name: "intermittent",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -75,7 +75,7 @@ pub(super) static INTERMITTENT: Kind = Kind {
     parameters: &[
         CHANNELS,
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "fill",
             takes: Takes::Choice(&[
                 ("zero", "the counts are 0"),
@@ -84,15 +84,15 @@ pub(super) static INTERMITTENT: Kind = Kind {
             default: Some("zero"),
             doc: "What the sample holds while it is out.",
         },
-        Parameter {
+        FaultParameter {
             name: "mean_out",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
             default: None,
             doc: "Mean time that it is out, at least a sample.",
         },
-        Parameter {
+        FaultParameter {
             name: "mean_in",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
             default: None,
             doc: "Mean time that it is in, at least a sample.",
         },
@@ -102,15 +102,15 @@ pub(super) static INTERMITTENT: Kind = Kind {
     build: build_intermittent,
 };
 
-fn build_zero(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_zero(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     Dropout::rule(values, false, None)
 }
 
-fn build_held(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_held(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     Dropout::rule(values, true, None)
 }
 
-fn build_intermittent(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_intermittent(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let chance = |name| {
         let mean_s = values.quantity(name)?;
         let chance = setup.dt_s() / mean_s;
@@ -121,7 +121,7 @@ fn build_intermittent(values: &Values, setup: &Setup) -> Result<Rule, BuildError
             "{mean_s} s was found, at least {} s, a sample, is expected",
             setup.dt_s()
         );
-        Err(BuildError::value(name, problem))
+        Err(FaultBuildError::value(name, problem))
     };
     let chain = Chain {
         leaves_out: chance("mean_out")?,
@@ -167,8 +167,8 @@ struct Dropout {
 octant_state::state! { Dropout { values: out, fill, onset; parts: ; kept: channels, gimbal, held, chain } }
 
 impl Dropout {
-    fn rule(values: &Values, held: bool, chain: Option<Chain>) -> Result<Rule, BuildError> {
-        Ok(Rule::Samples(Box::new(Self {
+    fn rule(values: &Values, held: bool, chain: Option<Chain>) -> Result<FaultRule, FaultBuildError> {
+        Ok(FaultRule::Samples(Box::new(Self {
             channels: values.channels("channels")?,
             gimbal: values.flag("gimbal")?,
             held,

@@ -1,14 +1,14 @@
 //! Flags that are wrong.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 use octant_sample::imu::Status;
 
-pub(super) static LYING_STATUS: Kind = Kind {
+pub(super) static LYING_STATUS: FaultKind = FaultKind {
     name: "lying-status",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -19,7 +19,7 @@ pub(super) static LYING_STATUS: Kind = Kind {
             there isn't altered: clearing a flag shows only where something sets it, an earlier \
             fault for example, so place this one after it.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "flag",
             takes: Takes::Choice(&[
                 ("gyro-saturated", "a gyro count saturated"),
@@ -30,7 +30,7 @@ pub(super) static LYING_STATUS: Kind = Kind {
             default: None,
             doc: "The flag that lies.",
         },
-        Parameter {
+        FaultParameter {
             name: "becomes",
             takes: Takes::Choice(&[
                 ("set", "the flag says that something is wrong"),
@@ -45,7 +45,7 @@ pub(super) static LYING_STATUS: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let flag = match values.choice("flag")? {
         "gyro-saturated" => Status::GYRO_SATURATED,
         "accelerometer-saturated" => Status::ACCELEROMETER_SATURATED,
@@ -53,7 +53,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
         _ => Status::INERTIAL_INVALID,
     };
     let set = values.choice("becomes")? == "set";
-    Ok(Rule::Samples(Box::new(LyingStatus { flag, set })))
+    Ok(FaultRule::Samples(Box::new(LyingStatus { flag, set })))
 }
 
 #[derive(Clone, Debug)]

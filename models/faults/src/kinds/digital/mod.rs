@@ -9,9 +9,9 @@ mod spike;
 mod stuck;
 mod wiring;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &spike::SPIKE,
     &stuck::STUCK_AT_CURRENT,
     &stuck::STUCK_AT_VALUE,

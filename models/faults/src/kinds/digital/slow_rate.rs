@@ -1,15 +1,15 @@
 //! Channels that are read less often than they are sent.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::channel::{counts, read, write, write_saturating};
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static SLOW_RATE: Kind = Kind {
+pub(super) static SLOW_RATE: FaultKind = FaultKind {
     name: "slow-rate",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -28,19 +28,19 @@ pub(super) static SLOW_RATE: Kind = Kind {
             this. Repeated increments make motion that never was, in the mean right while the rate \
             is steady, wrong at every start and stop.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: Some("all"),
             doc: "Channels that are read less often.",
         },
-        Parameter {
+        FaultParameter {
             name: "every",
             takes: Takes::Integer(2, 1_000_000),
             default: None,
             doc: "n: every n-th sample is fresh.",
         },
-        Parameter {
+        FaultParameter {
             name: "between",
             takes: Takes::Choice(&[
                 ("repeated", "the last fresh sample is repeated"),
@@ -56,12 +56,12 @@ pub(super) static SLOW_RATE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let every = values.integer("every")?;
     if !(2..=1_000_000).contains(&every) {
         let problem = alloc::format!("{every} was found, 2 to 1000000 is expected");
-        return Err(BuildError::value("every", problem));
+        return Err(FaultBuildError::value("every", problem));
     }
     let between = match values.choice("between")? {
         "zero" => Between::Zero,
@@ -69,7 +69,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
         _ => Between::Repeated,
     };
     let onset = Onset::default();
-    Ok(Rule::Samples(Box::new(SlowRate { channels, every, between, seen: 0, kept: [0; 6], onset })))
+    Ok(FaultRule::Samples(Box::new(SlowRate { channels, every, between, seen: 0, kept: [0; 6], onset })))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

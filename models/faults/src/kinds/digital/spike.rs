@@ -1,14 +1,14 @@
 //! A pulse on one or more channels.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::Added;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static SPIKE: Kind = Kind {
+pub(super) static SPIKE: FaultKind = FaultKind {
     name: "spike",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -19,15 +19,15 @@ pub(super) static SPIKE: Kind = Kind {
             samples adds N·A·dt to within half a count. Its width is its duration; single, \
             periodic and Poisson spikes differ by their trigger.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels that get the pulse: gyros or accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "amplitude",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::NotZero),
             default: None,
             doc: "Height of the pulse: an angular rate for gyros, an acceleration for accelerometers.",
         },
@@ -37,9 +37,9 @@ pub(super) static SPIKE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let added = Added::of(values, "channels", "amplitude", setup)?;
-    Ok(Rule::Samples(Box::new(Spike { added })))
+    Ok(FaultRule::Samples(Box::new(Spike { added })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,16 +1,16 @@
 //! Counts that stay constant.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{counts, read, saturated, write};
 use crate::kinds::onset::Onset;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static STUCK_AT_CURRENT: Kind = Kind {
+pub(super) static STUCK_AT_CURRENT: FaultKind = FaultKind {
     name: "stuck-at-current",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -23,7 +23,7 @@ pub(super) static STUCK_AT_CURRENT: Kind = Kind {
             on as they were. What the channel would have measured is lost.\n\n\
             A register or a converter that isn't written any more does this. In a dwell the held \
             value is nearly right and innovations don't show it; identical samples do.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "channels",
         takes: Takes::Channels,
         default: None,
@@ -34,7 +34,7 @@ pub(super) static STUCK_AT_CURRENT: Kind = Kind {
     build: build_current,
 };
 
-pub(super) static STUCK_AT_VALUE: Kind = Kind {
+pub(super) static STUCK_AT_VALUE: FaultKind = FaultKind {
     name: "stuck-at-value",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -46,15 +46,15 @@ pub(super) static STUCK_AT_VALUE: Kind = Kind {
             beyond the instrument's range but within the format is a wrong number that looks \
             like one; for the limits of the format take `out-of-range`.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels that stick: gyros or accelerometers.",
         },
-        Parameter {
+        FaultParameter {
             name: "value",
-            takes: Takes::Quantity(&[Dimension::AngularRate, Dimension::Acceleration], Bounds::Any),
+            takes: Takes::Quantity(&[Dimension::AngularRate, Dimension::Acceleration], ParameterBounds::Any),
             default: None,
             doc: "V: the angular rate or the acceleration that is read.",
         },
@@ -64,7 +64,7 @@ pub(super) static STUCK_AT_VALUE: Kind = Kind {
     build: build_value,
 };
 
-pub(super) static OUT_OF_RANGE: Kind = Kind {
+pub(super) static OUT_OF_RANGE: FaultKind = FaultKind {
     name: "out-of-range",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -76,13 +76,13 @@ pub(super) static OUT_OF_RANGE: Kind = Kind {
             by itself. What the channel would have measured is lost.\n\n\
             It is the overflow of a counter, or a bus that reads all ones.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Channels that read the limit.",
         },
-        Parameter {
+        FaultParameter {
             name: "at",
             takes: Takes::Choice(&[
                 ("upper", "the largest count"),
@@ -92,7 +92,7 @@ pub(super) static OUT_OF_RANGE: Kind = Kind {
             default: Some("upper"),
             doc: "Which limit.",
         },
-        Parameter {
+        FaultParameter {
             name: "flag",
             takes: Takes::Flag,
             default: Some("true"),
@@ -104,9 +104,9 @@ pub(super) static OUT_OF_RANGE: Kind = Kind {
     build: build_limit,
 };
 
-fn build_current(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_current(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
-    Ok(Rule::Samples(Box::new(Current { channels, held: [0; 6], onset: Onset::default() })))
+    Ok(FaultRule::Samples(Box::new(Current { channels, held: [0; 6], onset: Onset::default() })))
 }
 
 #[derive(Clone, Debug)]
@@ -133,7 +133,7 @@ impl SampleRule for Current {
     }
 }
 
-fn build_value(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_value(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let value = fitting(values, channels, "value")?;
     let channel = if channels.gyros_only() { 0 } else { 3 };
@@ -144,9 +144,9 @@ fn build_value(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
             i32::MIN,
             i32::MAX
         );
-        return Err(BuildError::value("value", problem));
+        return Err(FaultBuildError::value("value", problem));
     }
-    Ok(Rule::Samples(Box::new(Constant { channels, count: count as i32 })))
+    Ok(FaultRule::Samples(Box::new(Constant { channels, count: count as i32 })))
 }
 
 #[derive(Clone, Debug)]
@@ -165,14 +165,14 @@ impl SampleRule for Constant {
     }
 }
 
-fn build_limit(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_limit(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = values.channels("channels")?;
     let at = match values.choice("at")? {
         "lower" => Some(i32::MIN),
         "sign" => None,
         _ => Some(i32::MAX),
     };
-    Ok(Rule::Samples(Box::new(Limit { channels, at, flag: values.flag("flag")? })))
+    Ok(FaultRule::Samples(Box::new(Limit { channels, at, flag: values.flag("flag")? })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! Channels with wrong wiring or decoding.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::channel::{pair, read, write, write_saturating};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static SIGN_FLIP: Kind = Kind {
+pub(super) static SIGN_FLIP: FaultKind = FaultKind {
     name: "sign-flip",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -17,7 +17,7 @@ pub(super) static SIGN_FLIP: Kind = Kind {
             −2147483648, becomes the largest and sets the saturation flag of its triad; no other \
             flag changes.\n\n\
             A swapped pair of wires, a wrong axis convention after a change of software.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "channels",
         takes: Takes::Channels,
         default: None,
@@ -28,7 +28,7 @@ pub(super) static SIGN_FLIP: Kind = Kind {
     build: build_flip,
 };
 
-pub(super) static AXIS_SWAP: Kind = Kind {
+pub(super) static AXIS_SWAP: FaultKind = FaultKind {
     name: "axis-swap",
     family: Family::Digital,
     acts: Acts::Samples,
@@ -36,13 +36,13 @@ pub(super) static AXIS_SWAP: Kind = Kind {
     model: "While it lasts every sample has Δ'_first = Δ_second and Δ'_second = Δ_first. No flag \
             changes. It makes a left-handed triad: no rotation of the instrument explains it.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "first",
             takes: Takes::Channels,
             default: None,
             doc: "One gyro or one accelerometer.",
         },
-        Parameter {
+        FaultParameter {
             name: "second",
             takes: Takes::Channels,
             default: None,
@@ -54,8 +54,8 @@ pub(super) static AXIS_SWAP: Kind = Kind {
     build: build_swap,
 };
 
-fn build_flip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Samples(Box::new(SignFlip { channels: values.channels("channels")? })))
+fn build_flip(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Samples(Box::new(SignFlip { channels: values.channels("channels")? })))
 }
 
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ impl SampleRule for SignFlip {
     }
 }
 
-fn build_swap(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Samples(Box::new(AxisSwap { channels: pair(values, "first", "second")? })))
+fn build_swap(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Samples(Box::new(AxisSwap { channels: pair(values, "first", "second")? })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,20 +1,20 @@
 //! Size effect.
 
-use crate::catalogue::{Acts, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{fixed, within};
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use octant_sample::disturbance::Disturbance;
 
 const ZERO: Option<&str> = Some(r#"["0 m", "0 m", "0 m"]"#);
 const ARMS: [&str; 3] = ["accelerometer_x", "accelerometer_y", "accelerometer_z"];
 
-const fn arm(name: &'static str, doc: &'static str) -> Parameter {
-    Parameter { name, takes: Takes::Vector(&[Dimension::Length]), default: ZERO, doc }
+const fn arm(name: &'static str, doc: &'static str) -> FaultParameter {
+    FaultParameter { name, takes: Takes::Vector(&[Dimension::Length]), default: ZERO, doc }
 }
 
-pub(super) static LEVER_ARM: Kind = Kind {
+pub(super) static LEVER_ARM: FaultKind = FaultKind {
     name: "lever-arm",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -46,7 +46,7 @@ pub(super) static LEVER_ARM: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let mut arms = [[0.0; 3]; 3];
     for (arm, name) in arms.iter_mut().zip(ARMS) {
         *arm = values.vector(name)?;
@@ -54,7 +54,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     }
     if arms == [[0.0; 3]; 3] {
         let problem = "zeros were found, here or in one of the others one that isn't is expected";
-        return Err(BuildError::value(ARMS[0], problem));
+        return Err(FaultBuildError::value(ARMS[0], problem));
     }
     Ok(fixed(Disturbance::LeverArm(arms)))
 }

@@ -7,9 +7,9 @@ mod temperature;
 mod vibration_random;
 mod vibration_sine;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &vibration_sine::VIBRATION_SINE,
     &vibration_random::VIBRATION_RANDOM,
     &shock::SHOCK,

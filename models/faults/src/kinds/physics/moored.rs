@@ -1,17 +1,17 @@
 //! Motions of the whole case that the core doesn't expect: a jerk of the mooring, and sway.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{EDGE, angular, fixed, not_nothing, within};
-use crate::rule::{Context, PlantRule, Rule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::rule::{Context, PlantRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
-use octant_sample::disturbance::{Disturbance, Line, Motor};
+use octant_sample::disturbance::{Disturbance, SpectralLine, Motor};
 
-pub(super) static MOORING_JERK: Kind = Kind {
+pub(super) static MOORING_JERK: FaultKind = FaultKind {
     name: "mooring-jerk",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -30,23 +30,23 @@ pub(super) static MOORING_JERK: Kind = Kind {
             without the fault, and counts differ by at most one. A real line that snaps leaves the \
             ship in another place: give the displacement a length of minutes.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "displacement",
             takes: Takes::Vector(&[Dimension::Length]),
             default: Some(r#"["0 m", "0 m", "0 m"]"#),
             doc: "Displacement along the heading, to starboard, down.",
         },
-        Parameter {
+        FaultParameter {
             name: "turn",
             takes: Takes::Vector(&[Dimension::Angle]),
             default: Some(r#"["0 deg", "0 deg", "0 deg"]"#),
             doc: "Turn in roll, pitch and heading.",
         },
-        Parameter {
+        FaultParameter {
             name: "length",
             takes: Takes::Quantity(
                 &[Dimension::Time],
-                Bounds::Within(0.1, 86_400.0, "from 0.1 s to 24 h"),
+                ParameterBounds::Within(0.1, 86_400.0, "from 0.1 s to 24 h"),
             ),
             default: Some("5 s"),
             doc: "Time L that it takes, there and back.",
@@ -57,7 +57,7 @@ pub(super) static MOORING_JERK: Kind = Kind {
     build: build_jerk,
 };
 
-fn build_jerk(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_jerk(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let displacement_m = values.vector("displacement")?;
     let angle_rad = values.vector("turn")?;
     not_nothing("displacement", "turn", [&displacement_m, &angle_rad])?;
@@ -67,7 +67,7 @@ fn build_jerk(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(fixed(Disturbance::Excursion { displacement_m, angle_rad, length_s }))
 }
 
-pub(super) static SWAY: Kind = Kind {
+pub(super) static SWAY: FaultKind = FaultKind {
     name: "sway",
     family: Family::Aiding,
     acts: Acts::Plant,
@@ -87,51 +87,51 @@ pub(super) static SWAY: Kind = Kind {
             each onset. The default is the dockside sway of the plant's own; the dynamic condition \
             of ISO 8728 is roll and pitch up to 5 deg with periods of 6 s to 15 s.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "angles",
             takes: Takes::Vector(&[Dimension::Angle]),
             default: Some(r#"["3 deg", "1.5 deg", "1 deg"]"#),
             doc: "Amplitudes of roll, pitch and heading.",
         },
-        Parameter {
+        FaultParameter {
             name: "angle_periods",
             takes: Takes::Vector(&[Dimension::Time]),
             default: Some(r#"["8 s", "6 s", "10 s"]"#),
             doc: "Their periods, 0.01 s to 1000000 s; that of an amplitude of zero is of no account.",
         },
-        Parameter {
+        FaultParameter {
             name: "displacement",
             takes: Takes::Vector(&[Dimension::Length]),
             default: Some(r#"["0.2 m", "0.2 m", "0.2 m"]"#),
             doc: "Amplitudes of surge, sway and heave.",
         },
-        Parameter {
+        FaultParameter {
             name: "displacement_periods",
             takes: Takes::Vector(&[Dimension::Time]),
             default: Some(r#"["6 s", "7 s", "8 s"]"#),
             doc: "Their periods, 0.01 s to 1000000 s; that of an amplitude of zero is of no account.",
         },
-        Parameter { default: Some("10 s"), ..EDGE },
+        FaultParameter { default: Some("10 s"), ..EDGE },
     ],
     lasts: Lasts::Span,
     example: Example::of(&[("duration", r#""20 s""#)]),
     build: build_sway,
 };
 
-fn build_sway(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_sway(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let angles = values.vector("angles")?;
     let displacement = values.vector("displacement")?;
     not_nothing("angles", "displacement", [&angles, &displacement])?;
     within("angles", &angles, 1.0, "rad")?;
     within("displacement", &displacement, 1000.0, "m")?;
-    let periods = |name: &'static str, of: &[f64; 3]| -> Result<[f64; 3], BuildError> {
+    let periods = |name: &'static str, of: &[f64; 3]| -> Result<[f64; 3], FaultBuildError> {
         let periods = values.vector(name)?;
         let wrong = |(_, period): &(&f64, &f64)| !(0.01..=1e6).contains(*period);
         match of.iter().zip(&periods).filter(|(amplitude, _)| **amplitude != 0.0).find(wrong) {
             None => Ok(periods),
             Some((_, period)) => {
                 let problem = format!("{period} s was found, 0.01 s to 1000000 s is expected");
-                Err(BuildError::value(name, problem))
+                Err(FaultBuildError::value(name, problem))
             }
         }
     };
@@ -143,7 +143,7 @@ fn build_sway(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
         edge_s: values.quantity("edge")?,
         stream: setup.stream("phase"),
     };
-    Ok(Rule::Plant(Box::new(sway)))
+    Ok(FaultRule::Plant(Box::new(sway)))
 }
 
 #[derive(Clone, Debug)]
@@ -165,7 +165,7 @@ impl PlantRule for Sway {
         let phases = [words(key, counter), words(key, counter + 1)].map(|four| four.map(uniform));
         let mut lines = Vec::with_capacity(6);
         for axis in 0..3 {
-            let still = Line {
+            let still = SpectralLine {
                 frequency_hz: 1.0,
                 displacement_m: [0.0; 3],
                 angle_rad: [0.0; 3],
@@ -173,13 +173,13 @@ impl PlantRule for Sway {
                 angle_phase_rad: angular(phases[1][axis]),
             };
             if self.angles[axis] != 0.0 {
-                let mut line = Line { frequency_hz: 1.0 / self.angle_periods_s[axis], ..still };
+                let mut line = SpectralLine { frequency_hz: 1.0 / self.angle_periods_s[axis], ..still };
                 line.angle_rad[axis] = self.angles[axis];
                 lines.push(line);
             }
             if self.displacement[axis] != 0.0 {
                 let frequency_hz = 1.0 / self.displacement_periods_s[axis];
-                let mut line = Line { frequency_hz, ..still };
+                let mut line = SpectralLine { frequency_hz, ..still };
                 line.displacement_m[axis] = self.displacement[axis];
                 lines.push(line);
             }

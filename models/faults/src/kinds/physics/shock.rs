@@ -1,13 +1,13 @@
 //! A shock of the sensor block.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{fixed, something, within};
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use octant_sample::disturbance::Disturbance;
 
-pub(super) static SHOCK: Kind = Kind {
+pub(super) static SHOCK: FaultKind = FaultKind {
     name: "shock",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -30,26 +30,26 @@ pub(super) static SHOCK: Kind = Kind {
             A real shock rings on in the structure and turns the block: add vibration-sine, after \
             it or with it.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "peak",
             takes: Takes::Vector(&[Dimension::Acceleration]),
             default: None,
             doc: "Peak A of the acceleration in body axes.",
         },
-        Parameter {
+        FaultParameter {
             name: "width",
             takes: Takes::Quantity(
                 &[Dimension::Time],
-                Bounds::Within(1e-5, 1.0, "from 10 us to 1 s"),
+                ParameterBounds::Within(1e-5, 1.0, "from 10 us to 1 s"),
             ),
             default: Some("11 ms"),
             doc: "Length T of the pulse.",
         },
-        Parameter {
+        FaultParameter {
             name: "recoil",
             takes: Takes::Quantity(
                 &[Dimension::Time],
-                Bounds::Within(1e-4, 10.0, "from 0.1 ms to 10 s"),
+                ParameterBounds::Within(1e-4, 10.0, "from 0.1 ms to 10 s"),
             ),
             default: Some("0.2 s"),
             doc: "Time R in which the mounts bring the block back.",
@@ -60,7 +60,7 @@ pub(super) static SHOCK: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let peak_mps2 = something(values, "peak", 1e6, "m/s²")?;
     let width_s = values.quantity("width")?;
     let recoil_s = values.quantity("recoil")?;

@@ -1,13 +1,13 @@
 //! Temperature.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::fixed;
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use octant_sample::disturbance::Disturbance;
 
-pub(super) static TEMPERATURE_RAMP: Kind = Kind {
+pub(super) static TEMPERATURE_RAMP: FaultKind = FaultKind {
     name: "temperature-ramp",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -25,37 +25,37 @@ pub(super) static TEMPERATURE_RAMP: Kind = Kind {
             too (Shupe effect of fibre gyros), which a ramp-rate bias, `bias-step`, can stand for. \
             IEEE Std 952-2020 and IEEE Std 1293-2018 define the coefficients.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "ramp",
-            takes: Takes::Quantity(&[Dimension::TemperatureRate], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::TemperatureRate], ParameterBounds::NotZero),
             default: None,
             doc: "Rate q, negative for cooling.",
         },
-        Parameter {
+        FaultParameter {
             name: "plateau",
-            takes: Takes::Quantity(&[Dimension::Temperature], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Temperature], ParameterBounds::NotZero),
             default: None,
             doc: "Change P at which the ramp ends, of the sign of the ramp.",
         },
-        Parameter {
+        FaultParameter {
             name: "gyro_bias",
             takes: Takes::Vector(&[Dimension::GyroBiasPerK]),
             default: Some(r#"["0 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#),
             doc: "Sensitivity b_gT of the gyro biases, x, y and z.",
         },
-        Parameter {
+        FaultParameter {
             name: "accelerometer_bias",
             takes: Takes::Vector(&[Dimension::AccelBiasPerK]),
             default: Some(r#"["0 ug/K", "0 ug/K", "0 ug/K"]"#),
             doc: "Sensitivity b_aT of the accelerometer biases, x, y and z.",
         },
-        Parameter {
+        FaultParameter {
             name: "gyro_scale",
             takes: Takes::Vector(&[Dimension::ScalePerK]),
             default: Some(r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#),
             doc: "Sensitivity s_gT of the gyro scale factors, x, y and z.",
         },
-        Parameter {
+        FaultParameter {
             name: "accelerometer_scale",
             takes: Takes::Vector(&[Dimension::ScalePerK]),
             default: Some(r#"["0 ppm/K", "0 ppm/K", "0 ppm/K"]"#),
@@ -72,12 +72,12 @@ pub(super) static TEMPERATURE_RAMP: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let ramp_kps = values.quantity("ramp")?;
     let plateau_k = values.quantity("plateau")?;
     if (ramp_kps < 0.0) != (plateau_k < 0.0) {
         let problem = "its sign is not that of the ramp, which would never reach it";
-        return Err(BuildError::value("plateau", problem));
+        return Err(FaultBuildError::value("plateau", problem));
     }
     let gyro_bias_per_k = values.vector("gyro_bias")?;
     let accel_bias_per_k = values.vector("accelerometer_bias")?;
@@ -86,7 +86,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     let all = [gyro_bias_per_k, accel_bias_per_k, gyro_scale_per_k, accel_scale_per_k];
     if all == [[0.0; 3]; 4] {
         let problem = "all sensitivities are zero, at least one that isn't is expected";
-        return Err(BuildError::value("gyro_bias", problem));
+        return Err(FaultBuildError::value("gyro_bias", problem));
     }
     Ok(fixed(Disturbance::Temperature {
         ramp_kps,

@@ -1,20 +1,20 @@
 //! Random vibration of the sensor block by its spectral density.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{EDGE, angular, frequency, not_nothing, within};
-use crate::rule::{Context, PlantRule, Rule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::rule::{Context, PlantRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
-use octant_sample::disturbance::{Disturbance, Line, Motor};
+use octant_sample::disturbance::{Disturbance, SpectralLine, Motor};
 
 /// Distance of the counters of two onsets: more than there can be lines.
 const PER_FIRING: u64 = 1000;
 
-pub(super) static VIBRATION_RANDOM: Kind = Kind {
+pub(super) static VIBRATION_RANDOM: FaultKind = FaultKind {
     name: "vibration-random",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -37,31 +37,31 @@ pub(super) static VIBRATION_RANDOM: Kind = Kind {
             Real spectra have slopes and resonances: give several faults, one for each band. See \
             IEC 60068-2-64 and RTCA DO-160 section 8 for levels.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "psd",
             takes: Takes::Vector(&[Dimension::AccelerationPsd]),
             default: Some(r#"["0 g^2/Hz", "0 g^2/Hz", "0 g^2/Hz"]"#),
             doc: "Spectral density S of the linear acceleration along each body axis, one-sided.",
         },
-        Parameter {
+        FaultParameter {
             name: "rate",
             takes: Takes::Vector(&[Dimension::AngularRate]),
             default: Some(r#"["0 deg/s", "0 deg/s", "0 deg/s"]"#),
             doc: "Rms σ of the angular rate about each body axis.",
         },
-        Parameter {
+        FaultParameter {
             name: "low_frequency",
-            takes: Takes::Quantity(&[Dimension::Frequency], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Frequency], ParameterBounds::Positive),
             default: Some("20 Hz"),
             doc: "Lower corner f1.",
         },
-        Parameter {
+        FaultParameter {
             name: "high_frequency",
-            takes: Takes::Quantity(&[Dimension::Frequency], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Frequency], ParameterBounds::Positive),
             default: Some("500 Hz"),
             doc: "Upper corner f2, above the lower one, at most 100 periods in a sample.",
         },
-        Parameter {
+        FaultParameter {
             name: "lines",
             takes: Takes::Integer(10, 500),
             default: Some("100"),
@@ -74,21 +74,21 @@ pub(super) static VIBRATION_RANDOM: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let psd = values.vector("psd")?;
     let rate = values.vector("rate")?;
     not_nothing("psd", "rate", [&psd, &rate])?;
     for (name, vector) in [("psd", &psd), ("rate", &rate)] {
         if let Some(value) = vector.iter().find(|value| !(**value >= 0.0)) {
             let problem = format!("{value} was found, 0 or more is expected");
-            return Err(BuildError::value(name, problem));
+            return Err(FaultBuildError::value(name, problem));
         }
     }
     let low_hz = frequency(values, "low_frequency", setup)?;
     let high_hz = frequency(values, "high_frequency", setup)?;
     if high_hz <= low_hz {
         let problem = format!("{high_hz} Hz was found, more than {low_hz} Hz is expected");
-        return Err(BuildError::value("high_frequency", problem));
+        return Err(FaultBuildError::value("high_frequency", problem));
     }
     let lines = values.integer("lines")?;
     let random = Random {
@@ -104,7 +104,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     within("psd", &displacement, 1.0, "m of displacement in a line")?;
     let angle = rate.map(|rate| random.rate(rate) / angular(low_hz));
     within("rate", &angle, 1.0, "rad in a line")?;
-    Ok(Rule::Plant(Box::new(random)))
+    Ok(FaultRule::Plant(Box::new(random)))
 }
 
 fn square(value: f64) -> f64 {
@@ -149,7 +149,7 @@ impl PlantRule for Random {
                 let [place, phase, angle_phase, _] = words(key, counter).map(uniform);
                 let frequency_hz = self.low_hz + (index as f64 + place) * self.bin_hz;
                 let omega = angular(frequency_hz);
-                let mut line = Line {
+                let mut line = SpectralLine {
                     frequency_hz,
                     displacement_m: [0.0; 3],
                     angle_rad: [0.0; 3],

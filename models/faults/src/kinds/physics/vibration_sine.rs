@@ -1,14 +1,14 @@
 //! Sinusoidal vibration of the sensor block.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{EDGE, angular, fixed, frequency, not_nothing, within};
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::vec;
-use octant_sample::disturbance::{Disturbance, Line};
+use octant_sample::disturbance::{Disturbance, SpectralLine};
 
-pub(super) static VIBRATION_SINE: Kind = Kind {
+pub(super) static VIBRATION_SINE: FaultKind = FaultKind {
     name: "vibration-sine",
     family: Family::Physics,
     acts: Acts::Plant,
@@ -32,27 +32,27 @@ pub(super) static VIBRATION_SINE: Kind = Kind {
             vibration: here both are given. See IEC 60068-2-6 for tests with sinusoidal vibration; \
             Titterton and Weston (2004) for sculling and coning.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "frequency",
-            takes: Takes::Quantity(&[Dimension::Frequency], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Frequency], ParameterBounds::Positive),
             default: None,
             doc: "Frequency f, at most 100 periods in a sample.",
         },
-        Parameter {
+        FaultParameter {
             name: "acceleration",
             takes: Takes::Vector(&[Dimension::Acceleration]),
             default: Some(r#"["0 m/s^2", "0 m/s^2", "0 m/s^2"]"#),
             doc: "Amplitude a of the linear acceleration in body axes.",
         },
-        Parameter {
+        FaultParameter {
             name: "angle",
             takes: Takes::Vector(&[Dimension::Angle]),
             default: Some(r#"["0 deg", "0 deg", "0 deg"]"#),
             doc: "Amplitude α of the rotation about body axes.",
         },
-        Parameter {
+        FaultParameter {
             name: "phase",
-            takes: Takes::Quantity(&[Dimension::Angle], Bounds::Any),
+            takes: Takes::Quantity(&[Dimension::Angle], ParameterBounds::Any),
             default: Some("0 deg"),
             doc: "Phase φ of the rotation against the linear motion; without one of both it shifts \
                   the rotation in time.",
@@ -67,7 +67,7 @@ pub(super) static VIBRATION_SINE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let frequency_hz = frequency(values, "frequency", setup)?;
     let acceleration = values.vector("acceleration")?;
     let angle_rad = values.vector("angle")?;
@@ -76,7 +76,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     let displacement_m = acceleration.map(|a| -a / (omega * omega));
     within("acceleration", &displacement_m, 1.0, "m of displacement")?;
     within("angle", &angle_rad, 1.0, "rad")?;
-    let line = Line {
+    let line = SpectralLine {
         frequency_hz,
         displacement_m,
         angle_rad,

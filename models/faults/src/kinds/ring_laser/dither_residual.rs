@@ -1,18 +1,18 @@
 //! Dither that remains in the increments.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::gyros;
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::{Channels, Values};
 use alloc::boxed::Box;
 use core::f64::consts::TAU;
 use octant_sample::Epoch;
 
-pub(super) static DITHER_RESIDUAL: Kind = Kind {
+pub(super) static DITHER_RESIDUAL: FaultKind = FaultKind {
     name: "dither-residual",
     family: Family::RingLaser,
     acts: Acts::Samples,
@@ -32,33 +32,33 @@ pub(super) static DITHER_RESIDUAL: Kind = Kind {
             sample rate shows nothing and is refused unless its phase walks. What coning the \
             residual makes between axes follows from the increments alone: the body doesn't move.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Gyros with the residual.",
         },
-        Parameter {
+        FaultParameter {
             name: "amplitude",
-            takes: Takes::Quantity(&[Dimension::SmallAngle], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::SmallAngle], ParameterBounds::NotZero),
             default: None,
             doc: "A: amplitude of the residual angle.",
         },
-        Parameter {
+        FaultParameter {
             name: "frequency",
-            takes: Takes::Quantity(&[Dimension::Frequency], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Frequency], ParameterBounds::Positive),
             default: None,
             doc: "f: frequency of the dither.",
         },
-        Parameter {
+        FaultParameter {
             name: "phase",
-            takes: Takes::Quantity(&[Dimension::Angle], Bounds::Any),
+            takes: Takes::Quantity(&[Dimension::Angle], ParameterBounds::Any),
             default: Some("0 deg"),
             doc: "φ: phase at the onset.",
         },
-        Parameter {
+        FaultParameter {
             name: "phase_random_walk",
-            takes: Takes::Quantity(&[Dimension::AngleRandomWalk], Bounds::NotNegative),
+            takes: Takes::Quantity(&[Dimension::AngleRandomWalk], ParameterBounds::NotNegative),
             default: Some("0 deg/sqrt(h)"),
             doc: "κ: random walk of the dither's phase (not of the residual angle); zero is a pure \
                   line.",
@@ -69,7 +69,7 @@ pub(super) static DITHER_RESIDUAL: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = gyros(values, "channels")?;
     let frequency_hz = values.quantity("frequency")?;
     let walk = values.quantity("phase_random_walk")? * libm::sqrt(setup.dt_s());
@@ -79,9 +79,9 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
             "{frequency_hz} Hz was found, a multiple of the sample rate, which no sample shows; \
              another frequency is expected"
         );
-        return Err(BuildError::value("frequency", problem));
+        return Err(FaultBuildError::value("frequency", problem));
     }
-    Ok(Rule::Samples(Box::new(DitherResidual {
+    Ok(FaultRule::Samples(Box::new(DitherResidual {
         channels,
         amplitude_counts: values.quantity("amplitude")? * counts_per_si(0),
         cycles,

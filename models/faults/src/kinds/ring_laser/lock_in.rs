@@ -1,14 +1,14 @@
 //! Lock-in: the two beams couple, and slow rotation is not measured.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::added::counts_per_si;
 use crate::kinds::channel::gyros;
 use crate::kinds::mapped::Mapped;
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 
-pub(super) static LOCK_IN: Kind = Kind {
+pub(super) static LOCK_IN: FaultKind = FaultKind {
     name: "lock-in",
     family: Family::RingLaser,
     acts: Acts::Samples,
@@ -28,15 +28,15 @@ pub(super) static LOCK_IN: Kind = Kind {
             the instrument's bias and noise, which move it across the threshold as a real bias \
             does.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "channels",
             takes: Takes::Channels,
             default: None,
             doc: "Gyros that lock.",
         },
-        Parameter {
+        FaultParameter {
             name: "threshold",
-            takes: Takes::Quantity(&[Dimension::GyroBias], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::GyroBias], ParameterBounds::Positive),
             default: None,
             doc: "ω_L: rate at which the beams lock; 100 deg/h is usual for a ring laser without \
                   dither.",
@@ -47,7 +47,7 @@ pub(super) static LOCK_IN: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let channels = gyros(values, "channels")?;
     let limit = values.quantity("threshold")? * setup.dt_s() * counts_per_si(0);
     Ok(Mapped::rule(channels, move |_, count: f64| {

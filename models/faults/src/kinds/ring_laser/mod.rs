@@ -3,6 +3,6 @@
 mod dither_residual;
 mod lock_in;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[&lock_in::LOCK_IN, &dither_residual::DITHER_RESIDUAL];
+pub(super) static KINDS: &[&FaultKind] = &[&lock_in::LOCK_IN, &dither_residual::DITHER_RESIDUAL];

@@ -1,12 +1,12 @@
 //! Common parts of the clock faults: the clocks that are wrong, and their error.
 
-use crate::catalogue::{Parameter, Takes};
-use crate::setup::BuildError;
+use crate::catalogue::{FaultParameter, Takes};
+use crate::setup::FaultBuildError;
 use crate::values::Values;
 use octant_sample::Epoch;
 
 /// Parameter for the stamps that are wrong.
-pub(super) const CLOCK: Parameter = Parameter {
+pub(super) const CLOCK: FaultParameter = FaultParameter {
     name: "clock",
     takes: Takes::Choice(&[
         ("instrument", "the stamps of the samples; aiding keeps its own"),
@@ -24,7 +24,7 @@ pub(super) const AFTERWARDS: &[(&str, &str)] = &[
 ];
 
 /// Returns whether a clock keeps its error after the fault.
-pub(super) fn stays(values: &Values) -> Result<bool, BuildError> {
+pub(super) fn stays(values: &Values) -> Result<bool, FaultBuildError> {
     Ok(values.choice("afterwards")? == "stays")
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Clocks {
 
 impl Clocks {
     /// Reads the parameter [`CLOCK`].
-    pub(super) fn of(values: &Values) -> Result<Self, BuildError> {
+    pub(super) fn of(values: &Values) -> Result<Self, FaultBuildError> {
         let choice = values.choice("clock")?;
         Ok(Self { sample: choice != "reference", aiding: choice != "instrument" })
     }
@@ -61,12 +61,12 @@ impl Clocks {
 }
 
 /// Reads a time to the nearest nanosecond, which must not be zero.
-pub(super) fn nanoseconds(values: &Values, name: &'static str) -> Result<i64, BuildError> {
+pub(super) fn nanoseconds(values: &Values, name: &'static str) -> Result<i64, FaultBuildError> {
     let seconds = values.quantity(name)?;
     match to_ns(seconds * 1e9) {
         0 => {
             let problem = alloc::format!("{seconds} s, at least half a nanosecond is expected");
-            Err(BuildError::value(name, problem))
+            Err(FaultBuildError::value(name, problem))
         }
         ns => Ok(ns),
     }

@@ -1,15 +1,15 @@
 //! Samples that are lost.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::chance::{self, LOSS};
-use crate::rule::{Context, DeliveryRule, Rule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::rule::{Context, DeliveryRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use octant_sample::{Aiding, Epoch};
 
-pub(super) static DROPOUT: Kind = Kind {
+pub(super) static DROPOUT: FaultKind = FaultKind {
     name: "dropout",
     family: Family::Time,
     acts: Acts::Delivery,
@@ -26,7 +26,7 @@ pub(super) static DROPOUT: Kind = Kind {
             that was kept.",
     parameters: &[
         LOSS,
-        Parameter {
+        FaultParameter {
             name: "aiding",
             takes: Takes::Choice(&[
                 ("lost", "it is lost with its sample: they share a link"),
@@ -41,8 +41,8 @@ pub(super) static DROPOUT: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Delivery(Box::new(Dropout {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Delivery(Box::new(Dropout {
         loss: chance::loss(values)?,
         keeps_aiding: values.choice("aiding")? == "kept",
         stream: setup.stream("loss"),

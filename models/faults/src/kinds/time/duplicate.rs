@@ -1,10 +1,10 @@
 //! Samples that are delivered more than once.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::span::samples;
-use crate::rule::{Context, DeliveryRule, Rule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, DeliveryRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::station::FLIGHT_MAX;
 use crate::values::Values;
 use alloc::boxed::Box;
@@ -12,7 +12,7 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use octant_sample::Epoch;
 
-pub(super) static DUPLICATE: Kind = Kind {
+pub(super) static DUPLICATE: FaultKind = FaultKind {
     name: "duplicate",
     family: Family::Time,
     acts: Acts::Delivery,
@@ -27,15 +27,15 @@ pub(super) static DUPLICATE: Kind = Kind {
             Copies that are still to come when the fault ends come at their time; those that are \
             to come after the end of the run never do.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "copies",
             takes: Takes::Integer(1, 8),
             default: Some("1"),
             doc: "How often an epoch is delivered again.",
         },
-        Parameter {
+        FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::NotNegative),
+            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::NotNegative),
             default: Some("0 s"),
             doc: "How much later the copies come, to the nearest sample: up to 4096 samples.",
         },
@@ -45,9 +45,9 @@ pub(super) static DUPLICATE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let delay = samples(values, "delay", 0..=FLIGHT_MAX as u64, setup)?;
-    Ok(Rule::Delivery(Box::new(Duplicate {
+    Ok(FaultRule::Delivery(Box::new(Duplicate {
         copies: values.integer("copies")?.clamp(1, 8) as usize,
         delay,
         queue: VecDeque::with_capacity(FLIGHT_MAX),

@@ -1,14 +1,14 @@
 //! Stamps with noise.
 
 use super::clock::{CLOCK, Clocks, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static TIME_JITTER: Kind = Kind {
+pub(super) static TIME_JITTER: FaultKind = FaultKind {
     name: "time-jitter",
     family: Family::Time,
     acts: Acts::Samples,
@@ -27,13 +27,13 @@ pub(super) static TIME_JITTER: Kind = Kind {
             number. Epochs that an earlier fault delivers in one step share one too: clock faults \
             belong before faults of delivery.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "sigma",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Positive),
             default: None,
             doc: "Standard deviation of the error of a stamp.",
         },
-        Parameter {
+        FaultParameter {
             name: "monotonic",
             takes: Takes::Flag,
             default: Some("true"),
@@ -46,13 +46,13 @@ pub(super) static TIME_JITTER: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let limit = if values.flag("monotonic")? {
         (setup.sample_period_ns.saturating_sub(1) / 2) as i64
     } else {
         i64::MAX
     };
-    Ok(Rule::Samples(Box::new(TimeJitter {
+    Ok(FaultRule::Samples(Box::new(TimeJitter {
         clocks: Clocks::of(values)?,
         sigma_ns: values.quantity("sigma")? * 1e9,
         limit_ns: limit,

@@ -1,10 +1,10 @@
 //! Samples that arrive late.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::span::samples;
-use crate::rule::{Context, DeliveryRule, Rule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{Context, DeliveryRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::station::FLIGHT_MAX;
 use crate::values::Values;
 use alloc::boxed::Box;
@@ -12,7 +12,7 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use octant_sample::Epoch;
 
-pub(super) static LATE_DELIVERY: Kind = Kind {
+pub(super) static LATE_DELIVERY: FaultKind = FaultKind {
     name: "late-delivery",
     family: Family::Time,
     acts: Acts::Delivery,
@@ -32,13 +32,13 @@ pub(super) static LATE_DELIVERY: Kind = Kind {
             more, which takes another fault that delivers several in a step, the oldest comes out \
             early.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
             default: None,
             doc: "How late samples are: at least one sample period, at most 4096.",
         },
-        Parameter {
+        FaultParameter {
             name: "catch_up",
             takes: Takes::Choice(&[
                 ("at once", "all that is held comes in the first step after the end"),
@@ -54,13 +54,13 @@ pub(super) static LATE_DELIVERY: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let catch_up = match values.choice("catch_up")? {
         "gradually" => CatchUp::Gradually,
         "overtaken" => CatchUp::Overtaken,
         _ => CatchUp::AtOnce,
     };
-    Ok(Rule::Delivery(Box::new(LateDelivery {
+    Ok(FaultRule::Delivery(Box::new(LateDelivery {
         delay: samples(values, "delay", 1..=FLIGHT_MAX as u64, setup)?,
         catch_up,
         queue: VecDeque::with_capacity(FLIGHT_MAX),

@@ -12,9 +12,9 @@ mod reorder;
 mod sequence;
 mod stamp;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &offset::TIME_OFFSET,
     &offset::TIME_STEP,
     &rate::CLOCK_SKEW,

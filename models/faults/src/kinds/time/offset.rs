@@ -1,14 +1,14 @@
 //! Stamps that are off by a constant.
 
 use super::clock::{CLOCK, Clocks, nanoseconds, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static TIME_OFFSET: Kind = Kind {
+pub(super) static TIME_OFFSET: FaultKind = FaultKind {
     name: "time-offset",
     family: Family::Time,
     acts: Acts::Samples,
@@ -26,9 +26,9 @@ pub(super) static TIME_OFFSET: Kind = Kind {
             not by its stamp doesn't notice.\n\n\
             A jump that stays for good is `time-step`.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "offset",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::NotZero),
             default: None,
             doc: "Time that is added to the stamps; negative: they are too early.",
         },
@@ -39,9 +39,9 @@ pub(super) static TIME_OFFSET: Kind = Kind {
     build: build_offset,
 };
 
-fn build_offset(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_offset(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let (clocks, offset_ns) = (Clocks::of(values)?, nanoseconds(values, "offset")?);
-    Ok(Rule::Samples(Box::new(TimeOffset { clocks, offset_ns })))
+    Ok(FaultRule::Samples(Box::new(TimeOffset { clocks, offset_ns })))
 }
 
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl SampleRule for TimeOffset {
     }
 }
 
-pub(super) static TIME_STEP: Kind = Kind {
+pub(super) static TIME_STEP: FaultKind = FaultKind {
     name: "time-step",
     family: Family::Time,
     acts: Acts::Samples,
@@ -73,9 +73,9 @@ pub(super) static TIME_STEP: Kind = Kind {
             The sample at the onset is the first with the new time.\n\n\
             A jump that is taken back is `time-offset`.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "step",
-            takes: Takes::Quantity(&[Dimension::Time], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::NotZero),
             default: None,
             doc: "Height of the jump; negative: back in time.",
         },
@@ -86,9 +86,9 @@ pub(super) static TIME_STEP: Kind = Kind {
     build: build_step,
 };
 
-fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_step(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let (clocks, step_ns) = (Clocks::of(values)?, nanoseconds(values, "step")?);
-    Ok(Rule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0 })))
+    Ok(FaultRule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0 })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! Clocks with a wrong rate: too fast or slow, stopped, backwards.
 
 use super::clock::{AFTERWARDS, CLOCK, Clocks, stays, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static CLOCK_SKEW: Kind = Kind {
+pub(super) static CLOCK_SKEW: FaultKind = FaultKind {
     name: "clock-skew",
     family: Family::Time,
     acts: Acts::Samples,
@@ -24,14 +24,14 @@ pub(super) static CLOCK_SKEW: Kind = Kind {
             At its end the rate is right again; the error that has built up stays to the end of \
             the run, or is corrected in one jump (`afterwards`).",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "skew",
-            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::NotZero),
             default: None,
             doc: "Relative error of the clock's rate; positive: stamps run ahead. Above -1.",
         },
         CLOCK,
-        Parameter {
+        FaultParameter {
             name: "afterwards",
             takes: Takes::Choice(AFTERWARDS),
             default: Some("stays"),
@@ -43,19 +43,19 @@ pub(super) static CLOCK_SKEW: Kind = Kind {
     build: build_skew,
 };
 
-fn build_skew(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_skew(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let skew = values.quantity("skew")?;
     if !(skew > -1.0) {
         let problem = alloc::format!(
             "{skew}, a value above -1 is expected: at -1 the clock stands (frozen-clock), below \
              it runs backwards (time-backwards)"
         );
-        return Err(BuildError::value("skew", problem));
+        return Err(FaultBuildError::value("skew", problem));
     }
     rate(skew, values, setup)
 }
 
-pub(super) static FROZEN_CLOCK: Kind = Kind {
+pub(super) static FROZEN_CLOCK: FaultKind = FaultKind {
     name: "frozen-clock",
     family: Family::Time,
     acts: Acts::Samples,
@@ -70,7 +70,7 @@ pub(super) static FROZEN_CLOCK: Kind = Kind {
             stopped, and is slow by the length of the fault to the end of the run.",
     parameters: &[
         CLOCK,
-        Parameter {
+        FaultParameter {
             name: "afterwards",
             takes: Takes::Choice(AFTERWARDS),
             default: Some("corrected"),
@@ -82,11 +82,11 @@ pub(super) static FROZEN_CLOCK: Kind = Kind {
     build: build_frozen,
 };
 
-fn build_frozen(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_frozen(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     rate(-1.0, values, setup)
 }
 
-pub(super) static TIME_BACKWARDS: Kind = Kind {
+pub(super) static TIME_BACKWARDS: FaultKind = FaultKind {
     name: "time-backwards",
     family: Family::Time,
     acts: Acts::Samples,
@@ -101,14 +101,14 @@ pub(super) static TIME_BACKWARDS: Kind = Kind {
             Of real clocks: a time base that is disciplined too hard, or a counter read while it \
             is reversed. A single jump back is `time-step` with a negative step.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "speed",
-            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::Positive),
             default: Some("100 %"),
             doc: "How fast the stamps go back, relative to how fast time passes.",
         },
         CLOCK,
-        Parameter {
+        FaultParameter {
             name: "afterwards",
             takes: Takes::Choice(AFTERWARDS),
             default: Some("corrected"),
@@ -120,12 +120,12 @@ pub(super) static TIME_BACKWARDS: Kind = Kind {
     build: build_backwards,
 };
 
-fn build_backwards(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_backwards(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     rate(-1.0 - values.quantity("speed")?, values, setup)
 }
 
-fn rate(change: f64, values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Samples(Box::new(WrongRate {
+fn rate(change: f64, values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Samples(Box::new(WrongRate {
         clocks: Clocks::of(values)?,
         change,
         stays: stays(values)?,

@@ -1,15 +1,15 @@
 //! Samples that arrive in another order.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, DeliveryRule, Rule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, DeliveryRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::station::FLIGHT_MAX;
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use octant_sample::Epoch;
 
-pub(super) static REORDER: Kind = Kind {
+pub(super) static REORDER: FaultKind = FaultKind {
     name: "reorder",
     family: Family::Time,
     acts: Acts::Delivery,
@@ -25,13 +25,13 @@ pub(super) static REORDER: Kind = Kind {
             never comes. A network that sends over several paths does this; so does a buffer that \
             is read from the wrong end.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "window",
             takes: Takes::Integer(2, FLIGHT_MAX as i64),
             default: Some("2"),
             doc: "Samples among which the order changes.",
         },
-        Parameter {
+        FaultParameter {
             name: "order",
             takes: Takes::Choice(&[
                 ("reversed", "the last comes first"),
@@ -46,10 +46,10 @@ pub(super) static REORDER: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let window = values.integer("window")?.clamp(2, FLIGHT_MAX as i64) as usize;
     let random = values.choice("order")? == "random";
-    Ok(Rule::Delivery(Box::new(Reorder {
+    Ok(FaultRule::Delivery(Box::new(Reorder {
         window,
         shuffle: random.then(|| setup.stream("order")),
         held: Vec::with_capacity(window),

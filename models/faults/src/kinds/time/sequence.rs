@@ -1,13 +1,13 @@
 //! Sequence numbers that jump although no sample was lost.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Epoch;
 
-pub(super) static SEQUENCE_GAP: Kind = Kind {
+pub(super) static SEQUENCE_GAP: FaultKind = FaultKind {
     name: "sequence-gap",
     family: Family::Time,
     acts: Acts::Samples,
@@ -22,13 +22,13 @@ pub(super) static SEQUENCE_GAP: Kind = Kind {
             has come as far as it was.\n\n\
             Samples that are really lost are `dropout`.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "skip",
             takes: Takes::Integer(-1_000_000_000, 1_000_000_000),
             default: None,
             doc: "Numbers that the counter skips; negative: it goes back. Not 0.",
         },
-        Parameter {
+        FaultParameter {
             name: "afterwards",
             takes: Takes::Choice(&[
                 ("stays", "the counter goes on from where it jumped to"),
@@ -43,12 +43,12 @@ pub(super) static SEQUENCE_GAP: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let skip = values.integer("skip")?;
     if skip == 0 {
-        return Err(BuildError::value("skip", "0: no number would change, another is expected"));
+        return Err(FaultBuildError::value("skip", "0: no number would change, another is expected"));
     }
-    Ok(Rule::Samples(Box::new(SequenceGap { skip, stays: super::clock::stays(values)?, error: 0 })))
+    Ok(FaultRule::Samples(Box::new(SequenceGap { skip, stays: super::clock::stays(values)?, error: 0 })))
 }
 
 #[derive(Clone, Debug)]

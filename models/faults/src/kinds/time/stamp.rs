@@ -1,13 +1,13 @@
 //! Stamps that are given twice.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, SampleRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, SampleRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::{DeviceTime, Epoch};
 
-pub(super) static DUPLICATE_STAMP: Kind = Kind {
+pub(super) static DUPLICATE_STAMP: FaultKind = FaultKind {
     name: "duplicate-stamp",
     family: Family::Time,
     acts: Acts::Samples,
@@ -24,7 +24,7 @@ pub(super) static DUPLICATE_STAMP: Kind = Kind {
             the next one for the end of a longer interval.\n\n\
             A sample that is delivered twice is `duplicate`; a clock that stands is \
             `frozen-clock`.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "run",
         takes: Takes::Integer(2, 1000),
         default: Some("2"),
@@ -35,8 +35,8 @@ pub(super) static DUPLICATE_STAMP: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Samples(Box::new(DuplicateStamp {
+fn build(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Samples(Box::new(DuplicateStamp {
         run: values.integer("run")? as u64,
         period_ns: setup.sample_period_ns,
         nth: 0,

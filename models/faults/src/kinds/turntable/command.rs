@@ -1,22 +1,22 @@
 //! Set points on their way from the core to the turntable.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::span::samples;
-use crate::rule::{CommandRule, Context, Rule};
-use crate::setup::{BuildError, Setup};
+use crate::rule::{CommandRule, Context, FaultRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use octant_sample::GimbalCommand;
 
-const POSITIONS: Parameter = Parameter {
+const POSITIONS: FaultParameter = FaultParameter {
     name: "positions",
     takes: Takes::Integer(1, 1000),
     default: Some("1"),
     doc: "Positions in a row that it happens to.",
 };
 
-pub(super) static SKIPPED_POSITION: Kind = Kind {
+pub(super) static SKIPPED_POSITION: FaultKind = FaultKind {
     name: "skipped-position",
     family: Family::Turntable,
     acts: Acts::Command,
@@ -39,11 +39,11 @@ pub(super) static SKIPPED_POSITION: Kind = Kind {
     build: build_skipped,
 };
 
-fn build_skipped(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_skipped(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     instead(values, |now| now.set_points.last)
 }
 
-pub(super) static REPEATED_POSITION: Kind = Kind {
+pub(super) static REPEATED_POSITION: FaultKind = FaultKind {
     name: "repeated-position",
     family: Family::Turntable,
     acts: Acts::Command,
@@ -66,12 +66,12 @@ pub(super) static REPEATED_POSITION: Kind = Kind {
     build: build_repeated,
 };
 
-fn build_repeated(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_repeated(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     instead(values, |now| now.set_points.before)
 }
 
-fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<Rule, BuildError> {
-    Ok(Rule::Command(Box::new(Instead {
+fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Command(Box::new(Instead {
         positions: values.integer("positions")?,
         place,
         left: 0,
@@ -117,7 +117,7 @@ impl CommandRule for Instead {
     }
 }
 
-pub(super) static WRONG_DIRECTION: Kind = Kind {
+pub(super) static WRONG_DIRECTION: FaultKind = FaultKind {
     name: "wrong-direction",
     family: Family::Turntable,
     acts: Acts::Command,
@@ -130,7 +130,7 @@ pub(super) static WRONG_DIRECTION: Kind = Kind {
             way at the onset is not reversed: its set point is p. At the end of the fault the \
             turntable goes from where it is to the set point of that moment. The encoders show \
             where it really is.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "gimbal",
         takes: Takes::Choice(&[
             ("azimuth", "the inner gimbal"),
@@ -145,9 +145,9 @@ pub(super) static WRONG_DIRECTION: Kind = Kind {
     build: build_direction,
 };
 
-fn build_direction(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_direction(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let gimbal = values.choice("gimbal")?;
-    Ok(Rule::Command(Box::new(WrongDirection {
+    Ok(FaultRule::Command(Box::new(WrongDirection {
         azimuth: gimbal != "roll",
         roll: gimbal != "azimuth",
         pivot: GimbalCommand::default(),
@@ -181,7 +181,7 @@ impl CommandRule for WrongDirection {
     }
 }
 
-pub(super) static COMMAND_LATE: Kind = Kind {
+pub(super) static COMMAND_LATE: FaultKind = FaultKind {
     name: "command-late",
     family: Family::Turntable,
     acts: Acts::Command,
@@ -192,9 +192,9 @@ pub(super) static COMMAND_LATE: Kind = Kind {
             and begins late by the delay, while the core's timetable runs: it counts the end of the \
             move for the dwell. At the end of the fault the turntable has the set point of that \
             moment at once; what was still under way is the same or older, and is dropped.",
-    parameters: &[Parameter {
+    parameters: &[FaultParameter {
         name: "delay",
-        takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::Positive),
+        takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
         default: None,
         doc: "How late set points are: at least one sample period, at most a million.",
     }],
@@ -210,10 +210,10 @@ pub(super) static COMMAND_LATE: Kind = Kind {
 /// Longest delay of a set point, samples: 83 min at 200 Hz.
 const DELAY_MAX: u64 = 1_000_000;
 
-fn build_late(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_late(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let delay = samples(values, "delay", 1..=DELAY_MAX, setup)? as usize;
     let ring = alloc::vec![GimbalCommand::default(); delay];
-    Ok(Rule::Command(Box::new(CommandLate { ring, next: 0 })))
+    Ok(FaultRule::Command(Box::new(CommandLate { ring, next: 0 })))
 }
 
 #[derive(Clone, Debug)]
@@ -235,7 +235,7 @@ impl octant_state::State for CommandLate {
 
     fn load(
         &mut self,
-        from: &mut octant_state::Reader<'_>,
+        from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.next = from.value("next")?;
         octant_state::check_below("next", self.next as u64, self.ring.len() as u64 - 1)?;
@@ -256,7 +256,7 @@ impl CommandRule for CommandLate {
     }
 }
 
-pub(super) static COMMAND_LOST: Kind = Kind {
+pub(super) static COMMAND_LOST: FaultKind = FaultKind {
     name: "command-lost",
     family: Family::Turntable,
     acts: Acts::Command,
@@ -273,8 +273,8 @@ pub(super) static COMMAND_LOST: Kind = Kind {
     build: build_lost,
 };
 
-fn build_lost(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Command(Box::new(CommandLost { held: GimbalCommand::default() })))
+fn build_lost(_: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Command(Box::new(CommandLost { held: GimbalCommand::default() })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,13 +1,13 @@
 //! Drives that don't follow their commands.
 
 use super::gimbal::{GIMBAL, happens, limited};
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use octant_sample::disturbance::GimbalAction;
 
-pub(super) static STALL: Kind = Kind {
+pub(super) static STALL: FaultKind = FaultKind {
     name: "stall",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -29,11 +29,11 @@ pub(super) static STALL: Kind = Kind {
     build: build_stall,
 };
 
-fn build_stall(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_stall(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     happens(values, GimbalAction::Stall)
 }
 
-pub(super) static RUNAWAY: Kind = Kind {
+pub(super) static RUNAWAY: FaultKind = FaultKind {
     name: "runaway",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -48,9 +48,9 @@ pub(super) static RUNAWAY: Kind = Kind {
             cut-off: give the fault the duration after which they act.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "rate",
-            takes: Takes::Quantity(&[Dimension::AngularRate], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::AngularRate], ParameterBounds::NotZero),
             default: None,
             doc: "Rate, signed, at most 10 rad/s (573 deg/s).",
         },
@@ -60,12 +60,12 @@ pub(super) static RUNAWAY: Kind = Kind {
     build: build_runaway,
 };
 
-fn build_runaway(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_runaway(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let rate_radps = limited(values, "rate", 10.0, "rad/s")?;
     happens(values, GimbalAction::Runaway { rate_radps })
 }
 
-pub(super) static OVERSHOOT: Kind = Kind {
+pub(super) static OVERSHOOT: FaultKind = FaultKind {
     name: "overshoot",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -81,9 +81,9 @@ pub(super) static OVERSHOOT: Kind = Kind {
             that still turns. A real overshoot is that of the servo loop, smoother than this one.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "angle",
-            takes: Takes::Quantity(&[Dimension::Angle], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Angle], ParameterBounds::Positive),
             default: None,
             doc: "Angle a beyond the target, at most 1 rad.",
         },
@@ -97,7 +97,7 @@ pub(super) static OVERSHOOT: Kind = Kind {
     build: build_overshoot,
 };
 
-fn build_overshoot(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_overshoot(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let angle_rad = limited(values, "angle", 1.0, "rad")?;
     happens(values, GimbalAction::Overshoot { angle_rad })
 }

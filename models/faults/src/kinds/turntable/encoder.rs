@@ -1,14 +1,14 @@
 //! Encoders that read a wrong angle; no part moves.
 
 use super::gimbal::{GIMBAL, chosen, happens, limited};
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, PlantRule, Rule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, PlantRule, FaultRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction, Motor};
 
-pub(super) static ENCODER_SLIP: Kind = Kind {
+pub(super) static ENCODER_SLIP: FaultKind = FaultKind {
     name: "encoder-slip",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -23,9 +23,9 @@ pub(super) static ENCODER_SLIP: Kind = Kind {
             encoder: then a is a whole number of its lines.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "angle",
-            takes: Takes::Quantity(&[Dimension::Angle], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Angle], ParameterBounds::NotZero),
             default: None,
             doc: "Angle a, at most a turn.",
         },
@@ -35,12 +35,12 @@ pub(super) static ENCODER_SLIP: Kind = Kind {
     build: build_slip,
 };
 
-fn build_slip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_slip(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let angle_rad = limited(values, "angle", 2.0 * core::f64::consts::PI, "rad")?;
     happens(values, GimbalAction::EncoderSlip { angle_rad, flagged: false })
 }
 
-pub(super) static INDEX_LOSS: Kind = Kind {
+pub(super) static INDEX_LOSS: FaultKind = FaultKind {
     name: "index-loss",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -57,7 +57,7 @@ pub(super) static INDEX_LOSS: Kind = Kind {
             The drive of the turntable is not disturbed: it has its own feedback.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "flagged",
             takes: Takes::Flag,
             default: Some("true"),
@@ -72,9 +72,9 @@ pub(super) static INDEX_LOSS: Kind = Kind {
     build: build_index,
 };
 
-fn build_index(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_index(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let (gimbal, flagged) = (chosen(values)?, values.flag("flagged")?);
-    Ok(Rule::Plant(Box::new(IndexLoss { gimbal, flagged })))
+    Ok(FaultRule::Plant(Box::new(IndexLoss { gimbal, flagged })))
 }
 
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! Motions of the body against its drive: slip, play, ringing.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
 use crate::kinds::plant::{fixed, frequency, within};
-use crate::rule::Rule;
-use crate::setup::{BuildError, Setup};
+use crate::rule::FaultRule;
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction};
 
 /// Parameter for the gimbal.
-pub(super) const GIMBAL: Parameter = Parameter {
+pub(super) const GIMBAL: FaultParameter = FaultParameter {
     name: "gimbal",
     takes: Takes::Choice(&[
         ("azimuth", "the inner one, about body z"),
@@ -19,12 +19,12 @@ pub(super) const GIMBAL: Parameter = Parameter {
 };
 
 /// The gimbal that was chosen.
-pub(super) fn chosen(values: &Values) -> Result<Gimbal, BuildError> {
+pub(super) fn chosen(values: &Values) -> Result<Gimbal, FaultBuildError> {
     Ok(if values.choice(GIMBAL.name)? == "azimuth" { Gimbal::Azimuth } else { Gimbal::Roll })
 }
 
 /// Makes the rule of an action on the chosen gimbal.
-pub(super) fn happens(values: &Values, action: GimbalAction) -> Result<Rule, BuildError> {
+pub(super) fn happens(values: &Values, action: GimbalAction) -> Result<FaultRule, FaultBuildError> {
     Ok(fixed(Disturbance::Gimbal { gimbal: chosen(values)?, action }))
 }
 
@@ -34,13 +34,13 @@ pub(super) fn limited(
     name: &'static str,
     limit: f64,
     unit: &str,
-) -> Result<f64, BuildError> {
+) -> Result<f64, FaultBuildError> {
     let value = values.quantity(name)?;
     within(name, &[value], limit, unit)?;
     Ok(value)
 }
 
-pub(super) static GIMBAL_SLIP: Kind = Kind {
+pub(super) static GIMBAL_SLIP: FaultKind = FaultKind {
     name: "gimbal-slip",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -57,22 +57,22 @@ pub(super) static GIMBAL_SLIP: Kind = Kind {
             takes no harm; one that trusts encoders for attitude takes the slip in full.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "angle",
-            takes: Takes::Quantity(&[Dimension::Angle], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::Angle], ParameterBounds::NotZero),
             default: None,
             doc: "Angle a, at most half a turn.",
         },
-        Parameter {
+        FaultParameter {
             name: "within",
             takes: Takes::Quantity(
                 &[Dimension::Time],
-                Bounds::Within(1e-3, 1e5, "from 1 ms to 100000 s"),
+                ParameterBounds::Within(1e-3, 1e5, "from 1 ms to 100000 s"),
             ),
             default: Some("0.1 s"),
             doc: "Time T that it takes.",
         },
-        Parameter {
+        FaultParameter {
             name: "encoder",
             takes: Takes::Choice(&[
                 ("drive", "it sits on the drive and doesn't see the slip"),
@@ -87,14 +87,14 @@ pub(super) static GIMBAL_SLIP: Kind = Kind {
     build: build_slip,
 };
 
-fn build_slip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_slip(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let angle_rad = limited(values, "angle", core::f64::consts::PI, "rad")?;
     let within_s = values.quantity("within")?;
     let seen = values.choice("encoder")? == "body";
     happens(values, GimbalAction::Slip { angle_rad, within_s, seen })
 }
 
-pub(super) static BACKLASH: Kind = Kind {
+pub(super) static BACKLASH: FaultKind = FaultKind {
     name: "backlash",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -113,9 +113,9 @@ pub(super) static BACKLASH: Kind = Kind {
             to one side of its play.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "play",
-            takes: Takes::Quantity(&[Dimension::SmallAngle], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::SmallAngle], ParameterBounds::Positive),
             default: None,
             doc: "Play p between the two sides, at most 0.1 rad.",
         },
@@ -125,12 +125,12 @@ pub(super) static BACKLASH: Kind = Kind {
     build: build_backlash,
 };
 
-fn build_backlash(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build_backlash(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let play_rad = limited(values, "play", 0.1, "rad")?;
     happens(values, GimbalAction::Backlash { play_rad })
 }
 
-pub(super) static SHORT_SETTLE: Kind = Kind {
+pub(super) static SHORT_SETTLE: FaultKind = FaultKind {
     name: "short-settle",
     family: Family::Turntable,
     acts: Acts::Plant,
@@ -149,23 +149,23 @@ pub(super) static SHORT_SETTLE: Kind = Kind {
             settling time that the procedure allows is too short for it.",
     parameters: &[
         GIMBAL,
-        Parameter {
+        FaultParameter {
             name: "amplitude",
-            takes: Takes::Quantity(&[Dimension::SmallAngle], Bounds::NotZero),
+            takes: Takes::Quantity(&[Dimension::SmallAngle], ParameterBounds::NotZero),
             default: None,
             doc: "Amplitude A, at most 0.1 rad.",
         },
-        Parameter {
+        FaultParameter {
             name: "frequency",
-            takes: Takes::Quantity(&[Dimension::Frequency], Bounds::Positive),
+            takes: Takes::Quantity(&[Dimension::Frequency], ParameterBounds::Positive),
             default: Some("5 Hz"),
             doc: "Frequency f, at most 100 periods in a sample.",
         },
-        Parameter {
+        FaultParameter {
             name: "decay",
             takes: Takes::Quantity(
                 &[Dimension::Time],
-                Bounds::Within(1e-3, 1e3, "from 1 ms to 1000 s"),
+                ParameterBounds::Within(1e-3, 1e3, "from 1 ms to 1000 s"),
             ),
             default: Some("1 s"),
             doc: "Decay time τ.",
@@ -176,7 +176,7 @@ pub(super) static SHORT_SETTLE: Kind = Kind {
     build: build_ringing,
 };
 
-fn build_ringing(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+fn build_ringing(values: &Values, setup: &Setup) -> Result<FaultRule, FaultBuildError> {
     let amplitude_rad = limited(values, "amplitude", 0.1, "rad")?;
     let frequency_hz = frequency(values, "frequency", setup)?;
     let decay_s = values.quantity("decay")?;

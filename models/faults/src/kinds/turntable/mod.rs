@@ -5,9 +5,9 @@ mod drive;
 mod encoder;
 mod gimbal;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &gimbal::GIMBAL_SLIP,
     &encoder::ENCODER_SLIP,
     &encoder::INDEX_LOSS,

@@ -3,6 +3,6 @@
 mod power;
 mod table;
 
-use crate::catalogue::Kind;
+use crate::catalogue::FaultKind;
 
-pub(super) static KINDS: &[&Kind] = &[&power::RESTART, &power::BROWN_OUT, &table::STALE_TABLE];
+pub(super) static KINDS: &[&FaultKind] = &[&power::RESTART, &power::BROWN_OUT, &table::STALE_TABLE];

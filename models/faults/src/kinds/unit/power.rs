@@ -1,12 +1,12 @@
 //! Loss of the state of the unit under test.
 
-use crate::catalogue::{Acts, Example, Family, Kind, Lasts};
-use crate::rule::{Context, Rule, UnitEvent, UnitRule};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts};
+use crate::rule::{Context, FaultRule, UnitEvent, UnitRule};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 
-pub(super) static RESTART: Kind = Kind {
+pub(super) static RESTART: FaultKind = FaultKind {
     name: "restart",
     family: Family::Unit,
     acts: Acts::Unit,
@@ -30,8 +30,8 @@ pub(super) static RESTART: Kind = Kind {
     build: build_restart,
 };
 
-fn build_restart(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Unit(Box::new(Once { event: UnitEvent::Restart })))
+fn build_restart(_: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Unit(Box::new(Once { event: UnitEvent::Restart })))
 }
 
 /// One event at each onset.
@@ -48,7 +48,7 @@ impl UnitRule for Once {
     }
 }
 
-pub(super) static BROWN_OUT: Kind = Kind {
+pub(super) static BROWN_OUT: FaultKind = FaultKind {
     name: "brown-out",
     family: Family::Unit,
     acts: Acts::Unit,
@@ -66,8 +66,8 @@ pub(super) static BROWN_OUT: Kind = Kind {
     build: build_brown_out,
 };
 
-fn build_brown_out(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Unit(Box::new(BrownOut)))
+fn build_brown_out(_: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
+    Ok(FaultRule::Unit(Box::new(BrownOut)))
 }
 
 #[derive(Clone, Debug)]

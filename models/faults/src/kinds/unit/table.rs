@@ -1,14 +1,14 @@
 //! Start of the unit under test from a wrong calibration.
 
 use super::power::Once;
-use crate::catalogue::{Acts, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Rule, UnitEvent};
-use crate::setup::{BuildError, Setup};
+use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{FaultRule, UnitEvent};
+use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use octant_sample::Parameters;
 
-pub(super) static STALE_TABLE: Kind = Kind {
+pub(super) static STALE_TABLE: FaultKind = FaultKind {
     name: "stale-table",
     family: Family::Unit,
     acts: Acts::Unit,
@@ -27,31 +27,31 @@ pub(super) static STALE_TABLE: Kind = Kind {
             was made at another temperature, before a repair or for another instrument is such a \
             one. The epoch counts as altered in which the unit started.",
     parameters: &[
-        Parameter {
+        FaultParameter {
             name: "gyro_bias",
             takes: Takes::Vector(&[Dimension::GyroBias]),
             default: Some(r#"["0 deg/h", "0 deg/h", "0 deg/h"]"#),
             doc: "Offset of the stored gyro biases, x, y, z.",
         },
-        Parameter {
+        FaultParameter {
             name: "gyro_scale",
             takes: Takes::Vector(&[Dimension::Ratio]),
             default: Some(r#"["0 ppm", "0 ppm", "0 ppm"]"#),
             doc: "Offset of the stored gyro scale factor errors, x, y, z.",
         },
-        Parameter {
+        FaultParameter {
             name: "g_dependent",
             takes: Takes::Vector(&[Dimension::GDependent]),
             default: Some(r#"["0 deg/h/g", "0 deg/h/g", "0 deg/h/g"]"#),
             doc: "Offset of the stored g-dependent gyro biases G_xx, G_yy, G_zz.",
         },
-        Parameter {
+        FaultParameter {
             name: "accel_bias",
             takes: Takes::Vector(&[Dimension::AccelBias]),
             default: Some(r#"["0 ug", "0 ug", "0 ug"]"#),
             doc: "Offset of the stored accelerometer biases, x, y, z.",
         },
-        Parameter {
+        FaultParameter {
             name: "accel_scale",
             takes: Takes::Vector(&[Dimension::Ratio]),
             default: Some(r#"["0 ppm", "0 ppm", "0 ppm"]"#),
@@ -66,7 +66,7 @@ pub(super) static STALE_TABLE: Kind = Kind {
     build,
 };
 
-fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let [xx, yy, zz] = values.vector("g_dependent")?;
     let offset = Parameters {
         gyro_bias: values.vector("gyro_bias")?,
@@ -79,8 +79,8 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     if offset == Parameters::default() {
         let problem = "every offset is 0: the table would be the right one, at least one other \
                        than 0 is expected";
-        return Err(BuildError::value("gyro_bias", problem));
+        return Err(FaultBuildError::value("gyro_bias", problem));
     }
     let event = UnitEvent::RestartWith { offset };
-    Ok(Rule::Unit(Box::new(Once { event })))
+    Ok(FaultRule::Unit(Box::new(Once { event })))
 }

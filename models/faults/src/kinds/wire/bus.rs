@@ -1,10 +1,10 @@
 //! Faults of a CAN bus.
 
 use super::rule::{SHARE, WAYS, count, number, rule, time, wire};
-use crate::catalogue::{Kind, Lasts};
+use crate::catalogue::{FaultKind, Lasts};
 use crate::wire::WireAction;
 
-pub(super) static ERROR_FRAME: Kind = wire(
+pub(super) static ERROR_FRAME: FaultKind = wire(
     "can-error-frame",
     "Error frames break up frames on the bus.",
     "While it lasts, each frame that it acts on is broken up by an error frame: its sender sends it again \
@@ -15,7 +15,7 @@ pub(super) static ERROR_FRAME: Kind = wire(
     |values, setup| rule(values, setup, WireAction::ErrorFrame),
 );
 
-pub(super) static ARBITRATION: Kind = wire(
+pub(super) static ARBITRATION: FaultKind = wire(
     "can-arbitration-lost",
     "Frames lose the arbitration against another node.",
     "While it lasts, before each frame that it acts on another node sends one with an identifier that wins: \
@@ -25,7 +25,7 @@ pub(super) static ARBITRATION: Kind = wire(
     |values, setup| rule(values, setup, WireAction::ArbitrationLost),
 );
 
-pub(super) static OFF: Kind = wire(
+pub(super) static OFF: FaultKind = wire(
     "can-bus-off",
     "The harness's controller leaves the bus for a time.",
     "At its onset the controller reports that it has left the bus. For `off` of host time nothing is sent \
@@ -37,7 +37,7 @@ pub(super) static OFF: Kind = wire(
     |values, setup| rule(values, setup, WireAction::BusOff { off_s: values.quantity("off")? }),
 );
 
-pub(super) static COLLISION: Kind = wire(
+pub(super) static COLLISION: FaultKind = wire(
     "can-id-collision",
     "Another node sends under our identifiers.",
     "While it lasts, before each frame that it acts on comes one of another node with the same identifier \
@@ -48,7 +48,7 @@ pub(super) static COLLISION: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Collision),
 );
 
-pub(super) static OVERLOAD: Kind = wire(
+pub(super) static OVERLOAD: FaultKind = wire(
     "can-overload",
     "The bus is full of frames of others.",
     "While it lasts, each frame that it acts on waits until `frames` others have been sent, which take \

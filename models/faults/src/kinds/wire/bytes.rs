@@ -1,12 +1,12 @@
 //! Frames that arrive damaged.
 
 use super::rule::{SHARE, WAYS, rule, wire};
-use crate::catalogue::{Kind, Lasts, Parameter};
+use crate::catalogue::{FaultKind, Lasts, FaultParameter};
 use crate::wire::WireAction;
 
-const PARAMETERS: &[Parameter] = &[WAYS, SHARE];
+const PARAMETERS: &[FaultParameter] = &[WAYS, SHARE];
 
-pub(super) static FLIP: Kind = wire(
+pub(super) static FLIP: FaultKind = wire(
     "wire-flip",
     "A bit of a frame is the other one.",
     "While it lasts, one bit of each frame that it acts on is the other one; which one is drawn, each \
@@ -21,7 +21,7 @@ pub(super) static FLIP: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Flip),
 );
 
-pub(super) static INSERT: Kind = wire(
+pub(super) static INSERT: FaultKind = wire(
     "wire-insert",
     "A byte is put into a frame.",
     "While it lasts, a byte is put into each frame that it acts on, at a place and of a value that are \
@@ -32,7 +32,7 @@ pub(super) static INSERT: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Insert),
 );
 
-pub(super) static DROP: Kind = wire(
+pub(super) static DROP: FaultKind = wire(
     "wire-drop",
     "A byte is left out of a frame.",
     "While it lasts, a byte of each frame that it acts on is left out, at a place that is drawn: the way \
@@ -43,7 +43,7 @@ pub(super) static DROP: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Drop),
 );
 
-pub(super) static TRUNCATE: Kind = wire(
+pub(super) static TRUNCATE: FaultKind = wire(
     "wire-truncate",
     "The end of a frame is cut off.",
     "While it lasts, each frame that it acts on ends early, at a place that is drawn. On a line what is \
@@ -54,7 +54,7 @@ pub(super) static TRUNCATE: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Truncate),
 );
 
-pub(super) static CHECKSUM: Kind = wire(
+pub(super) static CHECKSUM: FaultKind = wire(
     "wire-checksum",
     "The checksum of a frame is wrong.",
     "While it lasts, a bit of the last byte before the end of each frame that it acts on is the other \

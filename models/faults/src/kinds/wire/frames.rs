@@ -1,12 +1,12 @@
 //! Frames that are lost, late, doubled, in another order, or foreign.
 
 use super::rule::{SHARE, WAYS, count, number, rule, time, wire};
-use crate::catalogue::{Kind, Lasts, Parameter};
+use crate::catalogue::{FaultKind, Lasts, FaultParameter};
 use crate::wire::WireAction;
 
-const PARAMETERS: &[Parameter] = &[WAYS, SHARE];
+const PARAMETERS: &[FaultParameter] = &[WAYS, SHARE];
 
-pub(super) static LOSS: Kind = wire(
+pub(super) static LOSS: FaultKind = wire(
     "wire-loss",
     "Frames are lost: all of them, or some at random.",
     "While it lasts, each frame is lost with the probability `share`, each on its own: a datagram that \
@@ -18,7 +18,7 @@ pub(super) static LOSS: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Lose),
 );
 
-pub(super) static DUPLICATE: Kind = wire(
+pub(super) static DUPLICATE: FaultKind = wire(
     "wire-duplicate",
     "Frames come twice.",
     "While it lasts, each frame that it acts on is sent twice, one right after the other. A device never \
@@ -28,7 +28,7 @@ pub(super) static DUPLICATE: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Duplicate),
 );
 
-pub(super) static REORDER: Kind = wire(
+pub(super) static REORDER: FaultKind = wire(
     "wire-reorder",
     "Frames overtake each other.",
     "While it lasts, each frame that it acts on is held back until the next one of its way was sent. In \
@@ -38,7 +38,7 @@ pub(super) static REORDER: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Reorder),
 );
 
-pub(super) static DELAY: Kind = wire(
+pub(super) static DELAY: FaultKind = wire(
     "wire-delay",
     "Frames come late, by a time and a jitter.",
     "While it lasts, each frame that it acts on arrives later by\n\n\
@@ -62,7 +62,7 @@ pub(super) static DELAY: Kind = wire(
     },
 );
 
-pub(super) static REPLAY: Kind = wire(
+pub(super) static REPLAY: FaultKind = wire(
     "wire-replay",
     "An old frame comes again.",
     "While it lasts, before each frame that it acts on comes one again that was sent `age` frames ago on \
@@ -74,7 +74,7 @@ pub(super) static REPLAY: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Replay { age: number(values, "age")? }),
 );
 
-pub(super) static SPLIT: Kind = wire(
+pub(super) static SPLIT: FaultKind = wire(
     "wire-split",
     "A frame comes in pieces with pauses between them.",
     "While it lasts, each frame that it acts on comes in pieces of about the same length, with pauses \
@@ -96,7 +96,7 @@ pub(super) static SPLIT: Kind = wire(
     },
 );
 
-pub(super) static COALESCE: Kind = wire(
+pub(super) static COALESCE: FaultKind = wire(
     "wire-coalesce",
     "Frames wait for the next one, and come together.",
     "While it lasts, each frame that it acts on waits until the next one of its way is sent, and both \
@@ -107,7 +107,7 @@ pub(super) static COALESCE: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Coalesce),
 );
 
-pub(super) static BABBLE: Kind = wire(
+pub(super) static BABBLE: FaultKind = wire(
     "wire-babble",
     "Something else is sent between the frames.",
     "While it lasts, before each frame that it acts on come `count` bytes that are drawn, zeros among \

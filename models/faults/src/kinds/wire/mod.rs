@@ -6,10 +6,10 @@ mod frames;
 mod port;
 mod rule;
 
-use crate::catalogue::{Acts, Kind};
+use crate::catalogue::{Acts, FaultKind};
 use crate::wire::Medium;
 
-pub(super) static KINDS: &[&Kind] = &[
+pub(super) static KINDS: &[&FaultKind] = &[
     &bytes::FLIP,
     &bytes::INSERT,
     &bytes::DROP,
@@ -36,7 +36,7 @@ pub(super) static KINDS: &[&Kind] = &[
 
 /// Returns whether a kind of the wire can happen on a medium.
 #[must_use]
-pub fn happens_on(kind: &Kind, medium: Medium) -> bool {
+pub fn happens_on(kind: &FaultKind, medium: Medium) -> bool {
     let line_or_datagrams =
         ["wire-insert", "wire-drop", "wire-truncate", "wire-checksum", "wire-coalesce"];
     let line = ["wire-split", "serial-break", "serial-framing"];

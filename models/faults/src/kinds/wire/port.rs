@@ -1,10 +1,10 @@
 //! Faults of a port.
 
 use super::rule::{SHARE, WAYS, rule, time, wire};
-use crate::catalogue::{Kind, Lasts};
+use crate::catalogue::{FaultKind, Lasts};
 use crate::wire::WireAction;
 
-pub(super) static BREAK: Kind = wire(
+pub(super) static BREAK: FaultKind = wire(
     "serial-break",
     "A serial line is held in a break.",
     "From its onset the line is held for `length` of host time. What is sent in that time is lost, and \
@@ -15,7 +15,7 @@ pub(super) static BREAK: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Break { lasts_s: values.quantity("length")? }),
 );
 
-pub(super) static FRAMING: Kind = wire(
+pub(super) static FRAMING: FaultKind = wire(
     "serial-framing",
     "Bytes of a serial line have no stop bit.",
     "While it lasts, one byte of each frame that it acts on, at a place that is drawn, is read as a zero: \
@@ -26,7 +26,7 @@ pub(super) static FRAMING: Kind = wire(
     |values, setup| rule(values, setup, WireAction::Framing),
 );
 
-pub(super) static HANG_UP: Kind = wire(
+pub(super) static HANG_UP: FaultKind = wire(
     "wire-hang-up",
     "The port goes away, as when its plug is pulled, and comes back.",
     "At its onset the harness's port is closed, and can't be opened again before `away` of host time has \
@@ -38,7 +38,7 @@ pub(super) static HANG_UP: Kind = wire(
     |values, setup| rule(values, setup, WireAction::HangUp { away_s: values.quantity("away")? }),
 );
 
-pub(super) static SLOW_READER: Kind = wire(
+pub(super) static SLOW_READER: FaultKind = wire(
     "wire-slow-reader",
     "The harness takes nothing from its port for a time.",
     "From its onset nothing is read for `pause` of host time: what the device sends fills the buffers on \
@@ -82,7 +82,7 @@ mod tests {
                 };
                 values.set(parameter.name, value);
             }
-            let crate::rule::Rule::Wire(mut rule) = (kind.build)(&values, &setup).unwrap() else {
+            let crate::rule::FaultRule::Wire(mut rule) = (kind.build)(&values, &setup).unwrap() else {
                 panic!("{} is no fault of a wire", kind.name);
             };
             let output = octant_sample::Output::default();

@@ -1,8 +1,8 @@
 //! The rule of all faults of the wire, and parameters that they share.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, WireRule};
-use crate::setup::{BuildError, Setup, Stream};
+use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::rule::{Context, FaultRule, WireRule};
+use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use crate::wire::{Ways, WireAction, WireFault};
 use alloc::boxed::Box;
@@ -10,7 +10,7 @@ use octant_random::philox::block;
 use octant_random::stream::Phase;
 
 /// Parameter for the directions in which a fault acts.
-pub(super) const WAYS: Parameter = Parameter {
+pub(super) const WAYS: FaultParameter = FaultParameter {
     name: "ways",
     takes: Takes::Choice(&[
         ("both", "what is sent to the device and what it answers"),
@@ -22,9 +22,9 @@ pub(super) const WAYS: Parameter = Parameter {
 };
 
 /// Share of the frames that a fault acts on.
-pub(super) const SHARE: Parameter = Parameter {
+pub(super) const SHARE: FaultParameter = FaultParameter {
     name: "share",
-    takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Within(0.0, 1.0, "above 0, up to 100 %")),
+    takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::Within(0.0, 1.0, "above 0, up to 100 %")),
     default: Some("100 %"),
     doc: "Probability that it acts on a frame, each on its own, above 0; 100 %: on all.",
 };
@@ -33,30 +33,30 @@ pub(super) const fn wire(
     name: &'static str,
     summary: &'static str,
     model: &'static str,
-    parameters: &'static [Parameter],
+    parameters: &'static [FaultParameter],
     lasts: Lasts,
-    build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
-) -> Kind {
+    build: fn(&Values, &Setup) -> Result<FaultRule, FaultBuildError>,
+) -> FaultKind {
     let (family, acts, example) = (Family::Wire, Acts::Wire, Example::NONE);
-    Kind { name, family, acts, summary, model, parameters, lasts, example, build }
+    FaultKind { name, family, acts, summary, model, parameters, lasts, example, build }
 }
 
 /// Makes the rule of a fault that acts on frames.
-pub(super) fn rule(values: &Values, setup: &Setup, action: WireAction) -> Result<Rule, BuildError> {
+pub(super) fn rule(values: &Values, setup: &Setup, action: WireAction) -> Result<FaultRule, FaultBuildError> {
     let chance = match values.get(SHARE.name) {
         Some(_) => values.quantity(SHARE.name)?,
         None => 1.0,
     };
     if !(chance > 0.0 && chance <= 1.0) {
         let problem = alloc::format!("{chance}, a probability above 0 up to 1 is expected");
-        return Err(BuildError::value(SHARE.name, problem));
+        return Err(FaultBuildError::value(SHARE.name, problem));
     }
     let ways = match values.get(WAYS.name) {
         Some(_) => values.choice(WAYS.name)?,
         None => "both",
     };
     let ways = Ways { to_device: ways != "to-harness", to_harness: ways != "to-device" };
-    Ok(Rule::Wire(Box::new(Wire { ways, chance, action, stream: setup.stream("wire") })))
+    Ok(FaultRule::Wire(Box::new(Wire { ways, chance, action, stream: setup.stream("wire") })))
 }
 
 #[derive(Clone, Debug)]
@@ -84,10 +84,10 @@ pub(super) const fn time(
     name: &'static str,
     default: &'static str,
     doc: &'static str,
-) -> Parameter {
-    Parameter {
+) -> FaultParameter {
+    FaultParameter {
         name,
-        takes: Takes::Quantity(&[Dimension::Time], Bounds::Within(0.0, 3600.0, "from 0 s to 1 h")),
+        takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Within(0.0, 3600.0, "from 0 s to 1 h")),
         default: Some(default),
         doc,
     }
@@ -100,10 +100,10 @@ pub(super) const fn count(
     to: i64,
     default: &'static str,
     doc: &'static str,
-) -> Parameter {
-    Parameter { name, takes: Takes::Integer(from, to), default: Some(default), doc }
+) -> FaultParameter {
+    FaultParameter { name, takes: Takes::Integer(from, to), default: Some(default), doc }
 }
 
-pub(super) fn number(values: &Values, name: &'static str) -> Result<u32, BuildError> {
-    u32::try_from(values.integer(name)?).map_err(|_| BuildError::missing(name))
+pub(super) fn number(values: &Values, name: &'static str) -> Result<u32, FaultBuildError> {
+    u32::try_from(values.integer(name)?).map_err(|_| FaultBuildError::missing(name))
 }

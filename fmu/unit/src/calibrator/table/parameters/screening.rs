@@ -2,8 +2,8 @@
 
 use crate::calibrator::table::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Real};
-use crate::table::Variable;
+use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
+use crate::table::DeclaredVariable;
 use octant_calibration::config::{Base, Gate, Screening};
 use octant_earth::units::ARCSEC;
 
@@ -13,11 +13,11 @@ const HARDENED_GATE: Gate = HARDENED.gate.expect("it has a gate");
 const HARDENED_STUCK_SAMPLES: u32 = HARDENED.stuck_samples.expect("it has a test");
 const HARDENED_DRIFT_SIGMAS: f64 = HARDENED.drift_sigmas.expect("it has a limit");
 
-pub(super) const GATE: [Variable; 7] = [
-    Variable::parameter("screening.gate.enabled", Boolean)
+pub(super) const GATE: [DeclaredVariable; 7] = [
+    DeclaredVariable::parameter("screening.gate.enabled", Boolean)
         .start(&[1.0])
         .described("Innovations are gated; else every measurement is used."),
-    Variable::parameter("screening.gate.nis", Real)
+    DeclaredVariable::parameter("screening.gate.nis", Real)
         .min(0.0)
         .nominal(36.0)
         .start(&[HARDENED_GATE.nis])
@@ -25,25 +25,25 @@ pub(super) const GATE: [Variable; 7] = [
             "Gate: normalized innovation squared (three axes) above which a measurement is \
              rejected, above 0.",
         ),
-    Variable::parameter("screening.gate.rejections", Count)
+    DeclaredVariable::parameter("screening.gate.rejections", Count)
         .within(0.0, u32::MAX as f64)
         .start(&[HARDENED_GATE.rejections as f64])
         .described("Gate: rejections in a row that start a recovery."),
-    Variable::parameter("screening.gate.recovery", Enumeration(&of::RECOVERY))
+    DeclaredVariable::parameter("screening.gate.recovery", Enumeration(&of::RECOVERY))
         .described("Gate: what a recovery does."),
-    Variable::parameter("screening.gate.reset_attitude", Real)
+    DeclaredVariable::parameter("screening.gate.reset_attitude", Real)
         .of(&q::SMALL_ANGLE)
         .min(0.0)
         .nominal(600.0 * ARCSEC)
         .start(&[600.0 * ARCSEC])
         .described("Gate, recovery by reset: standard deviation of attitude."),
-    Variable::parameter("screening.gate.reset_velocity", Real)
+    DeclaredVariable::parameter("screening.gate.reset_velocity", Real)
         .of(&q::VELOCITY)
         .min(0.0)
         .nominal(1.0)
         .start(&[1.0])
         .described("Gate, recovery by reset: standard deviation of velocity."),
-    Variable::parameter("screening.gate.reset_position", Real)
+    DeclaredVariable::parameter("screening.gate.reset_position", Real)
         .of(&q::LENGTH)
         .min(0.0)
         .nominal(10.0)
@@ -51,28 +51,28 @@ pub(super) const GATE: [Variable; 7] = [
         .described("Gate, recovery by reset: standard deviation of position."),
 ];
 
-pub(super) const SCREENS: [Variable; 9] = [
-    Variable::parameter("screening.stuck.enabled", Boolean)
+pub(super) const SCREENS: [DeclaredVariable; 9] = [
+    DeclaredVariable::parameter("screening.stuck.enabled", Boolean)
         .start(&[1.0])
         .described("Channels that give identical counts are flagged as stuck."),
-    Variable::parameter("screening.stuck.samples", Count)
+    DeclaredVariable::parameter("screening.stuck.samples", Count)
         .within(0.0, u32::MAX as f64)
         .start(&[HARDENED_STUCK_SAMPLES as f64])
         .described("Identical counts in a row that make a channel stuck, at least 2."),
-    Variable::parameter("screening.jumps", Boolean)
+    DeclaredVariable::parameter("screening.jumps", Boolean)
         .start(&[1.0])
         .described("Samples that jump as no motion of turntable and base can are not believed."),
-    Variable::parameter("screening.bridging", Boolean).start(&[1.0]).described(
+    DeclaredVariable::parameter("screening.bridging", Boolean).start(&[1.0]).described(
         "Samples that are missing, invalid, stuck or not believed are bridged by what is known of \
          the motion; else they are used as they are.",
     ),
-    Variable::parameter("screening.gimbals", Boolean)
+    DeclaredVariable::parameter("screening.gimbals", Boolean)
         .start(&[1.0])
         .described("Turns by gyros and by encoders are compared, and encoders with the set point."),
-    Variable::parameter("screening.drift.enabled", Boolean)
+    DeclaredVariable::parameter("screening.drift.enabled", Boolean)
         .start(&[1.0])
         .described("A calibration whose parameters drift is refused."),
-    Variable::parameter("screening.drift.sigmas", Real)
+    DeclaredVariable::parameter("screening.drift.sigmas", Real)
         .min(0.0)
         .nominal(6.0)
         .start(&[HARDENED_DRIFT_SIGMAS])
@@ -80,10 +80,10 @@ pub(super) const SCREENS: [Variable; 9] = [
             "Correction of a parameter over a stretch of the calibration, in the standard \
              deviations that it should have, above which it drifts; above 0.",
         ),
-    Variable::parameter("screening.checkpoints", Boolean)
+    DeclaredVariable::parameter("screening.checkpoints", Boolean)
         .start(&[1.0])
         .described("A recovery goes back to the parameters of one to two minutes before it."),
-    Variable::parameter("screening.aiding_stamps", Boolean)
+    DeclaredVariable::parameter("screening.aiding_stamps", Boolean)
         .start(&[1.0])
         .described("A reference that doesn't carry the stamp of its sample is not used."),
 ];
@@ -91,7 +91,7 @@ pub(super) const SCREENS: [Variable; 9] = [
 macro_rules! bounds {
     ($($name:literal $quantity:ident $nominal:expr, $start:expr, $text:literal;)*) => {
         [$(
-            Variable::parameter(concat!("screening.", $name), Real)
+            DeclaredVariable::parameter(concat!("screening.", $name), Real)
                 .of(&q::$quantity)
                 .min(0.0)
                 .nominal($nominal)
@@ -101,12 +101,12 @@ macro_rules! bounds {
     };
 }
 
-pub(super) const BASE: [Variable; 1] =
-    [Variable::parameter("screening.base.kind", Enumeration(&of::BASE)).described(
+pub(super) const BASE: [DeclaredVariable; 1] =
+    [DeclaredVariable::parameter("screening.base.kind", Enumeration(&of::BASE)).described(
         "What the instrument's case stands on: the limits of the screens follow from it.",
     )];
 
-pub(super) const BOUNDS: [Variable; 10] = bounds! {
+pub(super) const BOUNDS: [DeclaredVariable; 10] = bounds! {
     "base.angle" ANGLE 0.1, 0.0, "Moving base: largest angle from the mean attitude.";
     "base.rate" TURN_RATE 0.1, 0.0, "Moving base: largest angular rate.";
     "base.acceleration" ANGULAR_ACCELERATION 0.1, 0.0, "Moving base: largest angular acceleration.";
