@@ -5,15 +5,16 @@
 
 use octant_calibration::table::CalibrationTable;
 use octant_fmu_check::{check_archive, check_description, show};
-use octant_fmu_host::archive::{Archive, Limits};
-use octant_fmu_host::description::units::{Conversion, known};
+use octant_fmu_host::archive::{Archive, ArchiveLimits};
+use octant_fmu_host::description::units::{UnitConversion, known};
 use octant_fmu_host::description::{decode, read, read_bytes};
 use octant_recorder::reader;
 use octant_scenario::Scenario;
 use octant_scenario::recorded::{
-    Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
+    AxisColumn, Delimiter, RecordedColumn, RecordedQuantity, TextFiles, TextMapping, TimeColumn,
+    TimeUnit,
 };
-use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_source::{Epoch, Source, TextSource};
 use std::path::Path;
 
@@ -21,11 +22,11 @@ use std::path::Path;
 pub(crate) fn scenario(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(scenario) = Scenario::parse(text, "input.toml", Path::new(""), &[]) else { return };
-    let draws = Draws::of(&scenario, &Seeded(scenario.seed));
+    let draws = DrawnValues::of(&scenario, &Seeded(scenario.seed));
     let resolved = scenario.to_resolved_toml(scenario.seed, &draws);
     let again = Scenario::parse(&resolved, "resolved.toml", Path::new(""), &[])
         .expect("a resolved scenario is a scenario");
-    let draws = Draws::of(&again, &Seeded(again.seed));
+    let draws = DrawnValues::of(&again, &Seeded(again.seed));
     assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
 }
 
@@ -37,13 +38,13 @@ pub(crate) fn recording(bytes: &[u8]) {
 /// An FMU: refused, or every entry read as the archive says, unpacked where nothing speaks against it,
 /// and checked.
 pub(crate) fn fmu(bytes: &[u8]) {
-    let limits = Limits {
+    let limits = ArchiveLimits {
         entries: 200,
         directory_bytes: 64 << 10,
         unpacked_bytes: 256 << 10,
         ratio_free_bytes: 64 << 10,
         read_bytes: 128 << 10,
-        ..Limits::DEFAULT
+        ..ArchiveLimits::DEFAULT
     };
     let open = || Archive::survey_bytes("input.fmu", bytes.to_vec(), limits);
     let Ok(mut archive) = open() else { return };
@@ -81,7 +82,7 @@ pub(crate) fn description(bytes: &[u8]) {
         for variable in &description.variables {
             let _ = description.elements(variable);
             for wanted in ["rad", "m/s", "K"] {
-                if let Ok(conversion) = Conversion::of(&description, variable, wanted) {
+                if let Ok(conversion) = UnitConversion::of(&description, variable, wanted) {
                     assert!(conversion.factor.is_finite() && conversion.offset.is_finite());
                 }
             }
@@ -99,13 +100,14 @@ pub(crate) fn text(bytes: &[u8]) {
     let path = std::env::temp_dir().join(format!("octant-text-{}.txt", std::process::id()));
     std::fs::write(&path, bytes).expect("the temporary folder can be written");
     for delimiter in [Delimiter::Blanks, Delimiter::Character(b',')] {
-        let axis = |number| Axis { column: Column::Number(number), offset: 0.0, scale: 1.0 };
+        let axis =
+            |number| AxisColumn { column: RecordedColumn::Number(number), offset: 0.0, scale: 1.0 };
         let mapping = TextMapping {
             files: TextFiles::One(path.clone()),
-            time: Some(TimeColumn { column: Column::Number(1), unit: TimeUnit::Second }),
+            time: Some(TimeColumn { column: RecordedColumn::Number(1), unit: TimeUnit::Second }),
             gyro: [axis(2), axis(3), axis(4)],
             accelerometer: [axis(5), axis(6), axis(7)],
-            quantity: Quantity::Rates,
+            quantity: RecordedQuantity::Rates,
             nominal_rate_hz: 100.0,
             split: 1,
             delimiter,

@@ -4,7 +4,7 @@
 //! difference.
 
 use octant_instruments::{
-    AnyDecoder, Axes, ReadingCounters, FramingEvent, Protocol, Sampler, SamplerSettings, Unusable,
+    AnyDecoder, Axes, FramingEvent, Protocol, ReadingCounters, Sampler, SamplerSettings, Unusable,
 };
 
 /// The protocol that the first byte chooses, in pieces of the length that the second one says.

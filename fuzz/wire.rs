@@ -3,8 +3,8 @@
 //! Nothing may panic, every byte and frame has to be accounted for, and a message that was accepted
 //! has to be one that can be sent.
 
-use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
-use octant_wire::message::{ClockTime, MessageKind, Message, EndRole};
+use octant_wire::can::{self, BusFrame, CanVersion, Reassembler};
+use octant_wire::message::{ClockTime, EndRole, Message, MessageKind};
 use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 
 /// A message that was received goes out and comes back as it was, on both encodings.
@@ -85,7 +85,9 @@ pub(crate) fn can(bytes: &[u8]) {
                 continue;
             };
             frames += 1;
-            if let Some(can::ReassemblyEvent::Received { message, .. }) = reassembler.receive(&frame) {
+            if let Some(can::ReassemblyEvent::Received { message, .. }) =
+                reassembler.receive(&frame)
+            {
                 holds(&message);
                 messages += 1;
             }

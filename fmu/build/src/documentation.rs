@@ -6,7 +6,10 @@ use super::standard::Standard;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use octant_base::number::plain;
 use octant_fmu::c::CATEGORIES;
-use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredQuantity, Ticks, DeclaredVariability, DeclaredVariable};
+use octant_fmu::table::{
+    DeclaredCausality, DeclaredQuantity, DeclaredVariability, DeclaredVariable, ElementType, Model,
+    Ticks,
+};
 
 /// Builds the page.
 pub(super) fn documentation(

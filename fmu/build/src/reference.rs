@@ -12,7 +12,7 @@ use super::element::{list, number};
 use super::names::scalar_names;
 use super::standard::Standard;
 use octant_fmu::component::ModelComponent;
-use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredVariable};
+use octant_fmu::table::{DeclaredCausality, DeclaredVariable, ElementType, Model};
 use octant_fmu::values::CellValues;
 use std::fmt::Write;
 
@@ -47,7 +47,8 @@ impl Reference {
 ///
 /// # Errors
 /// If the start values contradict themselves, or a step is refused: a mistake in the tables.
-pub(super) fn closed_loop<A: ModelComponent, B: ModelComponent>() -> Result<[Reference; 2], String> {
+pub(super) fn closed_loop<A: ModelComponent, B: ModelComponent>() -> Result<[Reference; 2], String>
+{
     let (mut a_values, mut b_values) = (CellValues::new(A::MODEL), CellValues::new(B::MODEL));
     let mut a = A::initialize(&mut a_values).map_err(|error| error.to_string())?;
     let mut b = B::initialize(&mut b_values).map_err(|error| error.to_string())?;
@@ -79,7 +80,8 @@ fn wires(from: &Model, to: &Model) -> Vec<(usize, usize)> {
     outputs
         .filter_map(|(slot, output)| {
             let (other, input) = to.find(output.name)?;
-            let same = input.causality == DeclaredCausality::Input && input.slots() == output.slots();
+            let same =
+                input.causality == DeclaredCausality::Input && input.slots() == output.slots();
             same.then(|| (0..output.slots()).map(move |i| (slot + i, other + i)))
         })
         .flatten()

@@ -3,7 +3,7 @@
 use core::array::TryFromSliceError;
 use octant_fmu::component::ModelComponent;
 use octant_fmu::quantities;
-use octant_fmu::table::{DeclaredEnumeration, ElementType, Model, DeclaredVariable};
+use octant_fmu::table::{DeclaredEnumeration, DeclaredVariable, ElementType, Model};
 use octant_fmu::values::CellValues;
 
 static COLOUR: DeclaredEnumeration = DeclaredEnumeration {
@@ -25,8 +25,10 @@ pub(super) static SAMPLE: Model = Model {
             .within(-0.03, 0.03)
             .nominal(1e-6),
         DeclaredVariable::input("imu.valid", ElementType::Boolean).described("There is a sample"),
-        DeclaredVariable::input("reference.kind", ElementType::Enumeration(&COLOUR)).described("What is given"),
-        DeclaredVariable::input("imu.sequence", ElementType::Count).described("Number of the sample"),
+        DeclaredVariable::input("reference.kind", ElementType::Enumeration(&COLOUR))
+            .described("What is given"),
+        DeclaredVariable::input("imu.sequence", ElementType::Count)
+            .described("Number of the sample"),
         DeclaredVariable {
             depends_on: &["imu.valid", "gyro.delta_theta"],
             ..DeclaredVariable::output("navigation.latitude", ElementType::Real)
@@ -35,7 +37,8 @@ pub(super) static SAMPLE: Model = Model {
                 .within(-1.6, 1.6)
         },
         DeclaredVariable::output("health", ElementType::Integer).described("Flags").elements(2),
-        DeclaredVariable::output("answer.sequence", ElementType::Count).described("Number of the sample answered"),
+        DeclaredVariable::output("answer.sequence", ElementType::Count)
+            .described("Number of the sample answered"),
         DeclaredVariable::parameter("sequence.azimuth", ElementType::Real)
             .described("Stops")
             .elements(4)

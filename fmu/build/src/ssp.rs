@@ -6,7 +6,7 @@
 use super::describe::{TOOL, base_unit, units};
 use super::element::{Element, number};
 use super::names::scalar_names;
-use octant_fmu::table::{DeclaredCausality, ElementType, Model, DeclaredVariable};
+use octant_fmu::table::{DeclaredCausality, DeclaredVariable, ElementType, Model};
 
 /// Parameter values of one component, as built by [`super::parameters`].
 pub(super) type ParameterValues = Vec<(&'static str, Vec<f64>)>;
@@ -96,7 +96,9 @@ fn parameter(variable: &DeclaredVariable, value: f64) -> Element {
         ElementType::Integer | ElementType::Enumeration(_) => {
             Element::new("ssv:Integer").with("value", number(value))
         }
-        ElementType::Boolean => Element::new("ssv:Boolean").with("value", (value != 0.0).to_string()),
+        ElementType::Boolean => {
+            Element::new("ssv:Boolean").with("value", (value != 0.0).to_string())
+        }
         // No parameter has such a type.
         ElementType::Binary(_) | ElementType::Clock(_) => Element::new("ssv:Binary"),
     }
@@ -168,7 +170,9 @@ fn is_result(variable: &DeclaredVariable) -> bool {
 
 fn connector_type(variable: &DeclaredVariable) -> Element {
     match variable.kind {
-        ElementType::Real | ElementType::Count => Element::new("ssc:Real").with_some("unit", unit_of(variable)),
+        ElementType::Real | ElementType::Count => {
+            Element::new("ssc:Real").with_some("unit", unit_of(variable))
+        }
         ElementType::Integer | ElementType::Enumeration(_) => Element::new("ssc:Integer"),
         ElementType::Boolean => Element::new("ssc:Boolean"),
         // SSP 1.0 has no clocks: models with clocks are in no system.

@@ -4,7 +4,7 @@
 use super::bus;
 use super::element::Element;
 use super::graphics::{corners, picture};
-use octant_fmu::table::{DeclaredCausality, Model, DeclaredVariable};
+use octant_fmu::table::{DeclaredCausality, DeclaredVariable, Model};
 
 /// Terminal: its name, its description, and the prefixes of its variables' names.
 struct Terminal {

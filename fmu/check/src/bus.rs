@@ -13,7 +13,9 @@ use super::terminals;
 use super::text::text;
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::xml::{Element, File};
-use octant_fmu_host::description::{Causality, IntervalVariability, VariableType, Variability, Variable};
+use octant_fmu_host::description::{
+    Causality, IntervalVariability, Variability, Variable, VariableType,
+};
 use std::collections::BTreeSet;
 
 /// Name of the standard, and the folder of its manifest.

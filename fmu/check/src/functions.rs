@@ -2,8 +2,8 @@
 //! variables.
 
 use octant_fmu_host::description::{
-    Causality, ClockProperties, Description, Initial, Interface, IntervalVariability, VariableType, Variability,
-    Variable,
+    Causality, ClockProperties, Description, Initial, Interface, IntervalVariability, Variability,
+    Variable, VariableType,
 };
 
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -46,7 +46,7 @@ mod units;
 mod variables;
 
 use binaries::LibraryProperties;
-use finding::{RuleFinding, Findings, Place};
+use finding::{Findings, Place, RuleFinding};
 use model::Model;
 use octant_fmu_host::archive::{Archive, ArchiveError, ArchiveLimits};
 use octant_fmu_host::description::schema::{self, Breaks, ElementRule, Violation};

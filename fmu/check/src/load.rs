@@ -6,11 +6,13 @@
 use super::Checked;
 use super::finding::Place;
 use super::rules::{
-    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, CheckRule,
+    CheckRule, LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL,
 };
-use octant_fmu_host::description::{Causality, Description, Initial, VariableType, Variable};
+use octant_fmu_host::description::{Causality, Description, Initial, Variable, VariableType};
 use octant_fmu_host::instance::open::{FmuOpenError, open_archive};
-use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome, AccessPlan};
+use octant_fmu_host::instance::{
+    AccessPlan, Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome,
+};
 
 /// Step of an FMU whose description has none, s.
 const STEP_S: f64 = 0.01;
@@ -112,7 +114,10 @@ fn other_starts(
     description: &Description,
 ) -> Result<Option<String>, InstanceError> {
     let is_exact = |variable: &&Variable| {
-        let number = !matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock);
+        let number = !matches!(
+            variable.kind,
+            VariableType::String | VariableType::Binary | VariableType::Clock
+        );
         let exact =
             variable.initial == Some(Initial::Exact) || variable.causality == Causality::Input;
         number && exact && !variable.start.is_empty() && variable.clocks.is_empty()

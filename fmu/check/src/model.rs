@@ -3,7 +3,7 @@
 use super::finding::{Findings, Place};
 use super::rules::CheckRule;
 use octant_fmu_host::description::xml::Element;
-use octant_fmu_host::description::{Description, VariableType, Standard, Variable};
+use octant_fmu_host::description::{Description, Standard, Variable, VariableType};
 use std::collections::HashMap;
 
 /// A description and its XML tree.

@@ -7,7 +7,7 @@ use super::rules::{
     VARIABLE_SIZE, VARIABLE_START_COUNT, VARIABLE_STRUCTURAL,
 };
 use octant_fmu_host::description::{
-    Causality, ArrayDimension, ELEMENTS_MAX, Initial, VariableType, Variability, Variable,
+    ArrayDimension, Causality, ELEMENTS_MAX, Initial, Variability, Variable, VariableType,
 };
 use std::collections::{BTreeMap, BTreeSet};
 

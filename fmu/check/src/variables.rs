@@ -9,7 +9,7 @@ use super::rules::{
     VARIABLE_START, VARIABLE_START_FINITE, VARIABLE_START_RANGE,
 };
 use octant_fmu_host::description::xml::{real, shortened};
-use octant_fmu_host::description::{Causality, Initial, VariableType, Standard, Variability};
+use octant_fmu_host::description::{Causality, Initial, Standard, Variability, VariableType};
 use std::collections::BTreeSet;
 
 /// Checks every variable.
@@ -163,7 +163,10 @@ fn start(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
 /// Checks the start values.
 fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) {
     let variable = declared.variable;
-    if matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Boolean | VariableType::Clock) {
+    if matches!(
+        variable.kind,
+        VariableType::String | VariableType::Binary | VariableType::Boolean | VariableType::Clock
+    ) {
         return;
     }
     let items =

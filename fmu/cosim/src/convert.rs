@@ -3,10 +3,8 @@
 use super::flat::Hop;
 use super::ssp::parameters::{SystemEnumeration, Transformation};
 use super::values::{fits, is_float, is_numeric, kind_name, rounded};
-use octant_fmu_host::description::units::{
-    UnitConversion as UnitConversion, candidates, dimension, known, meant,
-};
-use octant_fmu_host::description::{BaseUnit, Description, VariableType, Variable};
+use octant_fmu_host::description::units::{UnitConversion, candidates, dimension, known, meant};
+use octant_fmu_host::description::{BaseUnit, Description, Variable, VariableType};
 
 /// One operation on a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -295,7 +293,9 @@ fn step(
     };
     Ok(match transformation {
         Transformation::Linear { factor, offset } => {
-            if matches!(from.kind, VariableType::Boolean | VariableType::Enumeration) || !is_numeric(from.kind) {
+            if matches!(from.kind, VariableType::Boolean | VariableType::Enumeration)
+                || !is_numeric(from.kind)
+            {
                 return wrong("numbers");
             }
             (*factor != 1.0 || *offset != 0.0).then_some(Step::Linear(*factor, *offset))
@@ -339,7 +339,8 @@ fn check_types(
     altered: bool,
 ) -> Result<bool, WireConversionError> {
     let (source, target) = (from.kind, to.kind);
-    let refused = || Err(WireConversionError::Types { from: kind_name(source), to: kind_name(target) });
+    let refused =
+        || Err(WireConversionError::Types { from: kind_name(source), to: kind_name(target) });
     if !is_numeric(source) || !is_numeric(target) {
         // Texts and bytes go only to their own type, unchanged.
         return if source == target && source != VariableType::Clock && !altered {
@@ -350,7 +351,10 @@ fn check_types(
     }
     match (source, target) {
         (_, VariableType::Float64 | VariableType::Float32) => Ok(true),
-        (VariableType::Boolean, VariableType::Enumeration) | (VariableType::Enumeration, VariableType::Boolean) if !mapped => {
+        (VariableType::Boolean, VariableType::Enumeration)
+        | (VariableType::Enumeration, VariableType::Boolean)
+            if !mapped =>
+        {
             refused()
         }
         (VariableType::Enumeration, VariableType::Enumeration) if !mapped => {
@@ -377,7 +381,11 @@ mod tests {
         Terminal { kind, unit, items: &[], enumeration: None }
     }
 
-    fn convert(from: VariableType, to: VariableType, hops: &[Hop]) -> Result<WireConversion, WireConversionError> {
+    fn convert(
+        from: VariableType,
+        to: VariableType,
+        hops: &[Hop],
+    ) -> Result<WireConversion, WireConversionError> {
         WireConversion::of(&terminal(from, None), &terminal(to, None), hops, &[])
     }
 
@@ -450,14 +458,21 @@ mod tests {
         let not = Transformation::Boolean([Some(true), Some(false)]);
         let not = convert(VariableType::Boolean, VariableType::Boolean, &[hop(not)]).unwrap();
         assert_eq!([0.0, 1.0].map(|v| not.apply(v)), [Some(1.0), Some(0.0)]);
-        let error = convert(VariableType::Float64, VariableType::Float64, &[hop(table)]).unwrap_err().to_string();
+        let error = convert(VariableType::Float64, VariableType::Float64, &[hop(table)])
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("is for whole numbers and enumerations"), "{error}");
 
         let items = |names: &[(i64, &str)]| {
             names.iter().map(|(value, name)| (*value, (*name).to_owned())).collect::<Vec<_>>()
         };
         let (a, b) = (items(&[(0, "off"), (1, "on")]), items(&[(5, "off"), (6, "run")]));
-        let of = |items| Terminal { kind: VariableType::Enumeration, unit: None, items, enumeration: None };
+        let of = |items| Terminal {
+            kind: VariableType::Enumeration,
+            unit: None,
+            items,
+            enumeration: None,
+        };
         let plain = WireConversion::of(&of(&a), &of(&b), &[Hop::default()], &[]).unwrap_err();
         let plain = plain.to_string();
         assert!(plain.contains("no item \"off\" with value 0"), "{plain}");
@@ -466,7 +481,12 @@ mod tests {
         let named = hop(Transformation::Enumeration(names));
         let named = WireConversion::of(&of(&a), &of(&b), &[named], &[]).unwrap();
         assert_eq!([0.0, 1.0].map(|v| named.apply(v)), [Some(5.0), Some(6.0)]);
-        let number = WireConversion::of(&terminal(VariableType::Int32, None), &of(&b), &[Hop::default()], &[]);
+        let number = WireConversion::of(
+            &terminal(VariableType::Int32, None),
+            &of(&b),
+            &[Hop::default()],
+            &[],
+        );
         let number = number.unwrap();
         assert_eq!([5.0, 7.0].map(|v| number.apply(v)), [Some(5.0), None]);
     }

@@ -1,10 +1,10 @@
 //! Faults on connections, resolved in a system: which wires, in which unit, on which condition.
 
 use super::convert::WireUnit;
-use super::system::{Spot, System, NumberPath};
+use super::system::{NumberPath, Spot, System};
 use super::values::{is_float, kind_name, limits};
 use octant_base::names::nearest;
-use octant_faults::catalogue::{ParameterBounds, FaultParameter, Takes};
+use octant_faults::catalogue::{FaultParameter, ParameterBounds, Takes};
 use octant_faults::connection::kinds::Target;
 use octant_faults::connection::{ConnectionFaultSpec, ConnectionStation};
 use octant_faults::{FaultBuildError, Value, Values};

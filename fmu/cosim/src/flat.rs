@@ -3,8 +3,8 @@
 use super::ssp::SspError;
 use super::ssp::parameters::{Literal, Transformation};
 use super::ssp::structure::{
-    Binding, SystemComponent, Connection, Connector, ConnectorKind, ConnectionEnd, Implementation, SystemElement, SystemStructure,
-    SspSystem,
+    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, Implementation, SspSystem,
+    SystemComponent, SystemElement, SystemStructure,
 };
 use octant_base::names::suggestion;
 use std::collections::BTreeMap;

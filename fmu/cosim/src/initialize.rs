@@ -4,10 +4,10 @@
 use super::error::MasterError;
 use super::graph;
 use super::solve::{IterationLimits, SolveError, Solved, solve};
-use super::system::{ExchangeSide, System, NumberPath};
+use super::system::{ExchangeSide, NumberPath, System};
 use super::values::is_float;
 use octant_fmu_host::description::{Causality, Description, Initial};
-use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError};
+use octant_fmu_host::instance::{Instance, InstanceError, VariableGroup};
 use std::collections::BTreeMap;
 
 /// Loop that was found.

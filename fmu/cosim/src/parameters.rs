@@ -1,13 +1,13 @@
 //! Parameters and start values of the FMUs of a system: from the files of the structure, and from the
 //! command line.
 
-use super::convert::{WireConversion, Terminal, WireUnit};
+use super::convert::{Terminal, WireConversion, WireUnit};
 use super::flat::{Flat, FlatComponent, FlatParameter};
 use super::ssp::SspError;
 use super::ssp::structure::SystemStructure;
 use octant_base::names::suggestion;
-use octant_fmu_host::description::{Description, VariableType, Variable};
-use octant_mapping::settings::{ValueSettings, Starts};
+use octant_fmu_host::description::{Description, Variable, VariableType};
+use octant_mapping::settings::{Starts, ValueSettings};
 use octant_scenario::Set;
 
 /// Collects the values that are set in the FMUs of a system before they start, in the order of the
@@ -171,8 +171,8 @@ fn values(
     };
     let direct = [super::flat::Hop::default()];
     let hops = if parameter.hops.is_empty() { &direct[..] } else { &parameter.hops };
-    let conversion =
-        WireConversion::of(&from, &to, hops, &structure.units).map_err(|error| error.to_string())?;
+    let conversion = WireConversion::of(&from, &to, hops, &structure.units)
+        .map_err(|error| error.to_string())?;
     let values = literal.numbers.iter().map(|number| {
         let value = conversion.apply(*number).ok_or_else(|| {
             format!(

@@ -124,7 +124,12 @@ impl RowRecorder {
     }
 }
 
-fn of_side(node: &str, side: &ExchangeSide, description: &Description, first: usize) -> Vec<OutputColumn> {
+fn of_side(
+    node: &str,
+    side: &ExchangeSide,
+    description: &Description,
+    first: usize,
+) -> Vec<OutputColumn> {
     let mut columns = Vec::new();
     for (number, range) in side.variables.iter().zip(&side.plan.places) {
         let variable = &description.variables[*number];

@@ -1,19 +1,19 @@
 //! Runs a system from its file to its results: `octant run FILE.ssp`.
 
 use super::error::MasterError;
-use super::experiment::{RunExperiment, GivenSettings};
+use super::experiment::{GivenSettings, RunExperiment};
 use super::faults::{Faulting, looked_at};
 use super::flat::Flat;
 use super::order::SteppingOrder;
 use super::parameters;
 use super::record::{ConnectionHash, RowError, RowRecorder};
-use super::simulation::{Abilities, SteppingSettings, Simulation};
+use super::simulation::{Abilities, Simulation, SteppingSettings};
 use super::solve::IterationLimits;
 use super::ssp::SspError;
 use super::ssp::annotation::FaultsText;
 use super::ssp::package::Package;
 use super::ssp::structure::{Implementation, SystemStructure};
-use super::summary::{SystemEnded, FmuResult, LoopResult, SCHEMA, SystemSummary};
+use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
 use octant_base::control::Control;
 use octant_fmu_host::description::Description;

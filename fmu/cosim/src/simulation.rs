@@ -384,8 +384,10 @@ impl<'a> Simulation<'a> {
         for (number, range) in side.variables.iter().zip(&side.plan.places) {
             let instance = &mut self.instances[node];
             let description = instance.description();
-            let group =
-                octant_fmu_host::instance::VariableGroup::of(description, &description.variables[*number]);
+            let group = octant_fmu_host::instance::VariableGroup::of(
+                description,
+                &description.variables[*number],
+            );
             let set =
                 group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
             let error = match set {

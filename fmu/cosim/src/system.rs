@@ -3,14 +3,14 @@
 
 pub use super::elements::{element_names, index_of};
 
-use super::convert::{WireConversion, Terminal, WireUnit};
+use super::convert::{Terminal, WireConversion, WireUnit};
 use super::elements::{Found, element_name, find};
 use super::flat::{Flat, FlatComponent, FlatWire, FmuConnector};
 use super::ssp::SspError;
 use super::ssp::structure::{Connector, ConnectorKind, SystemStructure};
 use super::values::{is_numeric, kind_name};
-use octant_fmu_host::description::{Causality, Description, VariableType, Variability, Variable};
-use octant_fmu_host::instance::{VariableGroup, InstanceError, AccessPlan};
+use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
+use octant_fmu_host::instance::{AccessPlan, InstanceError, VariableGroup};
 
 /// System of FMUs, ready to be initialized.
 #[derive(Clone, Debug)]
@@ -257,7 +257,10 @@ impl<'a> Builder<'a> {
         }
         let Some(of_type) = &connector.of_type else { return Ok(()) };
         let whole = is_numeric(variable.kind)
-            && !matches!(variable.kind, VariableType::Boolean | VariableType::Float64 | VariableType::Float32);
+            && !matches!(
+                variable.kind,
+                VariableType::Boolean | VariableType::Float64 | VariableType::Float32
+            );
         let fits = match of_type.name.as_str() {
             // SSP 1.0 has one name for all types of a sort.
             "Real" => matches!(variable.kind, VariableType::Float64 | VariableType::Float32),
@@ -341,7 +344,8 @@ impl<'a> Builder<'a> {
         let (a_node, b_node) = (wire.from.component, wire.to.component);
         if !is_numeric(to.variable.kind) {
             let group = |node: usize, variable: &Variable| {
-                VariableGroup::of(self.descriptions[node], variable).map_err(|e| error(e.to_string()))
+                VariableGroup::of(self.descriptions[node], variable)
+                    .map_err(|e| error(e.to_string()))
             };
             system.texts.push(TextWire {
                 from: (a_node, group(a_node, from.variable)?),

@@ -19,7 +19,7 @@ use octant_fmu::c::fmi3::*;
 use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::config;
 use octant_fmu::calibrator::table::MODEL;
-use octant_fmu::table::{DeclaredCausality, ElementType, DeclaredVariable};
+use octant_fmu::table::{DeclaredCausality, DeclaredVariable, ElementType};
 use octant_fmu::values::CellValues;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Aiding, DeviceTime, Output, Reference, Sample, Status};

@@ -3,11 +3,14 @@
 /// One group: true values, estimates, their σ or start values.
 macro_rules! group {
     ($make:ident, $prefix:literal, $group:literal, $elements:literal, $quantity:expr, $nominal:expr, $text:expr) => {
-        $crate::table::DeclaredVariable::$make(concat!($prefix, ".", $group), $crate::table::ElementType::Real)
-            .elements($elements)
-            .of($quantity)
-            .nominal($nominal)
-            .described($text)
+        $crate::table::DeclaredVariable::$make(
+            concat!($prefix, ".", $group),
+            $crate::table::ElementType::Real,
+        )
+        .elements($elements)
+        .of($quantity)
+        .nominal($nominal)
+        .described($text)
     };
 }
 pub(crate) use group;

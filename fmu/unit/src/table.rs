@@ -149,8 +149,12 @@ impl DeclaredVariable {
             elements: 0,
             causality,
             variability: match causality {
-                DeclaredCausality::Parameter | DeclaredCausality::CalculatedParameter => DeclaredVariability::Fixed,
-                DeclaredCausality::Input | DeclaredCausality::Output | DeclaredCausality::Local => DeclaredVariability::Discrete,
+                DeclaredCausality::Parameter | DeclaredCausality::CalculatedParameter => {
+                    DeclaredVariability::Fixed
+                }
+                DeclaredCausality::Input | DeclaredCausality::Output | DeclaredCausality::Local => {
+                    DeclaredVariability::Discrete
+                }
             },
             quantity: None,
             min: None,

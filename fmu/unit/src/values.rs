@@ -19,7 +19,9 @@ impl CellValues {
                 cells.push(match variable.kind {
                     ElementType::Real => start.to_bits(),
                     ElementType::Count => start as u64,
-                    ElementType::Integer | ElementType::Enumeration(_) => i64::from(start as i32) as u64,
+                    ElementType::Integer | ElementType::Enumeration(_) => {
+                        i64::from(start as i32) as u64
+                    }
                     ElementType::Boolean => u64::from(start != 0.0),
                     // The values of these kinds are not stored in cells.
                     ElementType::Binary(_) | ElementType::Clock(_) => 0,

@@ -3,7 +3,7 @@
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIXTEEN, from_degrees, named};
 use octant_calibration::sequence::{STOPS_MAX, Sequence, Stop};
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_earth::units::*;
 use octant_earth::{Vector3, rotation};
 use octant_fmu::calibrator::table::MODEL;

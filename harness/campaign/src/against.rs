@@ -7,7 +7,7 @@
 
 mod comparison;
 
-pub use comparison::{EnsembleComparison, Detects, ErrorRow};
+pub use comparison::{Detects, EnsembleComparison, ErrorRow};
 
 use crate::case::{self, CaseResult, ResultError};
 use crate::plan::{Case, Plan, PlanError};
@@ -193,7 +193,10 @@ impl Sample {
 
     /// Lists the published calibrations, with the navigation after them.
     fn of(&self, method: Method) -> Vec<(&CalibrationScore, Option<&NavigationScore>)> {
-        fn one(summary: &Summary, method: Method) -> Option<(&CalibrationScore, Option<&NavigationScore>)> {
+        fn one(
+            summary: &Summary,
+            method: Method,
+        ) -> Option<(&CalibrationScore, Option<&NavigationScore>)> {
             let (calibration, navigation) = match method {
                 Method::Primary => (&summary.calibration, &summary.navigation),
                 Method::Baseline => {
@@ -323,7 +326,8 @@ fn row(
     let simulated_sigma = ConfidenceInterval { value, low: value * low, high: value * high };
     let middle = mean(values).unwrap_or(f64::NAN);
     let error = student * value / libm::sqrt(values.len() as f64);
-    let simulated_mean = ConfidenceInterval { value: middle, low: middle - error, high: middle + error };
+    let simulated_mean =
+        ConfidenceInterval { value: middle, low: middle - error, high: middle + error };
     // Without random parts, both are exact to rounding.
     let rounding = 1e-9 * (predicted_mean.abs() + predicted_sigma);
     let within = |predicted: f64, interval: &ConfidenceInterval| {
@@ -421,10 +425,17 @@ fn conclude(comparison: &mut EnsembleComparison) {
 
 fn in_words(row: &ErrorRow) -> String {
     let ErrorRow {
-        name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, ..
+        name,
+        unit,
+        predicted_sigma,
+        predicted_mean,
+        simulated_sigma,
+        simulated_mean,
+        ..
     } = row;
-    let outside =
-        |value: f64, interval: &ConfidenceInterval| !(interval.low..=interval.high).contains(&value);
+    let outside = |value: f64, interval: &ConfidenceInterval| {
+        !(interval.low..=interval.high).contains(&value)
+    };
     if outside(*predicted_sigma, simulated_sigma) {
         format!(
             "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",

@@ -7,7 +7,7 @@
 use super::case;
 use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
-use super::table::{ExistingTable, TableError, ColumnValue, ColumnValues};
+use super::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
 use std::collections::{BTreeMap, HashMap};

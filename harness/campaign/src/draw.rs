@@ -2,7 +2,7 @@
 
 use super::file::{Campaign, Design, DistributionSpec, Levels};
 use octant_statistics::draw::{
-    FactorCorrelation, Distribution as Drawn, Factor, DrawnFactor, latin_hypercube, monte_carlo,
+    Distribution as Drawn, DrawnFactor, Factor, FactorCorrelation, latin_hypercube, monte_carlo,
 };
 
 /// Value of a factor in a case: one of its levels, or a number.

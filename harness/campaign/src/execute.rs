@@ -3,7 +3,7 @@
 
 pub use super::shard::{Shard, ShardError};
 
-use super::case::{self, CaseResult, CaseJob, StoreOutcome, differing};
+use super::case::{self, CaseJob, CaseResult, StoreOutcome, differing};
 use super::plan::{Case, Plan, PlanError};
 use super::process::{TRIES, command};
 use super::status::StatusError;
@@ -191,7 +191,11 @@ fn forget_errors(plan: &Plan, options: &ExecuteOptions<'_>) -> Result<(), Execut
 }
 
 /// Runs one case, again if its process is ended from outside; `None` if it was ended by a request.
-fn one(plan: &Plan, case: &Case, options: &ExecuteOptions<'_>) -> Result<Option<CaseDone>, ExecuteError> {
+fn one(
+    plan: &Plan,
+    case: &Case,
+    options: &ExecuteOptions<'_>,
+) -> Result<Option<CaseDone>, ExecuteError> {
     let mut by = String::new();
     for _ in 0..TRIES {
         match try_one(plan, case, options)? {

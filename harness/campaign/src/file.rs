@@ -268,7 +268,10 @@ fn read(document: &DocumentTable, folder: &Path) -> Result<Campaign, Problem> {
         scenarios,
         factors,
         correlations,
-        limits: LimitsSpec { time_s: limits.si("time")?, memory_mib: limits.integer("memory_mib")? },
+        limits: LimitsSpec {
+            time_s: limits.si("time")?,
+            memory_mib: limits.integer("memory_mib")?,
+        },
         stop,
     })
 }

@@ -6,7 +6,7 @@ use super::plan::{Plan, short};
 use super::results::{Columns, NUMERICS, TABLES, ordered};
 use super::shard::Shard;
 use super::stop;
-use super::table::{ColumnKind, ExistingTable, TableError, ColumnValues, write};
+use super::table::{ColumnKind, ColumnValues, ExistingTable, TableError, write};
 use octant_requirements::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -155,7 +155,11 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
 }
 
 /// Reads a text column of a part.
-fn texts(table: &ExistingTable, path: &Path, name: &str) -> Result<Vec<Option<Arc<str>>>, TableError> {
+fn texts(
+    table: &ExistingTable,
+    path: &Path,
+    name: &str,
+) -> Result<Vec<Option<Arc<str>>>, TableError> {
     match table.column(name)? {
         Some(ColumnValues::Text(texts)) => Ok(texts),
         _ => Err(TableError::Form {
@@ -186,7 +190,8 @@ pub fn merge(
             let folder = folders.first().cloned().unwrap_or_default();
             return Err(MergeError::Nothing { folder });
         }
-        let tables = paths.iter().map(|path| ExistingTable::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let tables =
+            paths.iter().map(|path| ExistingTable::open(path)).collect::<Result<Vec<_>, _>>()?;
         for (table, path) in tables.iter().zip(&paths) {
             if table.plan != plan.id {
                 return Err(MergeError::Foreign {

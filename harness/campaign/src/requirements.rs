@@ -1,10 +1,12 @@
 //! Requirements of a campaign: read from their file and put into its cases.
 
 use octant_requirements::file::{Checker, read};
-use octant_requirements::requirement::{Check, EnsembleRequirement, Limit, Requirement, Requirements};
+use octant_requirements::requirement::{
+    Check, EnsembleRequirement, Limit, Requirement, Requirements,
+};
 use octant_requirements::signed;
 use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{RequirementsProblem, RequirementsError};
+use octant_requirements::{RequirementsError, RequirementsProblem};
 use octant_scenario::read::requirement::{MeasureTextError, limit_of, path_of};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -71,7 +73,12 @@ fn one_sided(requirements: &Requirements, text: &str) -> Vec<RequirementsProblem
         let (line, column) = (text.lines().enumerate())
             .find_map(|(line, text)| Some((line + 1, at(text)?)))
             .unwrap_or((1, 1));
-        Some(RequirementsProblem { line, column, path: format!("requirements.{id}.measure"), message })
+        Some(RequirementsProblem {
+            line,
+            column,
+            path: format!("requirements.{id}.measure"),
+            message,
+        })
     };
     checks().filter_map(problem).collect()
 }

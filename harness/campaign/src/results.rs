@@ -3,7 +3,7 @@
 use super::besides::besides;
 use super::case::{self, CaseResult};
 use super::plan::{Case, FactorValue, Plan};
-use super::table::{ColumnKind, TableError, ColumnValue, ColumnValues, write};
+use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write};
 use octant_score::summary::Summary;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -72,7 +72,8 @@ pub(super) struct Rows {
 
 impl Rows {
     fn new(first: Columns) -> Self {
-        let empty = |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), ColumnValues::new(*kind));
+        let empty =
+            |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), ColumnValues::new(*kind));
         Self { columns: first.iter().map(empty).collect(), rows: 0 }
     }
 
@@ -99,7 +100,10 @@ impl Rows {
 }
 
 /// Lists columns in the order in which they are written.
-pub(super) fn ordered(first: Columns, kinds: &BTreeMap<&str, ColumnKind>) -> Vec<(String, ColumnKind)> {
+pub(super) fn ordered(
+    first: Columns,
+    kinds: &BTreeMap<&str, ColumnKind>,
+) -> Vec<(String, ColumnKind)> {
     let others = kinds.keys().copied().filter(|name| !first.iter().any(|(other, _)| other == name));
     let names = first.iter().map(|(name, _)| *name).chain(others);
     names.filter_map(|name| Some((name.to_owned(), *kinds.get(name)?))).collect()
@@ -163,7 +167,9 @@ fn text(value: impl Into<Arc<str>>) -> ColumnValue {
     ColumnValue::Text(value.into())
 }
 
-fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<ColumnValue>)>) -> BTreeMap<String, ColumnValue> {
+fn row<'a>(
+    pairs: impl IntoIterator<Item = (&'a str, Option<ColumnValue>)>,
+) -> BTreeMap<String, ColumnValue> {
     let there = |(name, value): (&str, Option<ColumnValue>)| Some((name.to_owned(), value?));
     pairs.into_iter().filter_map(there).collect()
 }
@@ -185,7 +191,10 @@ fn case_row(
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
         ("error", result.error.as_deref().map(text)),
         ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
-        (NUMERICS, summary.and_then(|summary| Some(ColumnValue::Integer(i64::from(summary.numerics?))))),
+        (
+            NUMERICS,
+            summary.and_then(|summary| Some(ColumnValue::Integer(i64::from(summary.numerics?)))),
+        ),
         (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
@@ -241,9 +250,13 @@ fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Column
             }
         }
         serde_json::Value::Number(number) => {
-            all.extend(number.as_f64().map(|number| (path.to_owned(), ColumnValue::Number(number))));
+            all.extend(
+                number.as_f64().map(|number| (path.to_owned(), ColumnValue::Number(number))),
+            );
         }
-        serde_json::Value::Bool(value) => _ = all.insert(path.to_owned(), ColumnValue::Boolean(*value)),
+        serde_json::Value::Bool(value) => {
+            _ = all.insert(path.to_owned(), ColumnValue::Boolean(*value))
+        }
         serde_json::Value::String(text) => {
             _ = all.insert(path.to_owned(), ColumnValue::Text(text.as_str().into()));
         }

@@ -47,7 +47,11 @@ impl StopDecision {
 /// counts neither as passed nor as failed, because counting failures early would make them look
 /// more frequent than they are.
 #[must_use]
-pub fn decide(plan: &Plan, rule: &StopRule, shown: impl Fn(&Case) -> Option<Shown>) -> StopDecision {
+pub fn decide(
+    plan: &Plan,
+    rule: &StopRule,
+    shown: impl Fn(&Case) -> Option<Shown>,
+) -> StopDecision {
     let every = usize::try_from(rule.every).unwrap_or(usize::MAX).max(1);
     let looks = plan.cases.len().div_ceil(every).max(1);
     let confidence = 1.0 - (1.0 - rule.demand.confidence) / looks as f64;

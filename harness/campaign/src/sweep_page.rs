@@ -1,6 +1,6 @@
 //! Renders `sweep.html`, the heat map of a sweep as `sweep.svg`, and its plain text and CSV.
 
-use crate::sweep::{SweepAxis, SweepCell, Sweep, indices};
+use crate::sweep::{Sweep, SweepAxis, SweepCell, indices};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
 use octant_report::page::page;

@@ -129,7 +129,9 @@ impl ColumnValues {
                 }),
             ),
             (Self::Number(all), Some(ColumnValue::Number(number))) => all.push(Some(number)),
-            (Self::Number(all), Some(ColumnValue::Integer(number))) => all.push(Some(number as f64)),
+            (Self::Number(all), Some(ColumnValue::Integer(number))) => {
+                all.push(Some(number as f64))
+            }
             (Self::Integer(all), Some(ColumnValue::Integer(number))) => all.push(Some(number)),
             (Self::Boolean(all), Some(ColumnValue::Boolean(value))) => all.push(Some(value)),
             (Self::Number(all), _) => all.push(None),
@@ -363,9 +365,15 @@ impl ExistingTable {
         }
         let group = self.reader.get_row_group(0).map_err(form)?;
         let values = match group.get_column_reader(index).map_err(form)? {
-            ColumnReader::DoubleColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Number),
-            ColumnReader::Int64ColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Integer),
-            ColumnReader::BoolColumnReader(reader) => self.all(reader, |v| v).map(ColumnValues::Boolean),
+            ColumnReader::DoubleColumnReader(reader) => {
+                self.all(reader, |v| v).map(ColumnValues::Number)
+            }
+            ColumnReader::Int64ColumnReader(reader) => {
+                self.all(reader, |v| v).map(ColumnValues::Integer)
+            }
+            ColumnReader::BoolColumnReader(reader) => {
+                self.all(reader, |v| v).map(ColumnValues::Boolean)
+            }
             ColumnReader::ByteArrayColumnReader(reader) => {
                 let mut all = Vec::with_capacity(self.rows);
                 self.each(reader, |bytes: Option<ByteArray>| {

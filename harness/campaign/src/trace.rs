@@ -7,7 +7,7 @@ use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
 use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
-use octant_requirements::trace::{TracedCase, TracedResult as Traced, CampaignTrace};
+use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult as Traced};
 use octant_requirements::{Comparison, Verdict};
 use std::path::Path;
 

@@ -5,7 +5,7 @@
 //! modes only advance until the unit is restarted.
 
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_sample::{Mode, Output, Sample};
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,7 +1,7 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
@@ -20,7 +20,9 @@ impl InProcess {
     ///
     /// # Errors
     /// If the configuration contradicts itself.
-    pub fn new(config: &CoreConfig) -> Result<Self, octant_calibration::state_machine::CoreConfigError> {
+    pub fn new(
+        config: &CoreConfig,
+    ) -> Result<Self, octant_calibration::state_machine::CoreConfigError> {
         Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
     }
 

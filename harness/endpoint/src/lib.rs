@@ -203,10 +203,15 @@ pub fn check(scenario: &Scenario, config: &CoreConfig) -> Result<(), EndpointOpe
 ///
 /// # Errors
 /// If it can't be opened, or doesn't fit.
-pub fn open(scenario: &Scenario, config: &CoreConfig) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
+pub fn open(
+    scenario: &Scenario,
+    config: &CoreConfig,
+) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
     match &scenario.endpoint {
         scenario::EndpointSpec::InProcess => Ok(None),
-        scenario::EndpointSpec::Fmu(fmu) => Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into())),
+        scenario::EndpointSpec::Fmu(fmu) => {
+            Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into()))
+        }
         scenario::EndpointSpec::Live(live) => {
             Ok(Some(LiveEndpoint::open(scenario, live, config)?.into()))
         }

@@ -9,7 +9,9 @@ use octant_calibration::CoreConfig;
 use octant_faults::catalogue::Acts;
 use octant_faults::wire::Wired;
 use octant_link::clock::ClockEstimator;
-use octant_link::harness::{ANEW, LinkEvent, Harness, SessionOptions, Patience, Sending, SessionError};
+use octant_link::harness::{
+    ANEW, Harness, LinkEvent, Patience, Sending, SessionError, SessionOptions,
+};
 use octant_link::{PortError, Uri, Wire, load, port};
 use octant_realtime::clock::{MonotonicTime, now};
 use octant_recorder::event::{self, LinkRecord};
@@ -18,7 +20,7 @@ use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Live, Scenario};
-use octant_wire::message::{Gathered, OutputMessage, StepPacing, Reason, EndRole, StepNumber};
+use octant_wire::message::{EndRole, Gathered, OutputMessage, Reason, StepNumber, StepPacing};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -77,7 +79,11 @@ impl LiveEndpoint {
     ///
     /// # Errors
     /// If no device answers, or the device doesn't fit.
-    pub fn open(scenario: &Scenario, live: &Live, config: &CoreConfig) -> Result<Self, EndpointOpenError> {
+    pub fn open(
+        scenario: &Scenario,
+        live: &Live,
+        config: &CoreConfig,
+    ) -> Result<Self, EndpointOpenError> {
         Self::check(scenario, live)?;
         let options = SessionOptions {
             configuration: configuration(config),
@@ -88,7 +94,8 @@ impl LiveEndpoint {
             },
             ..SessionOptions::lock_step(config.sample_period_ns)
         };
-        let pacing = if scenario.realtime.by_clock { StepPacing::RealTime } else { StepPacing::LockStep };
+        let pacing =
+            if scenario.realtime.by_clock { StepPacing::RealTime } else { StepPacing::LockStep };
         let options = SessionOptions { pacing, ..options };
         let mut port = port::open(&live.uri, EndRole::Harness).map_err(SessionError::from)?;
         if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {

@@ -1,7 +1,7 @@
 //! The core as a device, as run by `octant serve`.
 
 use octant_calibration::state_machine::CoreConfigError;
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_link::device::{Facts, Steps};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};

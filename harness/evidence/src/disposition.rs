@@ -129,13 +129,16 @@ impl Dispositions {
         &'a self,
         discrepancies: &'a [Discrepancy],
     ) -> impl Iterator<Item = &'a Discrepancy> {
-        discrepancies.iter().filter(|found| self.of(&found.id).is_none_or(DispositionEntry::is_open))
+        discrepancies
+            .iter()
+            .filter(|found| self.of(&found.id).is_none_or(DispositionEntry::is_open))
     }
 
     /// Lists the entries whose discrepancy doesn't occur any more.
     #[must_use]
     pub fn gone(&self, discrepancies: &[Discrepancy]) -> Vec<&DispositionEntry> {
-        let occurs = |entry: &&DispositionEntry| discrepancies.iter().any(|found| found.id == entry.id);
+        let occurs =
+            |entry: &&DispositionEntry| discrepancies.iter().any(|found| found.id == entry.id);
         self.entries.iter().filter(|entry| !occurs(entry)).collect()
     }
 

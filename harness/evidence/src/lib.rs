@@ -22,5 +22,5 @@ pub mod signature;
 pub use fmus::fmus;
 pub use folder::LOCK;
 pub use folder::{Existing, FolderError, RunFolder};
-pub use inputs::{InputHashError, InputFacts, inputs};
+pub use inputs::{InputFacts, InputHashError, inputs};
 pub use manifest::{FmuFacts, Manifest, ManifestError, RunFacts};

@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, StampClock, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp, StampClock,
 };
 use std::hint::black_box;
 

@@ -3,7 +3,7 @@
 use crate::Reading;
 use crate::encoding::CannotCarry;
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingCounters, FramingEvent};
+use crate::framing::{FramingEvent, ReadingCounters};
 
 /// Makes everything that there is once for each protocol: `Variant: module, Decoder, Encoder`. A module has
 /// `FACTS` and the two types.

@@ -1,6 +1,6 @@
 //! Shared parts of the encoders.
 
-use crate::{ReadingKind, MeasuredTriad};
+use crate::{MeasuredTriad, ReadingKind};
 
 /// Error of a reading that lacks a value for a frame, or has one that doesn't fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

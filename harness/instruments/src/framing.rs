@@ -143,7 +143,9 @@ impl ReadingCounters {
         match cause {
             ReadingDefect::Checksum { .. } => self.checksum += 1,
             ReadingDefect::Malformed => self.malformed += 1,
-            ReadingDefect::Unknown { .. } | ReadingDefect::NoNumber { .. } | ReadingDefect::Unreadable(_) => {
+            ReadingDefect::Unknown { .. }
+            | ReadingDefect::NoNumber { .. }
+            | ReadingDefect::Unreadable(_) => {
                 self.unknown += 1;
             }
         }
@@ -324,7 +326,11 @@ impl<P: Framing> FrameDecoder<P> {
     }
 
     /// Counts an outcome; returns true if the frame was intact.
-    fn conclude(&mut self, outcome: &Result<Option<Reading>, ReadingDefect>, length: usize) -> bool {
+    fn conclude(
+        &mut self,
+        outcome: &Result<Option<Reading>, ReadingDefect>,
+        length: usize,
+    ) -> bool {
         let counters = &mut self.counters;
         let intact = match outcome {
             Ok(Some(reading)) => {
@@ -349,7 +355,11 @@ impl<P: Framing> FrameDecoder<P> {
         intact
     }
 
-    fn event(&self, outcome: Result<Option<Reading>, ReadingDefect>, bytes: usize) -> Option<FramingEvent> {
+    fn event(
+        &self,
+        outcome: Result<Option<Reading>, ReadingDefect>,
+        bytes: usize,
+    ) -> Option<FramingEvent> {
         match outcome {
             Ok(reading) => reading.map(FramingEvent::Reading),
             Err(cause) => Some(FramingEvent::Lost(UnreadBytes { cause, bytes })),

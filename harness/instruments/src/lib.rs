@@ -50,6 +50,6 @@ pub use any::{AnyDecoder, AnyEncoder, Protocol};
 pub use axes::{Axes, AxesError};
 pub use encoding::CannotCarry;
 pub use facts::ProtocolFacts;
-pub use framing::{ReadingDefect, ReadingCounters, FramingEvent, UnreadBytes};
-pub use reading::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
+pub use framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
+pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};

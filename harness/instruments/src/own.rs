@@ -5,7 +5,7 @@
 
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingDefect, ReadingCounters, FramingEvent, UnreadBytes};
+use crate::framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
 use crate::{MeasuredTriad, Reading};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, Sample, Status};
@@ -86,11 +86,15 @@ impl OwnDecoder {
             },
             serial::DecodeEvent::Lost(lost) => {
                 let cause = match lost.cause {
-                    serial::FrameDefect::Long | serial::FrameDefect::Malformed => ReadingDefect::Malformed,
+                    serial::FrameDefect::Long | serial::FrameDefect::Malformed => {
+                        ReadingDefect::Malformed
+                    }
                     serial::FrameDefect::Checksum { found, computed } => {
                         ReadingDefect::Checksum { found, computed }
                     }
-                    serial::FrameDefect::Unreadable(unreadable) => ReadingDefect::Unreadable(unreadable),
+                    serial::FrameDefect::Unreadable(unreadable) => {
+                        ReadingDefect::Unreadable(unreadable)
+                    }
                 };
                 counters.cause(cause);
                 let bytes = usize::try_from(lost.bytes).unwrap_or(usize::MAX);

@@ -14,9 +14,9 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingDefect, Extent, Framing};
+use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;
-use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
+use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 
 const SYNC: [u8; 2] = [0xFF, 0x5A];
@@ -103,7 +103,8 @@ impl Framing for Sbg {
 
     #[inline]
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
-        let (bare, tail) = frame.split_last_chunk::<TAIL_BYTES>().ok_or(ReadingDefect::Malformed)?;
+        let (bare, tail) =
+            frame.split_last_chunk::<TAIL_BYTES>().ok_or(ReadingDefect::Malformed)?;
         if tail[2] != END {
             return Err(ReadingDefect::Malformed);
         }
@@ -124,8 +125,13 @@ impl Framing for Sbg {
                 let head = (fields.u32_le(), fields.u16_le());
                 let high = head.1 & GYROS_USE_HIGH_SCALE != 0;
                 let rate_lsb = if high { RATE_HIGH_LSB_RADPS } else { RATE_LSB_RADPS };
-                let mut counts =
-                    |lsb| Some(MeasuredTriad::counts(ReadingKind::Mean, fields.three(Reader::i32_le), lsb));
+                let mut counts = |lsb| {
+                    Some(MeasuredTriad::counts(
+                        ReadingKind::Mean,
+                        fields.three(Reader::i32_le),
+                        lsb,
+                    ))
+                };
                 reading.velocity = counts(ACCELERATION_LSB_MPS2);
                 reading.rotation = counts(rate_lsb);
                 let temperature = f32::from(fields.i16_le());

@@ -18,8 +18,8 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingDefect, Extent, Framing};
-use crate::{StampClock, MeasuredTriad, Reading, Stamp};
+use crate::framing::{Extent, Framing, ReadingDefect};
+use crate::{MeasuredTriad, Reading, Stamp, StampClock};
 use octant_sample::Status;
 
 const SYNC: u8 = 0xFA;

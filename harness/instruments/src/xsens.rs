@@ -18,9 +18,9 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingDefect, Extent, Framing};
+use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::rollover::Rollover;
-use crate::{StampClock, MeasuredTriad, Reading, Stamp};
+use crate::{MeasuredTriad, Reading, Stamp, StampClock};
 use octant_sample::Status;
 
 const HEAD: [u8; 3] = [0xFA, 0xFF, 0x36];
@@ -155,7 +155,10 @@ impl Framing for Xsens {
         let (checksum, summed) = frame.split_last().ok_or(ReadingDefect::Malformed)?;
         let computed = checksum::sum(summed.get(1..).unwrap_or_default()).wrapping_neg();
         if *checksum != computed {
-            return Err(ReadingDefect::Checksum { found: (*checksum).into(), computed: computed.into() });
+            return Err(ReadingDefect::Checksum {
+                found: (*checksum).into(),
+                computed: computed.into(),
+            });
         }
         let data = if frame[3] == 0xFF { 6 } else { 4 };
         let found = Found::read(&summed[data..]).ok_or(ReadingDefect::Malformed)?;

@@ -4,7 +4,7 @@
 mod fuzz;
 
 use octant_instruments::dbc::{CanFrame, Database, Gatherer, SignalMapping};
-use octant_instruments::{ReadingKind, Reading};
+use octant_instruments::{Reading, ReadingKind};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 use octant_wire::can::{CanVersion, segments};
 use octant_wire::message::{EndRole, SampleMessage, StepNumber};

@@ -2,7 +2,7 @@
 
 use crate::common::{events, only, readings, unhex};
 use octant_instruments::novatel::scale_of;
-use octant_instruments::{AnyDecoder, StampClock, ReadingKind, Protocol, Stamp};
+use octant_instruments::{AnyDecoder, Protocol, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 
 /// VN-100 user manual UM001, 4.3.7 "Example Cases", both cases: attitude alone, and attitude with a field

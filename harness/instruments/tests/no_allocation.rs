@@ -2,7 +2,9 @@
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common;
-use octant_instruments::{AnyDecoder, AnyEncoder, Axes, FramingEvent, Protocol, Sampler, SamplerSettings};
+use octant_instruments::{
+    AnyDecoder, AnyEncoder, Axes, FramingEvent, Protocol, Sampler, SamplerSettings,
+};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;

@@ -2,7 +2,8 @@
 
 use crate::common::{self, events, readings, streams};
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, StampClock, FramingEvent, ReadingKind, MeasuredTriad, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, FramingEvent, MeasuredTriad, Protocol, Reading, ReadingKind, Stamp,
+    StampClock,
 };
 use octant_sample::Status;
 use proptest::prelude::*;
@@ -167,7 +168,11 @@ fn xsens_numbers_of_every_precision() {
         let numbers: Vec<&[u8]> = numbers.iter().map(Vec::as_slice).collect();
         let reading = common::only(Protocol::Xsens, &frame(0x4010 | precision, &numbers));
         let velocity = reading.velocity.unwrap();
-        assert_eq!((velocity.kind, velocity.value), (ReadingKind::Increment, values), "{precision}");
+        assert_eq!(
+            (velocity.kind, velocity.value),
+            (ReadingKind::Increment, values),
+            "{precision}"
+        );
         let reading = common::only(Protocol::Xsens, &frame(0x8020 | precision | 4, &numbers));
         assert_eq!(reading.rotation.unwrap().value, values);
         // A packet whose length isn't that of its kind is no frame.
@@ -185,8 +190,10 @@ fn xsens_rotations_of_any_size() {
         for axis in 0..3 {
             let mut rotation = [0.0; 3];
             rotation[axis] = angle;
-            let told =
-                Reading { rotation: Some(MeasuredTriad::increment(rotation)), ..common::reading(1) };
+            let told = Reading {
+                rotation: Some(MeasuredTriad::increment(rotation)),
+                ..common::reading(1)
+            };
             let mut encoder = AnyEncoder::new(Protocol::Xsens);
             let mut frame = encoder.encode(&told).unwrap().to_vec();
             let said = common::only(Protocol::Xsens, &frame).rotation.unwrap().value;

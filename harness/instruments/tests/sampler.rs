@@ -1,7 +1,9 @@
 //! Conversion of readings to samples: counts with remainders, axes, numbers and time.
 
 use crate::common::{self, frames, only, reading};
-use octant_instruments::{Axes, MeasuredTriad, Protocol, Reading, Sampler, SamplerSettings, Stamp, Unusable};
+use octant_instruments::{
+    Axes, MeasuredTriad, Protocol, Reading, Sampler, SamplerSettings, Stamp, Unusable,
+};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 use proptest::prelude::*;
@@ -135,7 +137,8 @@ fn what_cannot_be_used_is_said() {
     let long = Reading { interval_s: Some(0.0053), ..reading(1) };
     assert!(sampler.sample(&long, None).is_ok());
     assert_eq!(sampler.counters().irregular, 1);
-    let nan = Reading { rotation: Some(MeasuredTriad::increment([f64::NAN, 0.0, 0.0])), ..reading(2) };
+    let nan =
+        Reading { rotation: Some(MeasuredTriad::increment([f64::NAN, 0.0, 0.0])), ..reading(2) };
     let sample = sampler.sample(&nan, None).unwrap();
     assert!(sample.status.contains(Status::INERTIAL_INVALID | Status::GYRO_SATURATED));
     assert_eq!(sample.delta_theta[0], 0);

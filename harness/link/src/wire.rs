@@ -1,9 +1,9 @@
 //! Messages across a port, and counts of losses.
 
-use crate::port::{BusEvent, Bytes, Frames, Port, PortError, BusTrouble};
+use crate::port::{BusEvent, BusTrouble, Bytes, Frames, Port, PortError};
 use octant_faults::wire::Wired;
 use octant_wire::can::{self, Bits, Bus, CanVersion, Reassembler};
-use octant_wire::message::{ClockTime, Message, EndRole};
+use octant_wire::message::{ClockTime, EndRole, Message};
 use octant_wire::serial::{self, SerialDecoder, SerialEncoder};
 use octant_wire::{Unreadable, message::DeviceStatus};
 use std::time::{Duration, Instant};

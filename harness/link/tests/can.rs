@@ -5,7 +5,7 @@
 use crate::common::{self, Served, drive, facts, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{Harness, SessionOptions, Patience};
+use octant_link::harness::{Harness, Patience, SessionOptions};
 use octant_link::{Uri, Wire, port};
 use octant_wire::message::EndRole;
 use std::sync::Mutex;

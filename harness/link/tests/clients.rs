@@ -7,10 +7,10 @@
 use crate::common::{drive, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{Harness, SessionOptions, Patience};
+use octant_link::harness::{Harness, Patience, SessionOptions};
 use octant_link::port::{self, Port, Pty};
 use octant_link::{Uri, Wire};
-use octant_wire::message::{Reason, EndRole};
+use octant_wire::message::{EndRole, Reason};
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};

@@ -4,7 +4,7 @@
 use crate::common::{LONG, Served, drive, facts, options, sample};
 use octant_faults::wire::{Medium, Ways, WireAction, WireFault};
 use octant_link::fault::around;
-use octant_link::harness::{LinkEvent, Harness, SessionOptions, Patience, SessionError};
+use octant_link::harness::{Harness, LinkEvent, Patience, SessionError, SessionOptions};
 use octant_link::port::{self, Port, Pty, SlcanPort};
 use octant_link::{PortError, Uri, Wire};
 use octant_sample::Output;

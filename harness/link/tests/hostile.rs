@@ -5,7 +5,7 @@ use octant_link::device::{Device, Notice};
 use octant_link::port::{Bytes, Port};
 use octant_link::{PortError, Wire};
 use octant_wire::message::*;
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -68,7 +68,9 @@ fn serve(pieces: Vec<Vec<u8>>, datagrams: bool) -> (Vec<Message>, u64) {
     let bytes = sent.lock().unwrap().clone();
     let (mut decoder, mut rest, mut said) = (SerialDecoder::new(), bytes.as_slice(), Vec::new());
     while let Some(event) = decoder.next(&mut rest) {
-        let DecodeEvent::Received(received) = event else { panic!("a device sends messages alone") };
+        let DecodeEvent::Received(received) = event else {
+            panic!("a device sends messages alone")
+        };
         said.push(received.message);
     }
     (said, echo.steps)

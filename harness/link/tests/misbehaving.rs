@@ -1,12 +1,12 @@
 //! Devices that break the protocol: late, repeated, missing and wrong answers.
 
 use crate::common::{LONG, PERIOD_NS, options, sample};
-use octant_link::harness::{Harness, SessionOptions, Patience, SessionError};
+use octant_link::harness::{Harness, Patience, SessionError, SessionOptions};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;
 use octant_wire::VERSION;
 use octant_wire::message::*;
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use std::net::UdpSocket;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -3,9 +3,9 @@
 
 use crate::common::{Served, facts, harness, options, sample};
 use octant_link::Wire;
-use octant_link::harness::{Harness, SessionOptions, Sending};
+use octant_link::harness::{Harness, Sending, SessionOptions};
 use octant_sample::Output;
-use octant_wire::message::{StepPacing, EndRole};
+use octant_wire::message::{EndRole, StepPacing};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::time::Duration;
@@ -53,7 +53,8 @@ fn sending_and_polling_allocate_nothing() {
     for uri in ["pty:", "udp:0"] {
         let (_served, uri) = Served::on(uri, facts());
         let options = SessionOptions { pacing: StepPacing::RealTime, ..options() };
-        let mut harness = Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap();
+        let mut harness =
+            Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap();
         let before = COUNT.with(Cell::get);
         let (mut k, mut nothing) = (1, 0);
         while k <= 300 || nothing < 100 {

@@ -2,11 +2,11 @@
 
 use crate::common::{self, LONG, Served, bits, drive, facts, harness, options, sample};
 use octant_link::device::Facts;
-use octant_link::harness::{LinkEvent, Harness, Sending, SessionError};
+use octant_link::harness::{Harness, LinkEvent, Sending, SessionError};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;
 use octant_wire::Text;
-use octant_wire::message::{Capabilities, StepPacing, Reason, SessionRefusal, EndRole};
+use octant_wire::message::{Capabilities, EndRole, Reason, SessionRefusal, StepPacing};
 use std::time::{Duration, Instant};
 
 /// Ports that need no hardware.
@@ -149,8 +149,10 @@ fn a_device_that_goes_in_the_middle_is_an_error_that_says_what_was_waited_for() 
 fn in_real_time_nothing_waits() {
     for uri in URIS {
         let (_served, uri) = Served::on(uri, facts());
-        let options = octant_link::harness::SessionOptions { pacing: StepPacing::RealTime, ..options() };
-        let mut harness = Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap();
+        let options =
+            octant_link::harness::SessionOptions { pacing: StepPacing::RealTime, ..options() };
+        let mut harness =
+            Harness::open(Wire::open(&uri, EndRole::Harness).unwrap(), options).unwrap();
         let mut echo = common::Echo::default();
         let (mut sent, mut got, mut times) = (0, 0, 0);
         let begun = Instant::now();

@@ -4,9 +4,9 @@
 use super::convert::{ChannelConversion, conversion, fits};
 use super::find::{FoundElements, ValueWay, allowed, described, find, unknown};
 use octant_fmu_host::description::{Description, Variable};
-use octant_fmu_host::instance::{InstanceError, AccessPlan};
+use octant_fmu_host::instance::{AccessPlan, InstanceError};
 use octant_scenario::channel::Channel;
-use octant_scenario::{Fmu, Made, Mapped, Problem, EntryPlace};
+use octant_scenario::{EntryPlace, Fmu, Made, Mapped, Problem};
 
 /// One element of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -311,7 +311,8 @@ impl<'a> Binder<'a> {
         if !self.problems.is_empty() {
             return Err(BindError::Mapping(self.problems));
         }
-        let plan = AccessPlan::new(self.description, &self.variables).map_err(BindError::Instance)?;
+        let plan =
+            AccessPlan::new(self.description, &self.variables).map_err(BindError::Instance)?;
         let mut numbers = vec![0.0; plan.elements];
         for (variable, place) in self.variables.iter().zip(&plan.places) {
             start(variable, &mut numbers[place.clone()]);

@@ -1,7 +1,7 @@
 //! Converts between the unit of an FMU's variable and SI.
 
 use octant_fmu_host::description::units::{UnitConversion as Units, UnitError};
-use octant_fmu_host::description::{Description, VariableType, Variable};
+use octant_fmu_host::description::{Description, Variable, VariableType};
 use octant_scenario::UnitDimension;
 use octant_scenario::channel::{Channel, Class};
 
@@ -122,7 +122,9 @@ pub fn conversion(
         Class::Flag | Class::Code if scale != 1.0 => {
             Err(ChannelConversionError::Scale { channel: channel.name })
         }
-        Class::Flag | Class::Code | Class::Whole => Ok(ChannelConversion::scaled(Units::IDENTITY, scale)),
+        Class::Flag | Class::Code | Class::Whole => {
+            Ok(ChannelConversion::scaled(Units::IDENTITY, scale))
+        }
         Class::Nanoseconds => {
             let units = units(description, variable, channel, unit, "ns")?;
             Ok(ChannelConversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
@@ -149,10 +151,14 @@ pub fn conversion(
 /// # Errors
 /// If it can't: found and expected.
 pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ChannelConversionError> {
-    let number =
-        !matches!(variable.kind, VariableType::Boolean | VariableType::String | VariableType::Binary | VariableType::Clock);
+    let number = !matches!(
+        variable.kind,
+        VariableType::Boolean | VariableType::String | VariableType::Binary | VariableType::Clock
+    );
     let (good, expected) = match channel.class {
-        Class::Flag => (variable.kind == VariableType::Boolean || is_whole(variable.kind), "true or false"),
+        Class::Flag => {
+            (variable.kind == VariableType::Boolean || is_whole(variable.kind), "true or false")
+        }
         Class::Code => (number, "a code: a whole number or an enumeration"),
         Class::Whole | Class::Nanoseconds => (number, "a whole number"),
         Class::Number | Class::Quantity(_) => (number, "a number"),
@@ -169,7 +175,14 @@ pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), ChannelConvers
 }
 
 fn is_whole(kind: VariableType) -> bool {
-    !kind.is_float() && !matches!(kind, VariableType::Boolean | VariableType::String | VariableType::Binary | VariableType::Clock)
+    !kind.is_float()
+        && !matches!(
+            kind,
+            VariableType::Boolean
+                | VariableType::String
+                | VariableType::Binary
+                | VariableType::Clock
+        )
 }
 
 /// Returns the conversion from a variable's unit into `wanted`; `None` where no unit is given.

@@ -34,7 +34,11 @@ pub struct FoundElements<'a> {
 /// Looks up a name: a variable, all elements `name[1]` … of an array whose elements are scalars in
 /// the file, or one element `name[2]` of an array; each also after a minus sign.
 #[must_use]
-pub fn find<'a>(description: &'a Description, name: &str, elements: usize) -> Option<FoundElements<'a>> {
+pub fn find<'a>(
+    description: &'a Description,
+    name: &str,
+    elements: usize,
+) -> Option<FoundElements<'a>> {
     let found = |name: &str| plain(description, name.trim(), elements);
     if let Some(elements) = found(name) {
         return Some(FoundElements { elements, negated: false });
@@ -103,7 +107,9 @@ pub fn allowed(variable: &Variable, way: ValueWay) -> Result<(), DirectionError>
     match (way, variable.causality) {
         (ValueWay::Out, Causality::Output | Causality::Local | Causality::CalculatedParameter)
         | (ValueWay::In, Causality::Input) => Ok(()),
-        (ValueWay::In, Causality::Parameter) if variable.variability == Variability::Tunable => Ok(()),
+        (ValueWay::In, Causality::Parameter) if variable.variability == Variability::Tunable => {
+            Ok(())
+        }
         (way, causality) => Err(DirectionError { variable: variable.name.clone(), causality, way }),
     }
 }

@@ -1,13 +1,13 @@
 //! Prepares the FMU of a scenario for its start.
 
-use super::settings::{ValueSettings, Starts};
+use super::settings::{Starts, ValueSettings};
 use super::stepper::UseError;
-use octant_calibration::CoreConfig as CoreConfig;
+use octant_calibration::CoreConfig;
 use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::archive::{Archive, ArchiveError};
 use octant_fmu_host::description::{self, Description, DescriptionError};
 use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
-use octant_plant::config::PlantConfig as PlantConfig;
+use octant_plant::config::PlantConfig;
 use octant_scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -148,7 +148,10 @@ pub struct NoRoom {
 ///
 /// # Errors
 /// If the plant's parameters have no room for something.
-pub fn own_plant(description: &Description, config: &PlantConfig) -> Result<Option<OwnVariables>, NoRoom> {
+pub fn own_plant(
+    description: &Description,
+    config: &PlantConfig,
+) -> Result<Option<OwnVariables>, NoRoom> {
     if !is_own(description, octant_fmu::plant::table::MODEL.name) {
         return Ok(None);
     }

@@ -2,10 +2,12 @@
 
 use super::convert::{ChannelConversionError, article, conversion};
 use super::find::{UnknownVariable, count, find, unknown};
-use octant_fmu_host::description::{Causality, Description, Initial, VariableType, Variability, Variable};
-use octant_fmu_host::instance::{Access, VariableGroup, Instance, InstanceError};
+use octant_fmu_host::description::{
+    Causality, Description, Initial, Variability, Variable, VariableType,
+};
+use octant_fmu_host::instance::{Access, Instance, InstanceError, VariableGroup};
 use octant_scenario::channel::{Channel, Class};
-use octant_scenario::{UnitDimension, Set, quantity_of};
+use octant_scenario::{Set, UnitDimension, quantity_of};
 use std::ops::Range;
 
 /// Values that are set before an FMU starts.
@@ -202,8 +204,8 @@ impl<'a> ValueSettings<'a> {
         }
         numbers.sort_by_key(|(group, _)| group.access != Access::Configuration);
         let texts = self.texts.into_iter();
-        let texts =
-            texts.map(|(variable, texts)| Ok((VariableGroup::of(self.description, variable)?, texts)));
+        let texts = texts
+            .map(|(variable, texts)| Ok((VariableGroup::of(self.description, variable)?, texts)));
         Ok(Starts { numbers, texts: texts.collect::<Result<_, InstanceError>>()? })
     }
 }
@@ -290,7 +292,9 @@ fn number(
         }
         (VariableType::Enumeration, value) => return item(description, variable, value),
         (VariableType::Float64 | VariableType::Float32, Set::Number(number)) => *number,
-        (VariableType::Float64 | VariableType::Float32, Set::Text(text)) => quantity(description, variable, text)?,
+        (VariableType::Float64 | VariableType::Float32, Set::Text(text)) => {
+            quantity(description, variable, text)?
+        }
         (VariableType::Float64 | VariableType::Float32, other) => {
             return Err(wrong(variable, other, "a number, or a quantity with its unit"));
         }

@@ -6,11 +6,11 @@ use octant_fmu::component::ModelComponent;
 use octant_fmu::table::{self, Model};
 use octant_fmu::values::CellValues;
 use octant_fmu_host::description::{
-    BaseUnit, Causality, Description, ArrayDimension, DefaultExperiment, Initial, Interface, VariableType, Standard,
-    ModelStructure, UnitDefinition, Variability, Variable,
+    ArrayDimension, BaseUnit, Causality, DefaultExperiment, Description, Initial, Interface,
+    ModelStructure, Standard, UnitDefinition, Variability, Variable, VariableType,
 };
 use octant_fmu_host::instance::{
-    VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update,
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
 };
 
 /// Builds a variable with usual attributes.
@@ -309,7 +309,9 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             match group.kind {
                 VariableType::Float64 => self.values.set_real(slot, *value),
-                VariableType::Int32 | VariableType::Enumeration => self.values.set_integer(slot, *value as i32),
+                VariableType::Int32 | VariableType::Enumeration => {
+                    self.values.set_integer(slot, *value as i32)
+                }
                 VariableType::UInt64 => self.values.set_count(slot, *value as u64),
                 VariableType::Boolean => self.values.set_boolean(slot, *value != 0.0),
                 other => panic!("no variable is a {other:?}"),
@@ -322,7 +324,9 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         for (slot, value) in self.slots(group).into_iter().zip(values) {
             *value = match group.kind {
                 VariableType::Float64 => self.values.real(slot),
-                VariableType::Int32 | VariableType::Enumeration => f64::from(self.values.integer(slot)),
+                VariableType::Int32 | VariableType::Enumeration => {
+                    f64::from(self.values.integer(slot))
+                }
                 VariableType::UInt64 => self.values.count(slot) as f64,
                 VariableType::Boolean => f64::from(u8::from(self.values.boolean(slot))),
                 other => panic!("no variable is a {other:?}"),

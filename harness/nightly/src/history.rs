@@ -3,7 +3,9 @@
 use super::compare::NightComparison;
 use super::night::Night;
 use super::results::CaseRow;
-use octant_campaign::table::{ColumnKind, ExistingTable, TableError, ColumnValue, ColumnValues, write};
+use octant_campaign::table::{
+    ColumnKind, ColumnValue, ColumnValues, ExistingTable, TableError, write,
+};
 use octant_statistics::sample::{mean, percentile, rms};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -133,8 +135,9 @@ impl History {
                         == (&campaign, &scenario, &measure)
                 })
             });
-            let number =
-                |number: Option<f64>| number.filter(|number| number.is_finite()).map(ColumnValue::Number);
+            let number = |number: Option<f64>| {
+                number.filter(|number| number.is_finite()).map(ColumnValue::Number)
+            };
             let max = values.iter().copied().fold(None, |max: Option<f64>, value| {
                 Some(max.map_or(value, |max| max.max(value)))
             });

@@ -213,8 +213,9 @@ impl NightReport {
         text += "|---|---|---|---|---|---|\n";
         for campaign in &self.campaigns {
             let verdict = campaign.verdict.map_or("broken off", Verdict::name);
-            let of =
-                |c: &NightComparison| c.pairings.iter().find(|p| p.campaign == campaign.name).cloned();
+            let of = |c: &NightComparison| {
+                c.pairings.iter().find(|p| p.campaign == campaign.name).cloned()
+            };
             let pairing = self.comparison.as_ref().and_then(of);
             let row = pairing.map_or("– | – | – | –".to_owned(), |p| {
                 format!("{} | {} | {} | {}", p.cases, p.pairs, p.changed_inputs, p.changed_results)

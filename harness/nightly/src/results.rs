@@ -1,9 +1,9 @@
 //! Reads the results of a campaign's cases from its tables.
 
 use octant_campaign::merge::merged;
-use octant_campaign::table::{ExistingTable, TableError, ColumnValue, ColumnValues};
+use octant_campaign::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
 use octant_requirements::{Comparison, Verdict};
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_score::rederive::stands;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -103,8 +103,11 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
     };
     let mut all: BTreeMap<String, Checks> = BTreeMap::new();
     for row in 0..table.rows {
-        let (Some(ColumnValue::Text(case)), Some(ColumnValue::Text(requirement)), Some(ColumnValue::Text(name))) =
-            (at("case", row), at("requirement", row), at("verdict", row))
+        let (
+            Some(ColumnValue::Text(case)),
+            Some(ColumnValue::Text(requirement)),
+            Some(ColumnValue::Text(name)),
+        ) = (at("case", row), at("requirement", row), at("verdict", row))
         else {
             return Err(TableError::Form {
                 path: path.to_owned(),

@@ -6,7 +6,7 @@ use octant_base::child::{ChildEnded, finish};
 use octant_base::pool::in_order;
 use octant_campaign::process::{self, TRIES};
 use octant_requirements::Verdict;
-use octant_scenario::suite::{SuiteCase, Suite};
+use octant_scenario::suite::{Suite, SuiteCase};
 use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@
 //! vertical channel held, which gives the predicted drift.
 
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{TrueErrors, EnsembleTruth, Unseen};
+use super::truth::{EnsembleTruth, TrueErrors, Unseen};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{AidingMode, CoreConfig, ErrorModel, Estimator, Kalman};
 use octant_calibration::covariance::{

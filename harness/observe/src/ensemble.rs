@@ -5,9 +5,11 @@
 //! Guidance, Control, and Dynamics 29, 2006). The filter keeps its own prior and noise; the plant's
 //! draws and effects are in [`EnsembleTruth`].
 
-use super::covariance::{AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name};
+use super::covariance::{
+    AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name,
+};
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{Swing, EnsembleTruth, Unseen, Wander};
+use super::truth::{EnsembleTruth, Swing, Unseen, Wander};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{CoreConfig, ErrorModel, Estimator};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
@@ -21,7 +23,9 @@ use octant_run::method::{SetupError, label};
 use octant_sample::GimbalAngles;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::resolve::{DrawnValues, Seeded};
-use octant_scenario::{AlignmentSpec, ParameterDistribution, DocksideSpec, Method, MotionSpec, Scenario};
+use octant_scenario::{
+    AlignmentSpec, DocksideSpec, Method, MotionSpec, ParameterDistribution, Scenario,
+};
 use octant_source::configure::configurations;
 use octant_statistics::normal;
 use octant_statistics::radius::Plane;
@@ -154,7 +158,8 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
     let states = (0..STATE_COUNT).map(|state| {
         let (unit, si) = state_unit(state);
         let parameter = state >= PARAMETERS;
-        let estimated = !parameter || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize];
+        let estimated =
+            !parameter || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize];
         let sign = if parameter { -1.0 } else { 1.0 };
         ErrorState {
             name: state_name(state),
@@ -231,7 +236,9 @@ fn truth(
             let (drawn, sigma) = match &scenario.parameters[group as usize] {
                 ParameterDistribution::Normal(sigma) => (0.0, *sigma),
                 ParameterDistribution::Uniform(half_width) => (0.0, half_width / libm::sqrt(3.0)),
-                ParameterDistribution::Constant(values) => (values.get(i).copied().unwrap_or(0.0), 0.0),
+                ParameterDistribution::Constant(values) => {
+                    (values.get(i).copied().unwrap_or(0.0), 0.0)
+                }
             };
             sigmas[first + i] = sigma;
             mean[first + i] = drawn - known;
@@ -241,7 +248,8 @@ fn truth(
         sigmas[PHI..DV].copy_from_slice(&[tilt_rad, tilt_rad, azimuth_rad]);
         sigmas[DV..DR].fill(velocity_mps);
     }
-    if let AlignmentSpec::Given { attitude_error_rad, velocity_error_mps, .. } = scenario.alignment {
+    if let AlignmentSpec::Given { attitude_error_rad, velocity_error_mps, .. } = scenario.alignment
+    {
         for (first, given) in [(PHI, attitude_error_rad), (DV, velocity_error_mps)] {
             if let Some(given) = given {
                 sigmas[first..first + 3].fill(0.0);
@@ -390,7 +398,8 @@ impl Coarse {
 fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let extensions = &scenario.imu.extensions;
     let even = scenario.parameters.iter().any(|d| matches!(d, ParameterDistribution::Uniform(_)));
-    let spectrum = matches!(&scenario.motion, MotionSpec::Dockside(ship) if ship.spectrum.is_some());
+    let spectrum =
+        matches!(&scenario.motion, MotionSpec::Dockside(ship) if ship.spectrum.is_some());
     let dockside = matches!(scenario.motion, MotionSpec::Dockside(_));
     let quantized =
         extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;

@@ -9,7 +9,7 @@ use criterion::{
 };
 use octant_base::control::Control;
 use octant_fmu_host::description::{Causality, VariableType};
-use octant_fmu_host::instance::{Instance, OpenOptions, ProcessPlace, AccessPlan};
+use octant_fmu_host::instance::{AccessPlan, Instance, OpenOptions, ProcessPlace};
 use octant_run::{StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,8 @@ fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place
     let program = Some(PathBuf::from(env!("CARGO_BIN_EXE_octant")));
     let options = OpenOptions { place, program, ..OpenOptions::default() };
     let mut fmu = octant_fmu_host::open(path, &options).unwrap();
-    let number = |kind| !matches!(kind, VariableType::String | VariableType::Binary | VariableType::Clock);
+    let number =
+        |kind| !matches!(kind, VariableType::String | VariableType::Binary | VariableType::Clock);
     let all = |causality| {
         let description = fmu.description();
         let variables: Vec<_> = description
@@ -83,7 +84,8 @@ fn calibration(group: &mut BenchmarkGroup<WallTime>, name: &str, endpoint: &str)
     group.throughput(Throughput::Elements(scenario.samples().unwrap()));
     group.bench_function(name, |bencher| {
         bencher.iter(|| {
-            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
+            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default())
+                .unwrap()
         });
     });
 }
@@ -91,7 +93,8 @@ fn calibration(group: &mut BenchmarkGroup<WallTime>, name: &str, endpoint: &str)
 fn bench(criterion: &mut Criterion) {
     let (_folder, [fmi2, fmi3]) = fmus();
     let mut group = criterion.benchmark_group("exchange");
-    for (place, words) in [(ProcessPlace::ThisProcess, "this process"), (ProcessPlace::OwnProcess, "own process")]
+    for (place, words) in
+        [(ProcessPlace::ThisProcess, "this process"), (ProcessPlace::OwnProcess, "own process")]
     {
         exchange(&mut group, &format!("FMI 2.0, {words}"), &fmi2, place);
         exchange(&mut group, &format!("FMI 3.0, {words}"), &fmi3, place);

@@ -91,8 +91,11 @@ fn loop_thread(steps: &[Step]) {
             let start = std::time::Instant::now();
             for _ in 0..(blocks - 2) * block / few.len() {
                 for step in few {
-                    let frame =
-                        EpochFrame { clean: &step.clean, faulted: &step.faulted, output: &step.output };
+                    let frame = EpochFrame {
+                        clean: &step.clean,
+                        faulted: &step.faulted,
+                        output: &step.output,
+                    };
                     recorder.push(black_box(frame)).unwrap();
                 }
             }

@@ -17,7 +17,8 @@ fn bench(criterion: &mut Criterion) {
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.bench_function("calibration 4 h, navigation 24 h", |bencher| {
         bencher.iter(|| {
-            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
+            run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default())
+                .unwrap()
         });
     });
     group.finish();

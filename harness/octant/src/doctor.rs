@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
-use octant_realtime::host::{HostFinding, Grade, look};
+use octant_realtime::host::{Grade, HostFinding, look};
 use octant_realtime::latency::{LatencyResult, Trial, measure};
 use octant_realtime::schedule::Wish;
 use octant_requirements::Verdict;
@@ -98,7 +98,8 @@ fn text(diagnosis: &Diagnosis) -> String {
             "{:28} {:8.1} {:8.1} {:8.1} {:8.1}",
             "", of.p50_us, of.p99_us, of.p999_us, of.max_us
         );
-        if let octant_realtime::schedule::RequestOutcome::Refused { .. } = found.granted.scheduling {
+        if let octant_realtime::schedule::RequestOutcome::Refused { .. } = found.granted.scheduling
+        {
             let _ = writeln!(out, "    {}", found.granted.scheduling.text());
         }
     }

@@ -5,7 +5,7 @@ use crate::fault_words::{acts, lasts};
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::names::suggestion;
-use octant_faults::catalogue::{Family, FaultKind, Lasts, FaultParameter};
+use octant_faults::catalogue::{Family, FaultKind, FaultParameter, Lasts};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
 use octant_requirements::Verdict;

@@ -77,7 +77,8 @@ mod with_server {
 
         /// Serves the run that is written in this folder, on a thread of its own, from outside.
         pub(crate) fn follow(&mut self, folder: &Path) -> Result<(), Failure> {
-            let place = RunPlace::of(folder).map_err(|e| Failure::bench(format!("failed to {e}")))?;
+            let place =
+                RunPlace::of(folder).map_err(|e| Failure::bench(format!("failed to {e}")))?;
             let Some(mut server) = self.server.take() else { return Ok(()) };
             let (mut follow, done) = (Follow::new(place), Arc::clone(&self.done));
             let work = move || {

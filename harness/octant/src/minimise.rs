@@ -7,7 +7,7 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
 use octant_run::drive::Ended;
-use octant_run::minimise::{SetOutcome, SearchStep, minimise};
+use octant_run::minimise::{SearchStep, SetOutcome, minimise};
 use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};

@@ -9,7 +9,7 @@ use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
 use octant_base::interrupt;
 use octant_campaign::case;
-use octant_campaign::execute::{CaseDone, ExecutionEvent, ExecuteOptions, Shard, execute};
+use octant_campaign::execute::{CaseDone, ExecuteOptions, ExecutionEvent, Shard, execute};
 use octant_campaign::plan::Plan;
 use octant_campaign::{merge, results, status};
 use octant_evidence::manifest::{Machine, operator};

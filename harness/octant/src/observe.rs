@@ -17,7 +17,7 @@ use octant_observe::static_rank;
 use octant_requirements::Verdict;
 use octant_run::method::label;
 use octant_sample::parameters::ParameterGroup;
-use octant_scenario::{ParameterDistribution, Method, MotionSpec, Scenario};
+use octant_scenario::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_source::configure::configurations;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -123,7 +123,8 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
         Ok(prediction) => {
             let estimated = |state: usize| match &calibration.estimator {
                 Estimator::Kalman(kalman) => {
-                    state < PARAMETERS || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize]
+                    state < PARAMETERS
+                        || kalman.estimated[ParameterGroup::of(state - PARAMETERS) as usize]
                 }
                 _ => true,
             };
@@ -180,7 +181,9 @@ fn true_sigmas(scenario: &Scenario, config: &CoreConfig) -> [f64; STATE_COUNT] {
         let group_sigmas = &mut sigmas[PARAMETERS..][range.clone()];
         match &scenario.parameters[group as usize] {
             ParameterDistribution::Normal(sigma) => group_sigmas.fill(*sigma),
-            ParameterDistribution::Uniform(half_width) => group_sigmas.fill(half_width / 3f64.sqrt()),
+            ParameterDistribution::Uniform(half_width) => {
+                group_sigmas.fill(half_width / 3f64.sqrt())
+            }
             ParameterDistribution::Constant(values) => {
                 for (i, sigma) in group_sigmas.iter_mut().enumerate() {
                     *sigma = values.get(i).or(values.first()).map_or(0.0, |v| v.abs());

@@ -9,7 +9,7 @@ use octant_base::control::Control;
 use octant_cosim::experiment::GivenSettings;
 use octant_cosim::order::SteppingOrder;
 use octant_cosim::run::{PrepareError, PreparedSystem, Request};
-use octant_cosim::summary::{SystemEnded, FmuResult};
+use octant_cosim::summary::{FmuResult, SystemEnded};
 use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
 use octant_fmu_host::instance::ProcessPlace;
 use octant_requirements::Verdict;
@@ -106,7 +106,8 @@ pub(super) fn command(
     folder: impl FnOnce() -> Result<RunFolder, Failure>,
 ) -> Result<Verdict, Failure> {
     let key = crate::signing::signing_key()?;
-    let place = if arguments.in_process { ProcessPlace::ThisProcess } else { ProcessPlace::OwnProcess };
+    let place =
+        if arguments.in_process { ProcessPlace::ThisProcess } else { ProcessPlace::OwnProcess };
     let prepared = PreparedSystem::new(Request {
         path: shared.path.to_owned(),
         said: arguments.said()?,

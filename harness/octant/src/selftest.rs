@@ -71,7 +71,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
     bar.finish_and_clear();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
-    let record = SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
+    let record =
+        SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;
     let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
     for path in arguments.out.iter().chain(&of_campaign) {

@@ -5,11 +5,11 @@ use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_requirements::Verdict;
-use octant_scenario::{UnitDimension, Scenario, quantity_of};
+use octant_scenario::{Scenario, UnitDimension, quantity_of};
 use octant_turntable::simulate::listen;
 use octant_turntable::{
-    TableAxis, AxisLimits, Dialect, Error, TableLimits, Move, TablePlan, DriverSettings, TableStatus, check_port, look,
-    move_by_hand, press, run_guard, stop_by_hand,
+    AxisLimits, Dialect, DriverSettings, Error, Move, TableAxis, TableLimits, TablePlan,
+    TableStatus, check_port, look, move_by_hand, press, run_guard, stop_by_hand,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -192,7 +192,9 @@ fn told(status: &TableStatus, as_json: bool) -> Result<(), Failure> {
                 "fault": found.fault,
             })
         };
-        return print_json(&json!({ "azimuth": axis(TableAxis::Azimuth), "roll": axis(TableAxis::Roll) }));
+        return print_json(
+            &json!({ "azimuth": axis(TableAxis::Azimuth), "roll": axis(TableAxis::Roll) }),
+        );
     }
     for axis in TableAxis::ALL {
         let found = status.of(axis);

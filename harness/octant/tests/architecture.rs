@@ -216,6 +216,30 @@ fn crates_and_files_stay_within_their_sizes() {
     assert!(long.is_empty(), "at most {FILE_LINES_MAX} lines in a file: {long:#?}");
 }
 
+/// A definition for one kind of system has its counterpart for the others in the same file. The C types of FMI have
+/// the names of their standards, `fmi2::Status` and `fmi3::Status`, and are no part of this.
+#[test]
+fn names_of_public_types_stand_once_in_the_workspace() {
+    let definition =
+        Regex::new(r"(?m)^\s*pub (?:unsafe )?(?:struct|enum|trait|type|union) (\w+)").unwrap();
+    let mut places: BTreeMap<String, BTreeSet<PathBuf>> = BTreeMap::new();
+    for (_, member) in members() {
+        if member.folder == "fmu/abi" {
+            continue;
+        }
+        let mut all = Vec::new();
+        files(&root().join(&member.folder).join("src"), &mut all);
+        for file in all {
+            for found in definition.captures_iter(&product(&file)) {
+                places.entry(found[1].to_owned()).or_default().insert(file.clone());
+            }
+        }
+    }
+    assert!(places.len() > 1000, "{} definitions are found", places.len());
+    places.retain(|_, files| files.len() > 1);
+    assert!(places.is_empty(), "one name for each thing: {places:#?}");
+}
+
 /// Module path of a file below `src`; that of the crate's root is empty.
 fn module(source: &Path, file: &Path) -> Vec<String> {
     let below = file.strip_prefix(source).unwrap().with_extension("");

@@ -3,10 +3,10 @@
 
 use crate::common::program::{OCTANT, program};
 use octant_campaign::case::{self, CaseResult};
-use octant_campaign::execute::{ExecutionEvent, ExecuteOptions, ExecutionSummary, Shard, execute};
+use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute};
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Plan, PlanWritten};
-use octant_campaign::table::{ExistingTable, ColumnValue};
+use octant_campaign::table::{ColumnValue, ExistingTable};
 use octant_campaign::{results, status};
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
@@ -99,7 +99,8 @@ fn begin(
     again: bool,
 ) -> Result<ExecutionSummary, String> {
     let program = Path::new(OCTANT);
-    let options = ExecuteOptions { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
+    let options =
+        ExecuteOptions { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
 }
 
@@ -152,7 +153,10 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
         assert!(outcome.run <= 2, "{outcome:?}");
     }
     assert!(rounds >= 3, "{rounds}");
-    assert_eq!(run(&plan, &torn, Shard::WHOLE, 2), ExecutionSummary { skipped: 6, ..ExecutionSummary::default() });
+    assert_eq!(
+        run(&plan, &torn, Shard::WHOLE, 2),
+        ExecutionSummary { skipped: 6, ..ExecutionSummary::default() }
+    );
     assert!(merged(&plan, &torn) == expected, "interrupted");
 
     // The tables agree with the cases.
@@ -164,8 +168,14 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
         let result = CaseResult::read(&case::file(&whole, &case.id)).unwrap();
         let summary = result.summary.unwrap();
         let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
-        assert_eq!(column("navigation.radial_error_nmi.max").at(row), Some(ColumnValue::Number(radial)));
-        assert_eq!(column("stream_hash").at(row), Some(ColumnValue::Text(summary.stream_hash.into())));
+        assert_eq!(
+            column("navigation.radial_error_nmi.max").at(row),
+            Some(ColumnValue::Number(radial))
+        );
+        assert_eq!(
+            column("stream_hash").at(row),
+            Some(ColumnValue::Text(summary.stream_hash.into()))
+        );
         let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".to_owned());
         let fired = column("faults.spike-1.fired").at(row);
         assert_eq!(fired, spiked.then_some(ColumnValue::Boolean(true)));

@@ -137,8 +137,10 @@ fn what_does_not_go_together_is_refused_with_its_place() {
     let resolved = {
         let files = "database = \"unit.dbc\"\nmapping = \"unit.toml\"\n";
         let scenario = scenario(folder.path(), "can:can0", files).unwrap();
-        let draws =
-            octant_scenario::resolve::DrawnValues::of(&scenario, &octant_scenario::resolve::Seeded(1));
+        let draws = octant_scenario::resolve::DrawnValues::of(
+            &scenario,
+            &octant_scenario::resolve::Seeded(1),
+        );
         scenario.to_resolved_toml(1, &draws)
     };
     // The file is in another folder.

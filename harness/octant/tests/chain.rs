@@ -6,7 +6,7 @@ use crate::common::program::{ends, octant_in, program};
 use octant_campaign::case;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{ExistingTable, ColumnValue as Cell, ColumnValues, write};
+use octant_campaign::table::{ColumnValue as Cell, ColumnValues, ExistingTable, write};
 use octant_campaign::{merge, results};
 use serde_json::{Value, json};
 use std::borrow::Cow;

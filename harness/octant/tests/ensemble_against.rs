@@ -14,8 +14,8 @@ use octant_sample::parameters::NAMES;
 use octant_scenario::{Method, Scenario};
 use octant_score::judge::judge;
 use octant_score::summary::{
-    CalibrationScore, ErrorScore, HealthCounts, HeightChannel, NavigationScore, ParameterScore, RadialScore,
-    SCHEMA, Summary,
+    CalibrationScore, ErrorScore, HealthCounts, HeightChannel, NavigationScore, ParameterScore,
+    RadialScore, SCHEMA, Summary,
 };
 use std::collections::BTreeMap;
 use tempfile::TempDir;

@@ -51,7 +51,12 @@ fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut PlantConfig)) -> Run
 }
 
 /// Makes a run with its drift at intervals of `every_s` seconds.
-fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut PlantConfig)) -> Run {
+fn run_every(
+    scenario: &Scenario,
+    seed: u64,
+    every_s: u64,
+    change: impl Fn(&mut PlantConfig),
+) -> Run {
     let (mut plant, config, draws) = configurations(scenario, Method::Primary, seed).unwrap();
     change(&mut plant);
     let mut plant = Plant::new(&plant).unwrap();

@@ -144,7 +144,11 @@ fn claim(scenario: &str) -> octant_score::compare::MethodComparison {
 /// Compares with the figures of an independent Monte Carlo (arcmin): latitude and longitude at 24 h
 /// and 72 h. Twenty seeds of other draws differ by 20 to 25 %; one sigma of an rms over 20 is 16 %,
 /// three of the difference of two such are 67 %, and no figure may be off by more than half.
-fn assert_near(comparison: &octant_score::compare::MethodComparison, six: [f64; 4], eight: [f64; 4]) {
+fn assert_near(
+    comparison: &octant_score::compare::MethodComparison,
+    six: [f64; 4],
+    eight: [f64; 4],
+) {
     assert_eq!(comparison.cells.len(), 4);
     for (i, cell) in comparison.cells.iter().enumerate() {
         for (ours, reference) in [(cell.first, six[i]), (cell.second, eight[i])] {

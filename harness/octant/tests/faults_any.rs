@@ -7,7 +7,7 @@ mod draw;
 use octant_base::control::Control;
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::Trigger;
-use octant_faults::{Receipt, FaultSpec};
+use octant_faults::{FaultSpec, Receipt};
 use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader};
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Fault, Method, Place, Scenario};

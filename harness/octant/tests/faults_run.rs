@@ -14,7 +14,8 @@ use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary,
 use octant_requirements::Verdict;
 use octant_run::done::PlannedWork;
 use octant_run::{
-    Ended, Faulted, RunHost, Line, MethodRun, StreamKeeping, Watcher, assemble, drive_in_time, run_method,
+    Ended, Faulted, Line, MethodRun, RunHost, StreamKeeping, Watcher, assemble, drive_in_time,
+    run_method,
 };
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
@@ -278,7 +279,7 @@ impl UnitRule for Unit {
 
 macro_rules! test_kind {
     ($name:ident, $acts:expr, $rule:expr) => {
-        static $name: Kind = Kind {
+        static $name: FaultKind = FaultKind {
             name: "test",
             family: Family::Unit,
             acts: $acts,
@@ -292,7 +293,11 @@ macro_rules! test_kind {
     };
 }
 test_kind!(DELIVERY, Acts::Delivery, FaultRule::Delivery(Box::new(Deliver { kept: None })));
-test_kind!(RESTART, Acts::Unit, FaultRule::Unit(Box::new(Unit { event: Some(UnitEvent::Restart) })));
+test_kind!(
+    RESTART,
+    Acts::Unit,
+    FaultRule::Unit(Box::new(Unit { event: Some(UnitEvent::Restart) }))
+);
 test_kind!(POWER, Acts::Unit, FaultRule::Unit(Box::new(Unit { event: None })));
 test_kind!(STORED, Acts::Unit, {
     let mut offset = Parameters::default();

@@ -2,7 +2,7 @@
 
 use octant_earth::units::DEG_PER_HOUR;
 use octant_faults::catalogue::{Acts, Dimension};
-use octant_faults::trigger::{ThresholdSide, Repeat, Signal, Trigger};
+use octant_faults::trigger::{Repeat, Signal, ThresholdSide, Trigger};
 use octant_faults::{Channels, Station, Value, kinds};
 use octant_sample::Mode;
 use octant_scenario::resolve::{DrawnValues, Seeded};

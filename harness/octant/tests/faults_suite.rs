@@ -2,7 +2,7 @@
 
 use octant_base::control::Control;
 use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
-use octant_scenario::suite::{SuiteCase, Suite};
+use octant_scenario::suite::{Suite, SuiteCase};
 use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -7,7 +7,7 @@
     reason = "everywhere the same: handles are those of instances, arrays as long as is said"
 )]
 
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_fmi::fmi2::{CO_SIMULATION, OK};
 use octant_fmu::c::fmi2::*;
 use octant_fmu::c::fmi3::*;
@@ -58,7 +58,9 @@ impl Unit {
         let (name, token, none) = (c"unit".as_ptr(), token.as_ptr(), null());
         let handle = unsafe {
             match standard {
-                ServedStandard::Fmi2 => fmi2Instantiate(name, CO_SIMULATION, token, none, null(), 0, 0),
+                ServedStandard::Fmi2 => {
+                    fmi2Instantiate(name, CO_SIMULATION, token, none, null(), 0, 0)
+                }
                 ServedStandard::Fmi3 => fmi3InstantiateCoSimulation(
                     name,
                     token,
@@ -143,7 +145,9 @@ impl Unit {
                 let value = values[0] as u8;
                 assert_eq!(unsafe { fmi3SetBoolean(self.handle, &first, 1, &value, 1) }, OK);
             }
-            (ServedStandard::Fmi3, ElementType::Binary(_) | ElementType::Clock(_)) => panic!("the core has none"),
+            (ServedStandard::Fmi3, ElementType::Binary(_) | ElementType::Clock(_)) => {
+                panic!("the core has none")
+            }
         }
     }
 
@@ -169,7 +173,9 @@ impl Unit {
                 ServedStandard::Fmi2 => {
                     fmi2GetReal(self.handle, references.as_ptr(), N, values.as_mut_ptr())
                 }
-                ServedStandard::Fmi3 => fmi3GetFloat64(self.handle, &first, 1, values.as_mut_ptr(), N),
+                ServedStandard::Fmi3 => {
+                    fmi3GetFloat64(self.handle, &first, 1, values.as_mut_ptr(), N)
+                }
             }
         };
         assert_eq!(status, OK);
@@ -180,7 +186,9 @@ impl Unit {
         let (mut narrow, mut wide) = (-1, -1);
         let status = unsafe {
             match (self.standard, is_enumeration) {
-                (ServedStandard::Fmi2, _) => fmi2GetInteger(self.handle, &reference, 1, &mut narrow),
+                (ServedStandard::Fmi2, _) => {
+                    fmi2GetInteger(self.handle, &reference, 1, &mut narrow)
+                }
                 (_, false) => fmi3GetInt32(self.handle, &reference, 1, &mut narrow, 1),
                 (_, true) => fmi3GetInt64(self.handle, &reference, 1, &mut wide, 1),
             }
@@ -240,7 +248,11 @@ impl Unit {
         self.set_as(ElementType::Boolean, slot("imu.valid"), &[1.0]);
         self.set_as(ElementType::Integer, slot("imu.status"), &[f64::from(sample.status.bits())]);
         self.set_as(ElementType::Count, slot("imu.sequence"), &[sample.sequence as f64]);
-        self.set_as(ElementType::Count, slot("imu.device_time_ns"), &[sample.device_time.ns as f64]);
+        self.set_as(
+            ElementType::Count,
+            slot("imu.device_time_ns"),
+            &[sample.device_time.ns as f64],
+        );
         let kind = match epoch.aiding.map(|aiding| aiding.reference) {
             None => 0.0,
             Some(Reference::Velocity(velocity)) => {
@@ -384,7 +396,11 @@ impl Unit {
 
 /// Runs the whole stream of the scenario through a core in process and through an instance;
 /// `between` may replace the instance after any epoch.
-fn compare(standard: ServedStandard, events: bool, mut between: impl FnMut(u64, &mut Unit, &CoreConfig)) {
+fn compare(
+    standard: ServedStandard,
+    events: bool,
+    mut between: impl FnMut(u64, &mut Unit, &CoreConfig),
+) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenarios/lockstep.toml");
     let scenario = Scenario::load(&file, &[]).unwrap();
     let (plant, config, _) = configurations(&scenario, Method::Primary, scenario.seed).unwrap();

@@ -5,10 +5,10 @@ use octant_fmu::table::{self, Model};
 use octant_fmu_build::{BuildError, Options, build};
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::{
-    Causality, Description, Initial, IntervalVariability, VariableType, Standard, Variability, Variable,
-    read_bytes,
+    Causality, Description, Initial, IntervalVariability, Standard, Variability, Variable,
+    VariableType, read_bytes,
 };
-use octant_fmu_host::instance::{self, Instance, StepOutcome, ProcessPlace, AccessPlan};
+use octant_fmu_host::instance::{self, AccessPlan, Instance, ProcessPlace, StepOutcome};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

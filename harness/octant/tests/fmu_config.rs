@@ -5,7 +5,7 @@ use octant_calibration::CoreConfig;
 use octant_earth::{Vector3, rotation};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::calibrator::{config, put, start_values};
-use octant_fmu::table::{ElementType, DeclaredVariable};
+use octant_fmu::table::{DeclaredVariable, ElementType};
 use octant_fmu::values::CellValues;
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
@@ -46,7 +46,9 @@ fn set(values: &mut CellValues, slot: usize, variable: &DeclaredVariable, value:
     match variable.kind {
         ElementType::Real => values.set_real(slot, value),
         ElementType::Count => values.set_count(slot, value as u64),
-        ElementType::Integer | ElementType::Enumeration(_) => values.set_integer(slot, value as i32),
+        ElementType::Integer | ElementType::Enumeration(_) => {
+            values.set_integer(slot, value as i32)
+        }
         ElementType::Boolean => values.set_boolean(slot, value != 0.0),
         ElementType::Binary(_) | ElementType::Clock(_) => panic!("no parameter is one"),
     }

@@ -1,7 +1,9 @@
 //! Model exchange compared with closed forms, and with another method.
 
 use crate::common::foreign;
-use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError, OpenOptions, StepOutcome, ProcessPlace};
+use octant_fmu_host::instance::{
+    Instance, InstanceError, OpenOptions, ProcessPlace, StepOutcome, VariableGroup,
+};
 
 fn open(name: &str) -> Box<dyn Instance> {
     let options = OpenOptions { place: ProcessPlace::ThisProcess, ..OpenOptions::default() };

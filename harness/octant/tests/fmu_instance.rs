@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::description::Variable;
 use octant_fmu_host::instance::{
-    VariableGroup, Instance, InstanceError, InterfaceKind, OpenOptions, StepOutcome, ProcessPlace, AccessPlan, Stepped,
+    AccessPlan, Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace, StepOutcome,
+    Stepped, VariableGroup,
 };
 
 /// Returns options for code that runs in this process.

@@ -103,7 +103,11 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(plant: &plant_config::PlantConfig, faults: &[FaultSpec], core: &core::CoreConfig) -> Self {
+    fn new(
+        plant: &plant_config::PlantConfig,
+        faults: &[FaultSpec],
+        core: &core::CoreConfig,
+    ) -> Self {
         let mut start = calibrator::start_values(core);
         // Stamps of the plant: faults of time reach the core.
         start.push(("imu.external_stamps", vec![1.0]));
@@ -239,7 +243,11 @@ struct Loop {
 }
 
 impl Loop {
-    fn new(plant: &plant_config::PlantConfig, faults: &[FaultSpec], core: &core::CoreConfig) -> Self {
+    fn new(
+        plant: &plant_config::PlantConfig,
+        faults: &[FaultSpec],
+        core: &core::CoreConfig,
+    ) -> Self {
         Self {
             plant: Plant::new(plant).unwrap(),
             station: Station::new(faults, &plant::setup(plant)).unwrap(),

@@ -4,7 +4,9 @@
 use crate::common::foreign;
 use crate::common::program::{OCTANT, passes_as_process, program, test_as_process};
 use octant_fmu_host::FmuOpenError;
-use octant_fmu_host::instance::{VariableGroup, Instance, InstanceError, OpenOptions, StepOutcome, ProcessPlace, AccessPlan};
+use octant_fmu_host::instance::{
+    AccessPlan, Instance, InstanceError, OpenOptions, ProcessPlace, StepOutcome, VariableGroup,
+};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};

@@ -8,7 +8,7 @@ use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::file::Campaign;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{ColumnKind, ExistingTable, ColumnValue};
+use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
 use octant_campaign::{merge, requirements, status};
 use octant_evidence::manifest::Manifest;
 use octant_evidence::signature::{self, SigningKey};

@@ -3,7 +3,7 @@
 use crate::common::program::octant_in;
 use octant_campaign::case;
 use octant_campaign::plan::Plan;
-use octant_campaign::table::{ExistingTable, ColumnValue as Cell};
+use octant_campaign::table::{ColumnValue as Cell, ExistingTable};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

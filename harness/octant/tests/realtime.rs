@@ -9,7 +9,7 @@ use octant_realtime::clock::{MonotonicTime, now};
 use octant_recorder::{Recorder, RecorderOptions};
 use octant_run::done::PlannedWork;
 use octant_run::realtime::drive_by_clock;
-use octant_run::{Ended, Faulted, RunHost, Line, StreamKeeping, Watcher};
+use octant_run::{Ended, Faulted, Line, RunHost, StreamKeeping, Watcher};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Method, Scenario};
@@ -188,7 +188,8 @@ fn drive(
     let mut faulted = scenario.station(1).unwrap().map(|station| Faulted {
         station,
         fires: Vec::new(),
-        host: RunHost::new(&scenario, &StreamKeeping::File(Path::new("sink")), &options.trouble).unwrap(),
+        host: RunHost::new(&scenario, &StreamKeeping::File(Path::new("sink")), &options.trouble)
+            .unwrap(),
     });
     let mut recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
     let mut watcher = Watcher::new(PlannedWork::default());

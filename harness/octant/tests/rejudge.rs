@@ -207,8 +207,9 @@ fn the_numerics_version_is_wherever_a_number_is() {
     let path = case::file(&out, &plan.cases[0].id);
     let mut result = read(path.clone());
     assert_eq!(result["summary"]["numerics"], NUMERICS);
-    let table = octant_campaign::table::ExistingTable::open(&octant_campaign::merge::merged(&out, "cases"))
-        .unwrap();
+    let table =
+        octant_campaign::table::ExistingTable::open(&octant_campaign::merge::merged(&out, "cases"))
+            .unwrap();
     let column = table.column("numerics").unwrap().unwrap();
     let expected = octant_campaign::table::ColumnValue::Integer(NUMERICS.into());
     assert_eq!(column.at(0), Some(expected));

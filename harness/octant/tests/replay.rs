@@ -4,7 +4,9 @@ use crate::common::epochs::{push, record, stream, truth_of};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
-use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, RecordedQuantity, TimeUnit};
+use octant_scenario::recorded::{
+    MappedField, MappedStamp, McapMapping, RecordedQuantity, TimeUnit,
+};
 use octant_source::{Epoch, Replay, Source, SourceError};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -4,14 +4,14 @@
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData, compare as page,
-    run,
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
+    compare as page, run,
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
-use octant_score::compare::{Claim, MethodComparison, Maxima, PairedRun, compare};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
+use octant_score::compare::{Claim, Maxima, MethodComparison, PairedRun, compare};
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::floor::{Floor, MaximumFloor};
 use octant_score::judge::judge;

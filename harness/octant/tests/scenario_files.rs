@@ -110,7 +110,9 @@ fn the_quick_scenario_is_what_its_header_says() {
     assert_eq!(scenario.calibration_samples(), 4 * 3600 * 200);
     assert_eq!(scenario.samples(), Some(28 * 3600 * 200));
     let (eight, six) = (scenario.calibration.unwrap(), scenario.baseline.unwrap());
-    assert!(eight.estimates(ParameterGroup::GDependent) && !six.estimates(ParameterGroup::GDependent));
+    assert!(
+        eight.estimates(ParameterGroup::GDependent) && !six.estimates(ParameterGroup::GDependent)
+    );
     assert_eq!((eight.sequence.stops().len(), six.sequence.stops().len()), (19, 17));
     // 16 moves of 90°: 10 s each; 17 equal dwells fill the rest.
     assert!((six.dwell_s - (14400.0 - 160.0) / 17.0).abs() < 1e-9, "{}", six.dwell_s);

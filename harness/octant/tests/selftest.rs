@@ -67,7 +67,7 @@ fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
 #[cfg(unix)]
 #[test]
 fn a_program_that_passes_everything_is_an_alarm() {
-    use octant_selftest::judge::{Expectation, CaseVerdict};
+    use octant_selftest::judge::{CaseVerdict, Expectation};
     use octant_selftest::record::SelftestRecord;
     use octant_selftest::{cases, run};
     use std::os::unix::fs::PermissionsExt;

@@ -143,7 +143,12 @@ fn saved(core: &Core) -> Vec<u8> {
 
 /// Runs a method and, from each of some points on, also a core that was saved and loaded there.
 /// Returns the modes at these points.
-fn run(plant: &plant::PlantConfig, core: &CoreConfig, faults: bool, seed: u64) -> Vec<(Mode, usize)> {
+fn run(
+    plant: &plant::PlantConfig,
+    core: &CoreConfig,
+    faults: bool,
+    seed: u64,
+) -> Vec<(Mode, usize)> {
     // One in the first seconds, three in the calibration, one at its end, one in the navigation.
     let at = |nth: u64, from: u64, to: u64| from + mix(seed * 16 + nth) % (to - from);
     let points = [

@@ -192,8 +192,8 @@ fn estimate(names: &Names, revision: u32) -> octant_sample::parameters::Paramete
 fn in_process() -> String {
     let scenario = scenario();
     let control = Control::default();
-    let run =
-        run_method(&scenario, Method::Primary, scenario.seed, StreamKeeping::Hash, &control).unwrap();
+    let run = run_method(&scenario, Method::Primary, scenario.seed, StreamKeeping::Hash, &control)
+        .unwrap();
     run.recorder.stream_hash
 }
 

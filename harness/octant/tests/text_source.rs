@@ -3,7 +3,8 @@
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::recorded::{
-    AxisColumn, RecordedColumn, Delimiter, GimbalColumns, RecordedQuantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
+    AxisColumn, Delimiter, GimbalColumns, RecordedColumn, RecordedQuantity, TextFiles, TextMapping,
+    TimeColumn, TimeUnit,
 };
 use octant_source::{Epoch, Source, SourceError, TextSource};
 use std::path::{Path, PathBuf};
@@ -74,12 +75,17 @@ fn rates_become_counts_over_the_real_intervals() {
 fn names_signs_order_increments_and_gimbals() {
     let text = "t_ms;wz;wy;wx;az;ay;ax;azimuth;roll\n5;1e-6;2e-6;3e-6;1e-3;2e-3;3e-3;90;-45\n";
     let epochs = read(text, |mapping| {
-        let named =
-            |name: &str, scale| AxisColumn { column: RecordedColumn::Name(name.into()), offset: 0.0, scale };
+        let named = |name: &str, scale| AxisColumn {
+            column: RecordedColumn::Name(name.into()),
+            offset: 0.0,
+            scale,
+        };
         mapping.delimiter = Delimiter::Character(b';');
         mapping.quantity = RecordedQuantity::Increments;
-        mapping.time =
-            Some(TimeColumn { column: RecordedColumn::Name("t_ms".into()), unit: TimeUnit::Millisecond });
+        mapping.time = Some(TimeColumn {
+            column: RecordedColumn::Name("t_ms".into()),
+            unit: TimeUnit::Millisecond,
+        });
         mapping.gyro = [named("wx", 1.0), named("wy", -1.0), named("wz", 1.0)];
         mapping.accelerometer = [named("ax", 1.0), named("ay", 1.0), named("az", -2.0)];
         let degree = std::f64::consts::PI / 180.0;

@@ -7,11 +7,11 @@ use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::judge::{FindingSubject, Finding, NO_REQUIREMENT, derive, judge, judge_by};
+use octant_score::judge::{Finding, FindingSubject, NO_REQUIREMENT, derive, judge, judge_by};
 use octant_score::junit::junit;
 use octant_score::summary::{
-    CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, NavigationScore, RadialScore,
-    SCHEMA, Summary, SummaryError,
+    CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, NavigationScore,
+    RadialScore, SCHEMA, Summary, SummaryError,
 };
 use octant_score::verdict::{evaluate, measure};
 use octant_score::work::Work;
@@ -443,8 +443,9 @@ fn every_number_of_a_run_can_be_required() {
     let text = "schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n\
                 [procedure.navigation]\nduration = \"2 h\"\n[baseline]\ng_states = false\n";
     let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
-    let run =
-        |method| run_method(&scenario, method, 1, StreamKeeping::None, &Control::default()).unwrap();
+    let run = |method| {
+        run_method(&scenario, method, 1, StreamKeeping::None, &Control::default()).unwrap()
+    };
     let (primary, baseline) = (run(Method::Primary), run(Method::Baseline));
     let run = assemble(&scenario, 1, primary, Some(baseline)).unwrap();
     let mut all = Vec::new();

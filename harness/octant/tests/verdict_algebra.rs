@@ -19,10 +19,10 @@ use octant_requirements::{Comparison, Verdict};
 use octant_run::realtime::TimeKeeping;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
-use octant_score::judge::{FindingSubject, Finding, besides, derive, judge};
+use octant_score::judge::{Finding, FindingSubject, besides, derive, judge};
 use octant_score::summary::{
-    BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, LatenessQuantiles,
-    NavigationScore, PacingRecord, RadialScore, Summary,
+    BaselineMethod, CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel,
+    LatenessQuantiles, NavigationScore, PacingRecord, RadialScore, Summary,
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -285,7 +285,11 @@ fn result(id: &str, scenario: &PlannedScenario, case: &Case, parts: &Parts) -> C
 }
 
 /// Makes a campaign in a folder, and its requirements.
-fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<EnsembleRequirement>) -> (Plan, Requirements) {
+fn campaign(
+    folder: &Path,
+    outcomes: &[Came],
+    ensemble: Option<EnsembleRequirement>,
+) -> (Plan, Requirements) {
     let planned = PlannedScenario {
         id: "s".to_owned(),
         file: PathBuf::from("s.toml"),
@@ -354,8 +358,8 @@ fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<EnsembleRequireme
 
 fn ensemble() -> impl Strategy<Value = Option<EnsembleRequirement>> {
     // A weak requirement on the ensemble, which a few cases can show.
-    let weak =
-        (0.01f64..0.4, 0.01f64..0.6).prop_map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
+    let weak = (0.01f64..0.4, 0.01f64..0.6)
+        .prop_map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
     prop::option::of(weak)
 }
 
@@ -524,8 +528,9 @@ fn a_baseline_that_was_interrupted_shows_nothing() {
                 [[requirements]]\nid = \"A\"\ntext = \"x\"\n\
                 measure = \"navigation.radial_error_nmi.max\"\nlimit = \"10 nmi\"\n";
     let scenario = Scenario::parse(text, "f", Path::new(""), &[]).unwrap();
-    let run =
-        || run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap();
+    let run = || {
+        run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default()).unwrap()
+    };
     let mut baseline = run();
     baseline.ended = octant_run::Ended::Cancelled;
     let summary = assemble(&scenario, 1, run(), Some(baseline)).unwrap().summary;

@@ -242,7 +242,7 @@ impl Tree {
 
 #[cfg(target_os = "linux")]
 mod limits {
-    use super::{HostFinding, Grade};
+    use super::{Grade, HostFinding};
     use crate::clock::resolution_ns;
     use rustix::fs::{Access, access};
     use rustix::process::{Resource, getrlimit};
@@ -286,11 +286,14 @@ mod limits {
         }
         match getrlimit(Resource::Memlock).current {
             None => HostFinding::new(subject, Grade::Good, "unlimited"),
-            Some(bytes) => {
-                HostFinding::new(subject, Grade::Missing, format!("{} KiB", bytes / 1024)).advice(
-                    "\"@realtime - memlock unlimited\" in /etc/security/limits.conf, and log in anew",
-                )
-            }
+            Some(bytes) => HostFinding::new(
+                subject,
+                Grade::Missing,
+                format!("{} KiB", bytes / 1024),
+            )
+            .advice(
+                "\"@realtime - memlock unlimited\" in /etc/security/limits.conf, and log in anew",
+            ),
         }
     }
 
@@ -302,12 +305,12 @@ mod limits {
 
 #[cfg(not(target_os = "linux"))]
 mod limits {
-    use super::{HostFinding, Grade};
+    use super::{Grade, HostFinding};
     use std::path::Path;
 
     pub(super) fn look() -> Vec<HostFinding> {
         vec![
-            Finding::new("system", Grade::Missing, std::env::consts::OS)
+            HostFinding::new("system", Grade::Missing, std::env::consts::OS)
                 .advice("real-time scheduling, locked memory and SocketCAN exist on Linux only"),
         ]
     }

@@ -66,7 +66,8 @@ mod tests {
         assert_eq!(found.report.lateness.count, found.report.frames);
         assert!(found.report.lateness.p50_us <= found.report.lateness.p99_us);
         let text = serde_json::to_string(&found).unwrap_or_default();
-        let back: LatencyResult = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let back: LatencyResult =
+            serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}"));
         assert_eq!(back, found);
     }
 }

@@ -171,7 +171,8 @@ pub struct PaceReport {
 mod tests {
     use super::*;
 
-    const PACING: FramePacing = FramePacing { period_ns: 1_000_000, spin_ns: 0, overrun_ns: 100_000 };
+    const PACING: FramePacing =
+        FramePacing { period_ns: 1_000_000, spin_ns: 0, overrun_ns: 100_000 };
 
     #[test]
     fn no_frame_begins_before_it_is_due_and_nothing_adds_up() {

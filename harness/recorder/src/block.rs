@@ -1,6 +1,6 @@
 //! A block of epochs: filled by the run loop, processed by the recorder's thread.
 
-use super::{Event, Extra, EpochFrame};
+use super::{EpochFrame, Event, Extra};
 use octant_sample::Epoch;
 use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;

@@ -7,7 +7,7 @@ mod fault_result;
 mod link;
 mod pacing;
 
-pub use bench::{BenchRecord, BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchTable};
+pub use bench::{BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchTable};
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;
 pub use pacing::{DeviceClock, LatenessQuantiles, PacingRecord};

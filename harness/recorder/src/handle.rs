@@ -11,7 +11,7 @@ use super::digest::Digest;
 use super::summary::RecorderSummary;
 use super::trouble::{Disk, RecorderTrouble};
 use super::writer::{RecordingWriter, next_on_grid};
-use super::{Event, Extra, FLUSH_INTERVAL, EpochFrame, RecorderError, RecorderOptions};
+use super::{EpochFrame, Event, Extra, FLUSH_INTERVAL, RecorderError, RecorderOptions};
 use octant_sample::Epoch;
 use octant_sample::{Mode, Output};
 use std::fs::File;

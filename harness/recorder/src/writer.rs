@@ -19,7 +19,8 @@ use super::block::Block;
 use super::message::{self, Topic};
 use super::sink::Sink;
 use super::{
-    MessageCounts, Event, FLUSH_INTERVAL, FORMAT_VERSION, Policy, RecorderError, RecorderOptions, Samples,
+    Event, FLUSH_INTERVAL, FORMAT_VERSION, MessageCounts, Policy, RecorderError, RecorderOptions,
+    Samples,
 };
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;

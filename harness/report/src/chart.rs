@@ -464,7 +464,8 @@ mod tests {
         let mut chart = Chart::new("Small", "h", "y");
         let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
         for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
-            chart.lines = vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
+            chart.lines =
+                vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
             let frame = Frame::of(&chart).unwrap();
             let longest = frame.y_ticks.iter().map(|tick| tick.1.chars().count()).max().unwrap();
             assert!(frame.left - 7.0 >= 6.5 * longest as f64, "{:?}", frame.y_ticks);

@@ -4,7 +4,7 @@ use super::chart::{Chart, ChartLine, ChartRole};
 use super::page::page;
 use maud::{Markup, html};
 use octant_base::number;
-use octant_score::compare::{MeasureCell, Claim, MethodComparison, Refusals, interval, percent};
+use octant_score::compare::{Claim, MeasureCell, MethodComparison, Refusals, interval, percent};
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Renders the comparison as text for a terminal.

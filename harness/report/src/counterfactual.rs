@@ -129,7 +129,8 @@ fn drift(difference: &DriftDifference) -> Markup {
         "Navigation, faulted minus twin, arcmin",
     );
     chart.height = 200.0;
-    for (label, role, column) in [("latitude", ChartRole::Primary, 1), ("longitude", ChartRole::Baseline, 2)]
+    for (label, role, column) in
+        [("latitude", ChartRole::Primary, 1), ("longitude", ChartRole::Baseline, 2)]
     {
         chart.lines.push(ChartLine {
             label: label.to_owned(),

@@ -16,4 +16,4 @@ pub mod page;
 mod parameters;
 pub mod run;
 
-pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData};
+pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance};

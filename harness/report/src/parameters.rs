@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use octant_base::number;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_score::summary::{CalibrationScore, ParameterScore};
 
 /// Width of the strip in σ on each side.
@@ -39,7 +39,11 @@ pub(super) fn table(calibration: &CalibrationScore, baseline: Option<&Calibratio
     }
 }
 
-fn group_rows(group: ParameterGroup, calibration: &CalibrationScore, baseline: Option<&CalibrationScore>) -> Markup {
+fn group_rows(
+    group: ParameterGroup,
+    calibration: &CalibrationScore,
+    baseline: Option<&CalibrationScore>,
+) -> Markup {
     let names = &NAMES[group.range()];
     let scores: Vec<_> = names.iter().filter_map(|n| calibration.parameters.get(*n)).collect();
     // Two digits of the smallest σ, the same for the whole group, so that the columns line up.

@@ -1,6 +1,8 @@
 //! `report.html` of one run, for the reader who assesses it.
 
-pub use super::data::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportProvenance, ReportData};
+pub use super::data::{
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
+};
 
 use super::calibration::calibration;
 use super::chart::{Chart, ChartLine, ChartRole};

@@ -9,7 +9,7 @@
 #![allow(clippy::print_stdout)]
 
 use octant_requirements::Verdict;
-use octant_requirements::trace::{TracedCase, TracedResult, CampaignTrace};
+use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult};
 use octant_requirements::{Requirements, file, reqif, sdoc, strictdoc};
 use std::error::Error;
 use std::path::Path;

@@ -74,7 +74,11 @@ impl Decision {
     ///
     /// # Errors
     /// If a reference is not exact and its uncertainty is not stated.
-    pub fn uncertainty(&self, measure: &str, against: &NavigationContext) -> Result<f64, UnknownUncertainty> {
+    pub fn uncertainty(
+        &self,
+        measure: &str,
+        against: &NavigationContext,
+    ) -> Result<f64, UnknownUncertainty> {
         let bare = measure.trim_matches('|');
         if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
             return Ok(stated.uncertainty);

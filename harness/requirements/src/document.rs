@@ -90,7 +90,11 @@ impl<'a> Reader<'a> {
     /// Reports a problem at an offset of the file.
     fn problem_at(&self, offset: usize, key: &str, message: impl Into<String>) {
         let place = self.problems.lines.place(offset);
-        self.problems.all.borrow_mut().push(RequirementsProblem::new(place, self.path_of(key), message));
+        self.problems.all.borrow_mut().push(RequirementsProblem::new(
+            place,
+            self.path_of(key),
+            message,
+        ));
     }
 
     /// Reports a problem with the value of a key, or with the table if the key is missing.

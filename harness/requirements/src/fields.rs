@@ -1,6 +1,8 @@
 //! Fields for Octant's keys of a requirement in other formats.
 
-use crate::requirement::{Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability};
+use crate::requirement::{
+    Check, EnsembleRequirement, Limit, Requirement, Verification, percent, probability,
+};
 use crate::verdict::Comparison;
 
 pub(crate) const MEASURE: &str = "MEASURE";

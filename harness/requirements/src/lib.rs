@@ -25,6 +25,6 @@ pub mod strictdoc;
 pub mod trace;
 pub mod verdict;
 
-pub use error::{Imported, RequirementsProblem, RequirementsError};
+pub use error::{Imported, RequirementsError, RequirementsProblem};
 pub use requirement::{Requirement, Requirements};
 pub use verdict::{Comparison, Verdict};

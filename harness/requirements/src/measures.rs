@@ -1,6 +1,6 @@
 //! Measures that a requirement can have: the numbers of the summary, by their paths.
 
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 
 /// Content at a place of the summary.
 enum Shape {
@@ -97,7 +97,9 @@ fn shape(path: &[&str]) -> Shape {
         ["calibration", "parameters", _] => {
             table(&["true", "estimate", "sigma", "error", "normalized"])
         }
-        ["calibration", "nees"] => Shape::Table(ParameterGroup::ALL.map(ParameterGroup::name).to_vec()),
+        ["calibration", "nees"] => {
+            Shape::Table(ParameterGroup::ALL.map(ParameterGroup::name).to_vec())
+        }
         ["calibration", "health"] => table(&[
             "measurements",
             "rejected",

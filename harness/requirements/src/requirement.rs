@@ -310,7 +310,10 @@ impl Requirements {
     /// Kind of an attribute's values.
     #[must_use]
     pub fn kind(&self, name: &str) -> AttributeKind {
-        self.definitions.iter().find(|d| d.name == name).map_or(AttributeKind::Text, |d| d.kind.clone())
+        self.definitions
+            .iter()
+            .find(|d| d.name == name)
+            .map_or(AttributeKind::Text, |d| d.kind.clone())
     }
 
     /// Names of all attributes used or defined, in the order of their occurrence.

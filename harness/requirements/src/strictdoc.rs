@@ -8,7 +8,7 @@
 use crate::error::ExportError;
 use crate::requirement::Requirements;
 use crate::sdoc::legal_uid;
-use crate::trace::{TraceLink, TraceRow, CampaignTrace};
+use crate::trace::{CampaignTrace, TraceLink, TraceRow};
 use crate::verdict::Verdict;
 use std::collections::HashMap;
 use std::fmt::Write as _;

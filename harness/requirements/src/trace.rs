@@ -180,7 +180,8 @@ impl CampaignTrace {
     /// Requirements that a case verifies, with the verdict of each check.
     #[must_use]
     pub fn of_case(&self, case: &str) -> Vec<(&str, Option<Verdict>)> {
-        let of = |row: &TraceRow| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
+        let of =
+            |row: &TraceRow| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
         self.requirements
             .iter()
             .filter_map(|row| of(row).map(|verdict| (row.id.as_str(), verdict)))
@@ -193,7 +194,8 @@ fn row(requirement: &Requirement, cases: Vec<TraceLink>) -> TraceRow {
     for link in &cases {
         counts.add(link.verdict);
     }
-    let passed = |link: &TraceLink| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
+    let passed =
+        |link: &TraceLink| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
     let draws = DrawCounts::of(cases.iter().map(passed));
     let (verdict, reason) = match &requirement.verification {
         Verification::Test(check) => {
@@ -227,7 +229,11 @@ fn row(requirement: &Requirement, cases: Vec<TraceLink>) -> TraceRow {
 /// probability that a draw passes (Clopper and Pearson) reaches the required one, fail if the upper
 /// bound doesn't, and inconclusive between. Errors and missing checks never result in a pass.
 #[must_use]
-pub fn judge(ensemble: Option<EnsembleRequirement>, counts: VerdictCounts, draws: DrawCounts) -> (Verdict, String) {
+pub fn judge(
+    ensemble: Option<EnsembleRequirement>,
+    counts: VerdictCounts,
+    draws: DrawCounts,
+) -> (Verdict, String) {
     let VerdictCounts { pass, inconclusive, fail, error, missing } = counts;
     let all = pass + inconclusive + fail + error + missing;
     if all == 0 {

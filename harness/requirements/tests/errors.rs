@@ -2,8 +2,8 @@
 
 use octant_requirements::file::{Anything, Checker};
 use octant_requirements::requirement::{
-    Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements, Verification, percent,
-    probability,
+    AttributeKind, Definition, EnsembleRequirement, Limit, Parent, Requirement, Requirements,
+    Verification, percent, probability,
 };
 use octant_requirements::{file, reqif, sdoc};
 

@@ -2,8 +2,8 @@
 
 use octant_requirements::Comparison;
 use octant_requirements::requirement::{
-    ForeignAttribute, Check, Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements,
-    Verification,
+    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, Limit, Parent,
+    Requirement, Requirements, Verification,
 };
 use octant_requirements::{file, reqif, sdoc};
 use proptest::collection::vec;
@@ -46,7 +46,8 @@ fn verification() -> impl Strategy<Value = Verification> {
     let comparison = prop::sample::select(Comparison::ALL.to_vec());
     let test = ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", comparison, limit, ensemble).prop_map(
         |(measure, comparison, limit, ensemble)| {
-            let ensemble = ensemble.map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
+            let ensemble =
+                ensemble.map(|(pass, confidence)| EnsembleRequirement { pass, confidence });
             Verification::Test(Check { measure, comparison, limit, ensemble })
         },
     );
@@ -75,7 +76,11 @@ fn attributes() -> Vec<(Definition, Vec<Vec<String>>)> {
             AttributeKind::Choice(options(&["high", "low & slow"])),
             &[&["high"], &["low & slow"]],
         ),
-        define("Phases", AttributeKind::Choices(options(&["1a", "1b", "2"])), &[&["1a", "2"], &["1b"]]),
+        define(
+            "Phases",
+            AttributeKind::Choices(options(&["1a", "1b", "2"])),
+            &[&["1a", "2"], &["1b"]],
+        ),
         define("Effort", AttributeKind::Integer, &[&["-12"]]),
         define("Weight", AttributeKind::Real, &[&["1.5e-3"]]),
         define("Safe", AttributeKind::Boolean, &[&["true"], &["false"]]),

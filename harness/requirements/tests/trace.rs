@@ -6,7 +6,7 @@ use octant_requirements::requirement::{
     Check, EnsembleRequirement, Limit, Requirement, Requirements, Verification,
 };
 use octant_requirements::strictdoc;
-use octant_requirements::trace::{TracedCase, TracedResult, VerdictCounts, CampaignTrace, judge};
+use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult, VerdictCounts, judge};
 use octant_statistics::cluster::DrawCounts;
 use proptest::prelude::*;
 
@@ -94,7 +94,10 @@ fn nothing_shows_nothing() {
     let one = document(vec![tested("A", None)]);
     let cases = [case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)])];
     assert_eq!(CampaignTrace::new(&one, &cases).verdict(), Verdict::Inconclusive);
-    assert_eq!(CampaignTrace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
+    assert_eq!(
+        CampaignTrace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(),
+        Verdict::Pass
+    );
     assert_eq!(one.get("A").map(|found| found.id.as_str()), Some("A"));
     assert_eq!(one.get("B"), None);
     // The case should verify the requirement, but didn't check it.

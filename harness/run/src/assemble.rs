@@ -7,9 +7,9 @@ use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
-use octant_report::{ReportProvenance, ReportData};
+use octant_report::{ReportData, ReportProvenance};
 use octant_requirements::Verdict;
-use octant_requirements::decision::{NavigationContext, DecisionRule};
+use octant_requirements::decision::{DecisionRule, NavigationContext};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_scenario::{MotionSpec, Scenario};
@@ -17,7 +17,9 @@ use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
-use octant_score::summary::{AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results};
+use octant_score::summary::{
+    AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results,
+};
 use octant_turntable::TableAxis;
 use std::collections::BTreeMap;
 

@@ -18,7 +18,7 @@ use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence};
 use octant_realtime::clock::MonotonicTime;
-use octant_recorder::{Extra, EpochFrame, Recorder, RecorderError};
+use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
 use octant_source::{Epoch, Source};

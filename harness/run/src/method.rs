@@ -18,10 +18,11 @@ use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
 use octant_recorder::event::{BenchRecord, LinkRecord};
 use octant_recorder::{
-    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, RecorderTrouble,
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble,
+    Samples,
 };
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{self as scenario, Method, Realtime, Scenario};
@@ -157,7 +158,9 @@ pub fn run_as_far_as_it_goes(
         ..recorder_options(scenario, seed, &draws, method, true_parameters)
     };
     let mut recorder = match recording {
-        StreamKeeping::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
+        StreamKeeping::File(path) => {
+            Recorder::to_file(path, &options).map_err(SetupError::Recorder)?
+        }
         StreamKeeping::Hash => Recorder::hash_only(&options),
         StreamKeeping::HashAlone => Recorder::stream_hash_only(&options),
         StreamKeeping::None => Recorder::none(),
@@ -439,9 +442,10 @@ fn finish(
 #[must_use]
 pub fn planned_of(plan: &scenario::CalibrationSpec) -> Vec<&'static str> {
     match &plan.estimator {
-        core::Estimator::Kalman(_) => {
-            (0..NAMES.len()).filter(|i| plan.estimates(ParameterGroup::of(*i))).map(|i| NAMES[i]).collect()
-        }
+        core::Estimator::Kalman(_) => (0..NAMES.len())
+            .filter(|i| plan.estimates(ParameterGroup::of(*i)))
+            .map(|i| NAMES[i])
+            .collect(),
         core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => Vec::new(),
     }
 }

@@ -5,7 +5,7 @@ use super::method::{MethodError, StreamKeeping, label, run_method};
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
 use octant_scenario::{Method, Scenario};
-use octant_score::compare::{MethodComparison, Maxima, PairedRun, compare};
+use octant_score::compare::{Maxima, MethodComparison, PairedRun, compare};
 use octant_score::floor::Floor;
 use std::sync::atomic::Ordering;
 

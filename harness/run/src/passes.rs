@@ -5,7 +5,7 @@
 
 use super::drive::{Ended, InStep, Keeps, NoFaults, RunError, drive};
 use octant_calibration::state_machine::CoreConfigError;
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_endpoint::{Endpoint, InProcess};
 use octant_sample::{Mode, Output};
 use octant_source::{Epoch, Source, SourceError};

@@ -1,6 +1,6 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
-use super::method::{MethodError, MethodRun, StreamKeeping, SetupError, run_as_far_as_it_goes};
+use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
 use octant_base::control::Control;
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;

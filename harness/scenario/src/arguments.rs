@@ -1,6 +1,8 @@
 //! Arguments of a command line that change a document: `--set` and `--fire`.
 
-use super::document::{DocumentNode, DocumentTable, DocumentValue, controls_of_argument, parse_argument};
+use super::document::{
+    DocumentNode, DocumentTable, DocumentValue, controls_of_argument, parse_argument,
+};
 use super::error::{Place, Problem};
 use super::keys::{KeyKind, SCENARIO};
 use octant_base::names::suggestion;
@@ -64,7 +66,10 @@ pub fn override_set(document: &mut DocumentTable, argument: &str) -> Result<(), 
 }
 
 /// Table of the fault with an id.
-fn fault_of<'a>(document: &'a mut DocumentTable, id: &str) -> Result<&'a mut DocumentTable, String> {
+fn fault_of<'a>(
+    document: &'a mut DocumentTable,
+    id: &str,
+) -> Result<&'a mut DocumentTable, String> {
     let id_of = |node: &DocumentNode| match &node.value {
         DocumentValue::Table(table) => match &table.get("id")?.value {
             DocumentValue::Text(id) => Some(id.clone()),
@@ -72,7 +77,8 @@ fn fault_of<'a>(document: &'a mut DocumentTable, id: &str) -> Result<&'a mut Doc
         },
         _ => None,
     };
-    let Some(DocumentNode { value: DocumentValue::Array(faults), .. }) = document.get_mut("faults") else {
+    let Some(DocumentNode { value: DocumentValue::Array(faults), .. }) = document.get_mut("faults")
+    else {
         return Err("the scenario has no faults".to_owned());
     };
     let ids: Vec<String> = faults.iter().filter_map(id_of).collect();
@@ -93,7 +99,8 @@ pub(crate) fn fire(document: &mut DocumentTable, argument: &str) -> Result<(), P
         return Err(problem("expected ID=TIME, such as spike-1=\"5050 s\"".to_owned()));
     };
     let fault = fault_of(document, id).map_err(problem)?;
-    let Some(DocumentNode { value: DocumentValue::Table(trigger), .. }) = fault.get_mut("trigger") else {
+    let Some(DocumentNode { value: DocumentValue::Table(trigger), .. }) = fault.get_mut("trigger")
+    else {
         return Err(problem(format!("fault {id:?} has no trigger that can be fired by hand")));
     };
     if trigger.get("manual").is_none() {

@@ -227,14 +227,22 @@ pub mod case {
     use super::{Channel, UnitDimension, quantity};
 
     /// Heading.
-    pub static HEADING: Channel =
-        quantity("case.heading", UnitDimension::ANGLE, 1, "Heading of the case, from north over east.");
+    pub static HEADING: Channel = quantity(
+        "case.heading",
+        UnitDimension::ANGLE,
+        1,
+        "Heading of the case, from north over east.",
+    );
     /// Pitch.
     pub static PITCH: Channel =
         quantity("case.pitch", UnitDimension::ANGLE, 1, "Pitch of the case, bow up positive.");
     /// Roll.
-    pub static ROLL: Channel =
-        quantity("case.roll", UnitDimension::ANGLE, 1, "Roll of the case, starboard down positive.");
+    pub static ROLL: Channel = quantity(
+        "case.roll",
+        UnitDimension::ANGLE,
+        1,
+        "Roll of the case, starboard down positive.",
+    );
     /// Distance north of the site.
     pub static NORTH: Channel =
         quantity("case.north", UnitDimension::LENGTH, 1, "Distance of the case north of the site.");
@@ -252,8 +260,12 @@ pub mod case {
         "Geodetic latitude of the case, instead of north.",
     );
     /// Longitude.
-    pub static LONGITUDE: Channel =
-        quantity("case.longitude", UnitDimension::ANGLE, 1, "Longitude of the case, instead of east.");
+    pub static LONGITUDE: Channel = quantity(
+        "case.longitude",
+        UnitDimension::ANGLE,
+        1,
+        "Longitude of the case, instead of east.",
+    );
     /// Height.
     pub static HEIGHT: Channel = quantity(
         "case.height",
@@ -399,7 +411,12 @@ pub mod answer {
             9,
             "1σ of the g-dependent gyro biases.",
         ),
-        quantity("sigma.accel_bias", UnitDimension::ACCEL_BIAS, 3, "1σ of the accelerometer biases."),
+        quantity(
+            "sigma.accel_bias",
+            UnitDimension::ACCEL_BIAS,
+            3,
+            "1σ of the accelerometer biases.",
+        ),
         of("sigma.accel_scale", Class::Number, 3, "1σ of the accelerometer scale factor errors."),
         quantity(
             "sigma.accel_misalignment",

@@ -8,7 +8,7 @@ pub use super::document::join;
 use super::condition;
 use super::document::{DocumentNode, DocumentTable, DocumentValue, number, parse_default};
 use super::error::{Place, Problem};
-use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, Section, Variants};
+use super::keys::{Default, KeyBounds, KeyDefinition, KeyKind, Section, Variants};
 use super::ports;
 use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
@@ -44,7 +44,10 @@ pub fn complete(
                 Default::Value(text) => table.set(key.name, parse_default(text)),
                 Default::Section => table.set(
                     key.name,
-                    DocumentNode { value: DocumentValue::Table(DocumentTable::default()), place: Place::Default },
+                    DocumentNode {
+                        value: DocumentValue::Table(DocumentTable::default()),
+                        place: Place::Default,
+                    },
                 ),
                 Default::Required => {
                     let expected = expected(&key.kind);
@@ -80,7 +83,8 @@ pub fn check(
             Some(kind) => check(node, key, kind, path, problems),
             None => report(format!("found {found}, expected {}", expected(kind))),
         },
-        (KeyKind::Text, DocumentValue::Text(_)) | (KeyKind::Boolean, DocumentValue::Boolean(_)) => {}
+        (KeyKind::Text, DocumentValue::Text(_)) | (KeyKind::Boolean, DocumentValue::Boolean(_)) => {
+        }
         (KeyKind::Uri(schemes), DocumentValue::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
             if !schemes.iter().any(|(known, _)| *known == scheme) {
@@ -121,7 +125,10 @@ pub fn check(
                 });
             }
         }
-        (KeyKind::Number(bounds), value @ (DocumentValue::Integer(_) | DocumentValue::Number(_))) => {
+        (
+            KeyKind::Number(bounds),
+            value @ (DocumentValue::Integer(_) | DocumentValue::Number(_)),
+        ) => {
             if !number(value).is_some_and(|value| bounds.contain(value)) {
                 report(format!("found {found}, expected a number {}", bounds.words()));
             }
@@ -160,7 +167,8 @@ pub fn check(
         }
         (KeyKind::Times, DocumentValue::Array(entries)) => {
             for (index, entry) in entries.iter().enumerate() {
-                let checked = check_quantity(&entry.value, &[UnitDimension::TIME], KeyBounds::NotNegative);
+                let checked =
+                    check_quantity(&entry.value, &[UnitDimension::TIME], KeyBounds::NotNegative);
                 if let Err(message) = checked {
                     let path = format!("{path}[{index}]");
                     problems.push(Problem { place: entry.place.clone(), path, message });
@@ -249,7 +257,9 @@ pub fn check(
                 let path = format!("{path}[{index}]");
                 let place = entry.place.clone();
                 match &mut entry.value {
-                    DocumentValue::Table(table) => complete(table, section, &path, &place, problems),
+                    DocumentValue::Table(table) => {
+                        complete(table, section, &path, &place, problems)
+                    }
                     other => problems.push(Problem {
                         place,
                         path,
@@ -321,7 +331,11 @@ fn check_vector(
     }
 }
 
-fn check_quantity(value: &DocumentValue, dimensions: &[UnitDimension], bounds: KeyBounds) -> Result<(), String> {
+fn check_quantity(
+    value: &DocumentValue,
+    dimensions: &[UnitDimension],
+    bounds: KeyBounds,
+) -> Result<(), String> {
     let expected = quantity_words(dimensions);
     let DocumentValue::Text(text) = value else {
         return Err(format!("found {}, expected {expected}", value.describe()));
@@ -329,7 +343,8 @@ fn check_quantity(value: &DocumentValue, dimensions: &[UnitDimension], bounds: K
     let quantity = quantity::parse(text)
         .map_err(|error| format!("found {text:?}, {}; expected {expected}", explain(&error)))?;
     if !dimensions.iter().any(|dimension| quantity.is(*dimension)) {
-        let is = UnitDimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
+        let is =
+            UnitDimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
         return Err(format!("found {text:?}, {is}; expected {expected}"));
     }
     if quantity.is(UnitDimension::SAMPLES) && quantity.si.fract() != 0.0 {
@@ -378,7 +393,9 @@ pub fn expected(kind: &KeyKind) -> String {
         KeyKind::Choices(choices) => format!("a list of some of {}", choices.join(", ")),
         KeyKind::Boolean => "true or false".to_owned(),
         KeyKind::Integer(from, to) if from == to => format!("{from}"),
-        KeyKind::Integer(from, to) if *to == i64::MAX => format!("a whole number of {from} or more"),
+        KeyKind::Integer(from, to) if *to == i64::MAX => {
+            format!("a whole number of {from} or more")
+        }
         KeyKind::Integer(from, to) => format!("a whole number from {from} to {to}"),
         KeyKind::Number(bounds) => format!("a number {}", bounds.words()),
         KeyKind::Numbers(count) => format!("{count} numbers"),

@@ -2,7 +2,7 @@
 
 use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
-use octant_faults::trigger::{ThresholdSide, Signal};
+use octant_faults::trigger::{Signal, ThresholdSide};
 use octant_sample::Health;
 
 /// Example of a condition, for messages.

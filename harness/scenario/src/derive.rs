@@ -105,7 +105,9 @@ fn calibration(document: &mut DocumentTable) {
     let prior = match (drawn("normal"), drawn("uniform")) {
         (Some((_, text)), _) => text,
         // Standard deviation of a uniform distribution of this half width.
-        (None, Some((half_width, _))) => UnitDimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0)),
+        (None, Some((half_width, _))) => {
+            UnitDimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0))
+        }
         (None, None) => "0.0005 deg/h/g".to_owned(),
     };
     set(document, "procedure.calibration.prior.g_dependent", &prior);
@@ -231,7 +233,9 @@ fn first_given(node: &DocumentNode) -> Option<&DocumentNode> {
         return Some(node);
     }
     match &node.value {
-        DocumentValue::Table(table) => table.entries.iter().find_map(|entry| first_given(&entry.node)),
+        DocumentValue::Table(table) => {
+            table.entries.iter().find_map(|entry| first_given(&entry.node))
+        }
         _ => None,
     }
 }

@@ -106,7 +106,9 @@ impl DocumentTable {
         match path.split_once('.') {
             None => self.remove(path),
             Some((first, rest)) => {
-                if let Some(DocumentNode { value: DocumentValue::Table(table), .. }) = self.get_mut(first) {
+                if let Some(DocumentNode { value: DocumentValue::Table(table), .. }) =
+                    self.get_mut(first)
+                {
                     table.remove_at(rest);
                 }
             }
@@ -291,11 +293,15 @@ impl<'a> Lines<'a> {
                 match i64::from_str_radix(number.as_str(), number.radix()) {
                     Ok(integer) => DocumentValue::Integer(integer),
                     // Beyond 64 bits the number becomes a float, which every key for integers refuses.
-                    Err(_) => DocumentValue::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
+                    Err(_) => {
+                        DocumentValue::Number(number.as_str().parse().unwrap_or(f64::INFINITY))
+                    }
                 }
             }
             // `nan`, `inf` and invalid numbers all become not finite, which every key refuses.
-            DeValue::Float(number) => DocumentValue::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Float(number) => {
+                DocumentValue::Number(number.as_str().parse().unwrap_or(f64::NAN))
+            }
             DeValue::Boolean(value) => DocumentValue::Boolean(value),
             DeValue::Datetime(date) => DocumentValue::Date(date.to_string()),
             DeValue::Array(entries) => {
@@ -359,7 +365,9 @@ fn write_key(key: &str, out: &mut String) {
 /// Converts a value to JSON.
 pub fn json(value: &DocumentValue) -> serde_json::Value {
     match value {
-        DocumentValue::Text(text) | DocumentValue::Date(text) => serde_json::Value::from(text.as_str()),
+        DocumentValue::Text(text) | DocumentValue::Date(text) => {
+            serde_json::Value::from(text.as_str())
+        }
         DocumentValue::Integer(number) => serde_json::Value::from(*number),
         DocumentValue::Number(number) => serde_json::Value::from(*number),
         DocumentValue::Boolean(value) => serde_json::Value::from(*value),

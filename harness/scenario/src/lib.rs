@@ -31,14 +31,15 @@ pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use model::{
-    AlignmentSpec, CalibrationSpec, Code, MotionComponent, ParameterDistribution, DocksideSpec, Drive, EndpointSpec, Fault,
-    FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made, Mapped, Messages,
-    Method, MotionSpec, ChannelElement, Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting,
-    ShipSpectrum, SourceSpec, Speaks, UnknownFault, EntryPlace,
+    AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
+    EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made,
+    Mapped, Messages, Method, MotionComponent, MotionSpec, ParameterDistribution, Process,
+    Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting, ShipSpectrum, SourceSpec,
+    Speaks, UnknownFault,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
-pub use quantity::{UnitDimension, Quantity};
+pub use quantity::{Quantity, UnitDimension};
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};

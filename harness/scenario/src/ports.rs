@@ -6,7 +6,7 @@
 
 use super::document::{DocumentNode, DocumentTable, DocumentValue, join, number, parse_argument};
 use super::error::{Place, Problem};
-use super::model::{Code, Made, ChannelElement, Set, Setting, EntryPlace};
+use super::model::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
 use super::quantity::{self, explain};
 use crate::channel::{Channel, Class};
 use octant_base::names::suggestion;
@@ -31,8 +31,15 @@ pub(super) fn example_port(channel: &Channel) -> String {
 }
 
 /// Reads the ports of a channel: one for all elements, or one for each.
-pub(super) fn ports(node: &DocumentNode, channel: &Channel, path: &str) -> Result<Vec<ChannelElement>, Problem> {
-    let at = |node: &DocumentNode, path: &str| EntryPlace { place: node.place.clone(), path: path.to_owned() };
+pub(super) fn ports(
+    node: &DocumentNode,
+    channel: &Channel,
+    path: &str,
+) -> Result<Vec<ChannelElement>, Problem> {
+    let at = |node: &DocumentNode, path: &str| EntryPlace {
+        place: node.place.clone(),
+        path: path.to_owned(),
+    };
     let DocumentValue::Array(entries) = &node.value else {
         return Ok(vec![port(node, channel, at(node, path))?]);
     };
@@ -123,15 +130,18 @@ fn made(table: &DocumentTable, channel: &Channel, at: &EntryPlace) -> Result<Mad
                 );
             }
             let value = match (&node.value, channel.class) {
-                (DocumentValue::Text(text), Class::Quantity(dimension)) => constant(text, dimension)
-                    .map_err(|expected| wrong("constant", node, &expected))?,
+                (DocumentValue::Text(text), Class::Quantity(dimension)) => {
+                    constant(text, dimension)
+                        .map_err(|expected| wrong("constant", node, &expected))?
+                }
                 (DocumentValue::Boolean(value), Class::Flag) => f64::from(u8::from(*value)),
                 (DocumentValue::Integer(_) | DocumentValue::Number(_), Class::Number) => {
                     number(&node.value).unwrap_or_default()
                 }
-                (DocumentValue::Integer(value), Class::Whole | Class::Code | Class::Nanoseconds) => {
-                    *value as f64
-                }
+                (
+                    DocumentValue::Integer(value),
+                    Class::Whole | Class::Code | Class::Nanoseconds,
+                ) => *value as f64,
                 (_, Class::Quantity(dimension)) => {
                     let expected = format!("{} such as {:?}", dimension.name, dimension.example);
                     return Err(wrong("constant", node, &expected));
@@ -162,7 +172,12 @@ pub(super) fn settings(table: &DocumentTable, path: &str) -> Result<Vec<Setting>
     Ok(all)
 }
 
-fn collect(table: &DocumentTable, prefix: &str, path: &str, all: &mut Vec<Setting>) -> Result<(), Problem> {
+fn collect(
+    table: &DocumentTable,
+    prefix: &str,
+    path: &str,
+    all: &mut Vec<Setting>,
+) -> Result<(), Problem> {
     for entry in &table.entries {
         let name = join(prefix, &entry.key);
         let at = EntryPlace { place: entry.node.place.clone(), path: join(path, &entry.key) };

@@ -4,7 +4,8 @@
 //! same draws.
 
 use super::model::{
-    AlignmentSpec, ParameterDistribution, DocksideSpec, MOTIONS, Method, MotionSpec, Scenario, case_attitude,
+    AlignmentSpec, DocksideSpec, MOTIONS, Method, MotionSpec, ParameterDistribution, Scenario,
+    case_attitude,
 };
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
@@ -77,10 +78,14 @@ impl Drawing for Seeded {
 fn of_group<const N: usize>(distribution: &ParameterDistribution) -> draw::Draw<N> {
     match distribution {
         ParameterDistribution::Normal(sigma) => draw::Draw::Normal { sigma: *sigma },
-        ParameterDistribution::Uniform(half_width) => draw::Draw::Uniform { half_width: *half_width },
-        ParameterDistribution::Constant(values) => draw::Draw::Constant(std::array::from_fn(|index| {
-            values.get(index).copied().unwrap_or(f64::NAN)
-        })),
+        ParameterDistribution::Uniform(half_width) => {
+            draw::Draw::Uniform { half_width: *half_width }
+        }
+        ParameterDistribution::Constant(values) => {
+            draw::Draw::Constant(std::array::from_fn(|index| {
+                values.get(index).copied().unwrap_or(f64::NAN)
+            }))
+        }
     }
 }
 

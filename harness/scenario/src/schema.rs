@@ -2,7 +2,9 @@
 
 use super::complete::expected;
 use super::document::parse_default;
-use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, SCENARIO, SCHEMA, Section, Variants};
+use super::keys::{
+    Default, KeyBounds, KeyDefinition, KeyKind, SCENARIO, SCHEMA, Section, Variants,
+};
 use super::quantity::UnitDimension;
 use crate::channel::Channel;
 use serde_json::{Map, Value, json};
@@ -129,7 +131,9 @@ fn kind(kind: &KeyKind) -> Value {
         KeyKind::VariantTables(variants, at_most) => {
             json!({ "type": "array", "items": one_of(variants), "maxItems": at_most })
         }
-        KeyKind::Either(kinds) => json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() }),
+        KeyKind::Either(kinds) => {
+            json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() })
+        }
         // Never used as a property: only the check knows such a key.
         KeyKind::Refused(_) => json!(false),
     }

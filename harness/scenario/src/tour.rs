@@ -4,7 +4,7 @@
 
 use super::complete::expected;
 use super::document::{join, parse_default, write_value};
-use super::keys::{KeyBounds, Default, KeyDefinition, KeyKind, SCENARIO, Section};
+use super::keys::{Default, KeyBounds, KeyDefinition, KeyKind, SCENARIO, Section};
 use super::ports;
 use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
@@ -163,7 +163,9 @@ fn headed(key: &KeyDefinition, path: &str) -> Option<(&'static Section, bool)> {
             let (_, section) = (variants.forms)().iter().find(|(name, _)| *name == SHOWN_FAULT)?;
             Some((section, true))
         }
-        KeyKind::Either(kinds) => kinds.iter().find_map(KeyKind::section).map(|section| (section, false)),
+        KeyKind::Either(kinds) => {
+            kinds.iter().find_map(KeyKind::section).map(|section| (section, false))
+        }
         _ => None,
     }
 }
@@ -254,7 +256,9 @@ fn example(kind: &KeyKind) -> String {
         KeyKind::Number(_) => "1.0".to_owned(),
         KeyKind::Numbers(count) => repeat("1.0", *count),
         KeyKind::Quantity(dimensions, _) => format!("{:?}", dimensions[0].example),
-        KeyKind::Quantities(dimension, count) => repeat(&format!("{:?}", dimension.example), *count),
+        KeyKind::Quantities(dimension, count) => {
+            repeat(&format!("{:?}", dimension.example), *count)
+        }
         KeyKind::Vector(dimensions) => repeat(&format!("{:?}", dimensions[0].example), 3),
         KeyKind::Times => "[\"5050 s\"]".to_owned(),
         KeyKind::Condition => format!("{:?}", super::condition::EXAMPLE),
@@ -401,7 +405,11 @@ mod tests {
     use super::*;
 
     /// Collects every path of the table of keys, with its key.
-    fn paths(section: &'static Section, path: &str, all: &mut Vec<(String, &'static KeyDefinition)>) {
+    fn paths(
+        section: &'static Section,
+        path: &str,
+        all: &mut Vec<(String, &'static KeyDefinition)>,
+    ) {
         for key in section.keys.iter().filter(|key| !matches!(key.kind, KeyKind::Refused(_))) {
             let path = join(path, key.name);
             all.push((path.clone(), key));

@@ -1,7 +1,7 @@
 //! The resolved scenario, with every default and every drawn value.
 
 use super::derive::without_effect;
-use super::document::{KeyEntry, DocumentNode, DocumentTable, DocumentValue, write_value};
+use super::document::{DocumentNode, DocumentTable, DocumentValue, KeyEntry, write_value};
 use super::error::Place;
 use super::keys::{KeyKind, SCENARIO, Section};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
@@ -31,7 +31,8 @@ impl Scenario {
             document.remove_at("motion.ship.spectrum");
             document.set_at("motion.ship.preset", node(DocumentValue::Text("calm".to_owned())));
             for (index, name) in MOTIONS.into_iter().enumerate() {
-                let amplitude = if index < 3 { UnitDimension::ANGLE } else { UnitDimension::LENGTH };
+                let amplitude =
+                    if index < 3 { UnitDimension::ANGLE } else { UnitDimension::LENGTH };
                 let component = |sinusoid: &octant_plant::config::Sinusoid| {
                     node(table(vec![
                         ("amplitude", text(amplitude.write(sinusoid.amplitude))),
@@ -77,7 +78,8 @@ impl Scenario {
             "source.live.database",
             "source.live.mapping",
         ] {
-            let Some(DocumentNode { value: DocumentValue::Text(written), .. }) = document.at(path) else {
+            let Some(DocumentNode { value: DocumentValue::Text(written), .. }) = document.at(path)
+            else {
                 continue;
             };
             let resolved = match (path, written.split_once(':')) {
@@ -105,7 +107,9 @@ fn dimension_of(group: ParameterGroup) -> UnitDimension {
     match group {
         ParameterGroup::GyroBias => UnitDimension::GYRO_BIAS,
         ParameterGroup::GyroScale | ParameterGroup::AccelScale => UnitDimension::RATIO,
-        ParameterGroup::GyroMisalignment | ParameterGroup::AccelMisalignment => UnitDimension::SMALL_ANGLE,
+        ParameterGroup::GyroMisalignment | ParameterGroup::AccelMisalignment => {
+            UnitDimension::SMALL_ANGLE
+        }
         ParameterGroup::GDependent => UnitDimension::G_DEPENDENT,
         ParameterGroup::AccelBias => UnitDimension::ACCEL_BIAS,
     }
@@ -145,7 +149,9 @@ fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut S
             (Some(KeyKind::Table(inner)), DocumentValue::Table(table)) if !inner.one_of => {
                 later.push((key.name, *inner, vec![table], false));
             }
-            (Some(KeyKind::Tables(inner, ..)), DocumentValue::Array(entries)) if path.is_empty() => {
+            (Some(KeyKind::Tables(inner, ..)), DocumentValue::Array(entries))
+                if path.is_empty() =>
+            {
                 let tables = entries.iter().filter_map(|entry| match &entry.value {
                     DocumentValue::Table(table) => Some(table),
                     _ => None,

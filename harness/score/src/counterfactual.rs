@@ -131,7 +131,8 @@ pub fn counterfactual(
         .map(|(name, shift)| (name, shift.sigma.abs()))
         .max_by(|a, b| a.1.total_cmp(&b.1));
     let worst_shift_sigma = worst.map(|(_, sigma)| sigma);
-    let refused_by = |side: &CounterfactualSide<'_>| side.calibration.is_some_and(|c| c.refused.is_some());
+    let refused_by =
+        |side: &CounterfactualSide<'_>| side.calibration.is_some_and(|c| c.refused.is_some());
     let refused = refused_by(faulted) && !refused_by(twin);
     let navigation = difference(faulted, twin, latitude_rad, height_m);
     let shifted = worst_shift_sigma.is_some_and(|sigma| sigma >= HARMFUL_SHIFT_SIGMA);
@@ -170,7 +171,10 @@ pub fn counterfactual(
 }
 
 /// Shifts of the parameters that both runs estimated.
-fn shifts(faulted: &CounterfactualSide<'_>, twin: &CounterfactualSide<'_>) -> BTreeMap<String, Shift> {
+fn shifts(
+    faulted: &CounterfactualSide<'_>,
+    twin: &CounterfactualSide<'_>,
+) -> BTreeMap<String, Shift> {
     let (Some(faulted), Some(twin)) = (faulted.calibration, twin.calibration) else {
         return BTreeMap::new();
     };
@@ -296,7 +300,11 @@ mod tests {
         Episode { cause, start: at(start_s), end: at(end_s), epochs: 1 }
     }
 
-    fn side<'a>(c: &'a CalibrationScore, episodes: &'a [Episode], trace: &'a RunTrace) -> CounterfactualSide<'a> {
+    fn side<'a>(
+        c: &'a CalibrationScore,
+        episodes: &'a [Episode],
+        trace: &'a RunTrace,
+    ) -> CounterfactualSide<'a> {
         CounterfactualSide {
             calibration: Some(c),
             navigation: None,

@@ -1,6 +1,6 @@
 //! Findings about the equipment of a run, from its certificates and the day on which the run ended.
 
-use super::finding::{FindingSubject, Finding};
+use super::finding::{Finding, FindingSubject};
 use octant_requirements::Verdict;
 use octant_requirements::equipment::{Day, Equipment};
 
@@ -43,7 +43,10 @@ mod tests {
         let all = [piece("2027-03-31"), piece("2027-03-30")];
         let found = findings(&all, Some(&Day::parse("2027-03-31").unwrap()));
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].verdict, found[0].about), (Verdict::Inconclusive, FindingSubject::Equipment));
+        assert_eq!(
+            (found[0].verdict, found[0].about),
+            (Verdict::Inconclusive, FindingSubject::Equipment)
+        );
         for told in ["K-4", "table", "17", "until 2027-03-30", "on 2027-03-31"] {
             assert!(found[0].reason.contains(told), "{told}: {}", found[0].reason);
         }

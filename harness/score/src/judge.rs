@@ -4,7 +4,7 @@
 //! done, on refusals, faults and findings. All of them are in the summary, so that every reader can
 //! derive its verdict again.
 
-pub use super::finding::{FindingSubject, Finding};
+pub use super::finding::{Finding, FindingSubject};
 
 use super::summary::{BaselineMethod, CalibrationScore, FaultResult, Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
@@ -144,7 +144,9 @@ fn sides(
             FindingSubject::Bench | FindingSubject::Equipment => {
                 bench.push((finding.verdict, finding.reason.clone()));
             }
-            FindingSubject::Unit | FindingSubject::Run => unit.push((finding.verdict, Some(finding.reason.clone()))),
+            FindingSubject::Unit | FindingSubject::Run => {
+                unit.push((finding.verdict, Some(finding.reason.clone())))
+            }
         }
     }
     for (method, calibration, primary) in refusals(summary) {

@@ -4,7 +4,7 @@
 use super::summary::ParameterScore;
 use nalgebra::{SMatrix, SVector};
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use std::collections::BTreeMap;
 
 /// Scores every parameter, in the units for users. A σ that isn't positive means that the parameter was

@@ -4,7 +4,7 @@
 //! all of which are in the summary too. Every reader derives the verdict again; if it differs, the
 //! summary contradicts itself, and its file is evidence of nothing.
 
-use super::judge::{FindingSubject, Finding, as_far_as_done, derive};
+use super::judge::{Finding, FindingSubject, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
 use octant_requirements::verdict::LimitCheck;
@@ -132,7 +132,10 @@ const NOT_HELD: &str = "its summary doesn't hold what a pass rests on";
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
-pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<RederivedVerdict, serde_json::Error> {
+pub fn rejudge(
+    stored: &Summary,
+    outside: &[Finding],
+) -> Result<RederivedVerdict, serde_json::Error> {
     let mut summary = stored.clone();
     let mut not_stored = Vec::new();
     if stored.schema < WITH_FINDINGS {

@@ -110,7 +110,11 @@ impl<'a> CaseBench<'a> {
     ///
     /// # Errors
     /// If it can't be started.
-    pub fn octant_with(&self, words: &[&str], more: &[(&str, &str)]) -> Result<ProcessOutput, BenchError> {
+    pub fn octant_with(
+        &self,
+        words: &[&str],
+        more: &[(&str, &str)],
+    ) -> Result<ProcessOutput, BenchError> {
         let system = FileError::of("start", self.program);
         let mut command = process::command(self.program);
         command.args(words).current_dir(&self.folder).stdin(Stdio::null());

@@ -2,7 +2,7 @@
 
 use crate::bench::CaseBench;
 use crate::error::CaseSetupError;
-use crate::judge::{Expectation, CaseOutcome};
+use crate::judge::{CaseOutcome, Expectation};
 
 /// Case: an action, and its expected outcome.
 #[derive(Debug)]

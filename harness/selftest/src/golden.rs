@@ -3,7 +3,7 @@
 use super::bench::CaseBench;
 use super::case::SelftestCase;
 use super::error::CaseSetupError;
-use super::judge::{Expectation, Known, CaseOutcome};
+use super::judge::{CaseOutcome, Expectation, Known};
 use super::scenarios::{BELIEVING, MOSTLY, SHORT, SPIKE, campaign};
 use serde_json::Value;
 

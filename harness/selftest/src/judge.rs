@@ -286,8 +286,18 @@ mod tests {
                         .collect(),
                     ..CaseOutcome::default()
                 };
-                assert_eq!(judge(&case.expectation, &with(0.9)).0, CaseVerdict::Pass, "{}", case.id);
-                assert_eq!(judge(&case.expectation, &with(1.1)).0, CaseVerdict::Fail, "{}", case.id);
+                assert_eq!(
+                    judge(&case.expectation, &with(0.9)).0,
+                    CaseVerdict::Pass,
+                    "{}",
+                    case.id
+                );
+                assert_eq!(
+                    judge(&case.expectation, &with(1.1)).0,
+                    CaseVerdict::Fail,
+                    "{}",
+                    case.id
+                );
                 assert_eq!(judge(&case.expectation, &with(f64::NAN)).0, CaseVerdict::Fail);
                 // Each number is required.
                 for missing in known {

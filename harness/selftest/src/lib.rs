@@ -21,7 +21,7 @@ pub mod verdicts;
 pub use case::SelftestCase;
 
 use bench::CaseBench;
-use error::{CaseSetupError, CaseFolderError};
+use error::{CaseFolderError, CaseSetupError};
 use octant_base::pool::in_order;
 use record::CaseRecord;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use super::case::SelftestCase;
 use super::error::{CaseSetupError, FileError};
-use super::judge::{CaseVerdict, CaseOutcome, judge};
+use super::judge::{CaseOutcome, CaseVerdict, judge};
 use octant_base::hash::sha256;
 use octant_evidence::RunFacts;
 use octant_evidence::manifest::{Git, Machine, Manifest};
@@ -161,7 +161,8 @@ impl SelftestRecord {
                 kind = case.kind;
                 _ = writeln!(text, "{kind}");
             }
-            let sign = if case.verdict == CaseVerdict::Alarm { "ALARM" } else { case.verdict.name() };
+            let sign =
+                if case.verdict == CaseVerdict::Alarm { "ALARM" } else { case.verdict.name() };
             _ = writeln!(text, "  {sign:5}  {:width$}  {}", case.id, clipped(&case.found));
             if case.verdict != CaseVerdict::Pass {
                 _ = writeln!(text, "         {:width$}  expected: {}", "", case.expected);

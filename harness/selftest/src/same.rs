@@ -4,7 +4,7 @@
 use super::bench::CaseBench;
 use super::case::SelftestCase;
 use super::error::CaseSetupError;
-use super::judge::{Expectation, CaseOutcome};
+use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, SHORT, campaign};
 
 pub(super) fn cases() -> Vec<SelftestCase> {
@@ -74,7 +74,11 @@ fn shards(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
 }
 
 /// Merges a campaign, and keeps the bytes of its tables.
-fn tables(bench: &CaseBench<'_>, how: &str, outcome: &mut CaseOutcome) -> Result<(), CaseSetupError> {
+fn tables(
+    bench: &CaseBench<'_>,
+    how: &str,
+    outcome: &mut CaseOutcome,
+) -> Result<(), CaseSetupError> {
     let said = bench.octant(&["campaign", "merge", "campaign"])?;
     let mut bytes = Vec::new();
     for table in ["cases", "checks", "drift"] {

@@ -4,7 +4,7 @@
 use super::bench::CaseBench;
 use super::case::SelftestCase;
 use super::error::CaseSetupError;
-use super::judge::{Expectation, CaseOutcome};
+use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
 use minisign::KeyPair;
 use octant_requirements::Verdict;

@@ -75,7 +75,10 @@ impl Source for AnySource {
         each!(&self.0, source => source.is_live())
     }
 
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         each!(&mut self.0, source => source.conclude(broken))
     }
 

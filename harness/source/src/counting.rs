@@ -97,7 +97,11 @@ struct Pending {
 impl Counting {
     /// Creates the counting. `nominal_ns` is the interval of a row, `split` the number of samples
     /// made from it.
-    pub(super) fn new(quantity: RecordedQuantity, nominal_ns: u64, split: u32) -> Result<Self, String> {
+    pub(super) fn new(
+        quantity: RecordedQuantity,
+        nominal_ns: u64,
+        split: u32,
+    ) -> Result<Self, String> {
         if !(1..=SPLIT_MAX).contains(&split) {
             return Err(format!("split is {split}, expected 1 to {SPLIT_MAX}"));
         }

@@ -74,7 +74,10 @@ pub trait Source {
     /// Ends the run; `broken` is the reason where the run was aborted. Stops everything that moves.
     /// Returns figures for the report, if there are any, and an error if the equipment was stopped
     /// by another cause or doesn't stop as it should: by then every stop command was sent.
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let _ = broken;
         (None, None)
     }

@@ -2,7 +2,7 @@
 
 use super::{Epoch, Source, SourceError};
 use octant_plant::config::PlantConfig;
-use octant_plant::{PlantConfigError, Plant, Truth};
+use octant_plant::{Plant, PlantConfigError, Truth};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 

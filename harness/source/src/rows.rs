@@ -3,7 +3,7 @@
 use super::SourceError;
 use csv::StringRecord;
 use octant_base::number::counted;
-use octant_scenario::recorded::{RecordedColumn, Delimiter};
+use octant_scenario::recorded::{Delimiter, RecordedColumn};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -114,7 +114,9 @@ impl Rows {
     /// Returns the index of a column, from 0.
     pub(super) fn column(&self, column: &RecordedColumn) -> Result<usize, SourceError> {
         match column {
-            RecordedColumn::Number(0) => Err(self.error("found column 0, expected a number from 1".into())),
+            RecordedColumn::Number(0) => {
+                Err(self.error("found column 0, expected a number from 1".into()))
+            }
             RecordedColumn::Number(number) => Ok(number - 1),
             RecordedColumn::Name(name) => {
                 let header = self.header.iter().flatten();

@@ -119,7 +119,8 @@ fn what_stands_out_is_found_and_nothing_else() {
     values[17] = 40.0;
     values[200] = -25.0;
     values[5] = f64::NAN;
-    let found: Vec<usize> = outliers(&values, OutlierScale::Linear, 5.0).iter().map(|o| o.index).collect();
+    let found: Vec<usize> =
+        outliers(&values, OutlierScale::Linear, 5.0).iter().map(|o| o.index).collect();
     assert_eq!(found, [5, 17, 200]);
     // Skewed magnitudes have outliers by themselves, their logarithms don't.
     let skewed: Vec<f64> = normals(3, "skewed", 300).into_iter().map(|v| (1.5 * v).exp()).collect();

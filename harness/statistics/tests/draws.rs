@@ -1,7 +1,8 @@
 //! Draws of factors: their dependencies and distributions.
 
 use octant_statistics::draw::{
-    FactorCorrelation, Correlations, Distribution, DrawError, Factor, DrawnFactor, latin_hypercube, monte_carlo,
+    Correlations, Distribution, DrawError, DrawnFactor, Factor, FactorCorrelation, latin_hypercube,
+    monte_carlo,
 };
 use octant_statistics::{normal, rank, sample};
 

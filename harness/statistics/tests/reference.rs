@@ -1,7 +1,7 @@
 //! Comparison with numbers of scipy and numpy: `fixtures/golden/statistics.json`, with the way they
 //! were made beside it.
 
-use octant_statistics::draw::{Distribution, Factor, DrawnFactor};
+use octant_statistics::draw::{Distribution, DrawnFactor, Factor};
 use octant_statistics::outlier::{OutlierScale, outliers};
 use octant_statistics::proportion::{
     Demand, Needed, further_at_rate, further_if_all_pass, success_lower_bound, success_upper_bound,

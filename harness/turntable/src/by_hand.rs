@@ -2,8 +2,8 @@
 
 use crate::following::rest;
 use crate::{
-    TableAxis, Button, Driver, Error, TablePlan, DriverSettings, TableStatus, Supervisor, Turntable, on_panic,
-    on_signals, open,
+    Button, Driver, DriverSettings, Error, Supervisor, TableAxis, TablePlan, TableStatus,
+    Turntable, on_panic, on_signals, open,
 };
 
 /// Move by hand.

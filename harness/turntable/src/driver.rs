@@ -2,7 +2,8 @@
 
 use crate::dialect::{Command, Fields, Pattern, Values};
 use crate::{
-    TableAxis, AxisStatus, Dialect, EmergencyStop, Error, Guard, TableLimits, TablePort, TableStatus, Turntable,
+    AxisStatus, Dialect, EmergencyStop, Error, Guard, TableAxis, TableLimits, TablePort,
+    TableStatus, Turntable,
 };
 use std::io;
 use std::time::{Duration, Instant};
@@ -48,7 +49,12 @@ impl<P: TablePort> Driver<P> {
     /// # Errors
     /// If the limits are invalid, the language has no watchdog but one is requested, or the table
     /// doesn't answer.
-    pub fn new(port: P, name: &str, dialect: Dialect, settings: DriverSettings) -> Result<Self, Error> {
+    pub fn new(
+        port: P,
+        name: &str,
+        dialect: Dialect,
+        settings: DriverSettings,
+    ) -> Result<Self, Error> {
         settings.limits.check()?;
         let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
         if lacking {
@@ -303,7 +309,12 @@ impl<P: TablePort> Driver<P> {
 }
 
 impl<P: TablePort> Turntable for Driver<P> {
-    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+    fn goto(
+        &mut self,
+        axis: TableAxis,
+        angle_rad: f64,
+        rate_radps: Option<f64>,
+    ) -> Result<(), Error> {
         self.stop.check()?;
         let limits = *self.settings.limits.of(axis);
         let rate = rate_radps.unwrap_or(limits.rate_radps);

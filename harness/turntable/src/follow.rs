@@ -1,6 +1,6 @@
 //! Transfer of the core's gimbal commands to a table.
 
-use crate::{TableAxis, Error, TableStatus, Turntable};
+use crate::{Error, TableAxis, TableStatus, Turntable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 
 /// Moves a table to the core's set points.

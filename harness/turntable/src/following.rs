@@ -1,8 +1,8 @@
 //! A table that follows a run.
 
 use crate::{
-    TableAxis, Button, Dialect, Driver, EmergencyStop, Error, Follower, TrackPoint, TablePort, DriverSettings, TableStatus,
-    Supervisor, Track, Turntable, on_panic, open,
+    Button, Dialect, Driver, DriverSettings, EmergencyStop, Error, Follower, Supervisor, TableAxis,
+    TablePort, TableStatus, Track, TrackPoint, Turntable, on_panic, open,
 };
 use octant_sample::{GimbalAngles, GimbalCommand};
 use std::sync::Arc;

@@ -48,5 +48,5 @@ pub use limits::{AxisLimits, TableLimits};
 pub use port::{TablePort, check_port, open};
 pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
 pub use supervisor::Supervisor;
-pub use table::{TableAxis, AxisStatus, TableStatus, Turntable};
-pub use track::{TrackPoint, Track};
+pub use table::{AxisStatus, TableAxis, TableStatus, Turntable};
+pub use track::{Track, TrackPoint};

@@ -1,6 +1,6 @@
 //! Limits of a table's angles and rates.
 
-use crate::{TableAxis, Error};
+use crate::{Error, TableAxis};
 
 /// Limits of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

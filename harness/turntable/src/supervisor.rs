@@ -1,6 +1,8 @@
 //! Continuous supervision of a table.
 
-use crate::{TableAxis, Driver, EmergencyStop, Error, TableLimits, TablePort, TableStatus, Turntable};
+use crate::{
+    Driver, EmergencyStop, Error, TableAxis, TableLimits, TablePort, TableStatus, Turntable,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -181,7 +183,12 @@ fn look(
 }
 
 impl<P: TablePort + 'static> Turntable for Supervisor<P> {
-    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+    fn goto(
+        &mut self,
+        axis: TableAxis,
+        angle_rad: f64,
+        rate_radps: Option<f64>,
+    ) -> Result<(), Error> {
         locked(&self.shared.driver).goto(axis, angle_rad, rate_radps)
     }
 

@@ -81,7 +81,12 @@ pub trait Turntable: Send {
     ///
     /// # Errors
     /// If it is beyond the limits, the emergency stop was tripped, or the table refuses it.
-    fn goto(&mut self, axis: TableAxis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error>;
+    fn goto(
+        &mut self,
+        axis: TableAxis,
+        angle_rad: f64,
+        rate_radps: Option<f64>,
+    ) -> Result<(), Error>;
 
     /// Turns an axis continuously with a rate; 0 brakes it.
     ///

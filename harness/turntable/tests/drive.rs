@@ -4,7 +4,7 @@ use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::{ControllerBehaviour, SimulatedServer};
 use octant_turntable::{
-    TableAxis, Dialect, Driver, Error, Follower, TablePort, DriverSettings, Supervisor, Turntable,
+    Dialect, Driver, DriverSettings, Error, Follower, Supervisor, TableAxis, TablePort, Turntable,
 };
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -197,7 +197,10 @@ fn beyond_the_limits_nothing_is_sent() {
     assert!(matches!(driver.rate(TableAxis::Roll, degrees(-20.1)), Err(Error::Rate { .. })));
     for nonsense in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(matches!(driver.goto(TableAxis::Roll, nonsense, None), Err(Error::Angle { .. })));
-        assert!(matches!(driver.goto(TableAxis::Roll, 0.0, Some(nonsense)), Err(Error::Rate { .. })));
+        assert!(matches!(
+            driver.goto(TableAxis::Roll, 0.0, Some(nonsense)),
+            Err(Error::Rate { .. })
+        ));
         assert!(matches!(driver.rate(TableAxis::Roll, nonsense), Err(Error::Rate { .. })));
     }
     assert!(matches!(driver.goto(TableAxis::Roll, 0.0, Some(0.0)), Err(Error::Rate { .. })));

@@ -3,7 +3,7 @@
 use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::ControllerBehaviour;
-use octant_turntable::{TableAxis, Following, TablePlan, press, stop_by_hand};
+use octant_turntable::{Following, TableAxis, TablePlan, press, stop_by_hand};
 use std::process::Command;
 use std::time::{Duration, Instant};
 

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use octant_turntable::simulate::ControllerBehaviour;
-use octant_turntable::{TableAxis, DriverSettings, Supervisor, Turntable};
+use octant_turntable::{DriverSettings, Supervisor, TableAxis, Turntable};
 use std::time::Duration;
 
 #[test]

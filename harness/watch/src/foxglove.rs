@@ -182,7 +182,9 @@ impl FoxgloveServer {
     /// Sends the earlier messages to new subscribers.
     fn answer(&mut self) {
         while let Ok((sink, topic)) = self.subscribed.try_recv() {
-            let Some(channel) = PublishedChannel::ALL.iter().find(|c| c.topic() == topic) else { continue };
+            let Some(channel) = PublishedChannel::ALL.iter().find(|c| c.topic() == topic) else {
+                continue;
+            };
             let (raw, history) =
                 (&self.channels[*channel as usize], &self.history[*channel as usize]);
             for (time_ns, message) in history.messages.iter().chain(&history.last) {

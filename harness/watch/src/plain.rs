@@ -5,7 +5,7 @@ use super::state::{FaultState, RunState};
 use octant_base::number::{counted, fixed, significant};
 use octant_requirements::Verdict;
 use octant_sample::Mode;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use std::fmt::Write as _;
 
 /// Renders a time of a run: `9 h 34 min`, `12.5 s`.

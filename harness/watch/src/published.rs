@@ -3,7 +3,7 @@
 use super::state::RunState;
 use octant_recorder::Event;
 use octant_recorder::reader::Item;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use serde_json::{Map, Value, json};
 
 /// Channel of messages.
@@ -174,7 +174,10 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
             }
             publish(PublishedChannel::Gimbals, gimbals);
             if let Some(nis) = state.nis.filter(|_| output.nis.is_finite()) {
-                publish(PublishedChannel::Nis, json!({ "nis": nis.last, "mean": finite(nis.mean()) }));
+                publish(
+                    PublishedChannel::Nis,
+                    json!({ "nis": nis.last, "mean": finite(nis.mean()) }),
+                );
             }
         }
         Item::Truth(truth) => {
@@ -217,7 +220,9 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
                     );
                 }
             }
-            Event::Fault { .. } | Event::Receipts(_) => publish(PublishedChannel::Faults, faults(state)),
+            Event::Fault { .. } | Event::Receipts(_) => {
+                publish(PublishedChannel::Faults, faults(state))
+            }
             _ => {}
         },
         Item::Sample(_) | Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}
@@ -282,7 +287,8 @@ mod tests {
         let paths: Vec<&str> = texts.into_iter().filter(|text| text.starts_with('/')).collect();
         for path in &paths {
             let (topic, fields) = path.split_once('.').unwrap_or((path, ""));
-            let channel = PublishedChannel::ALL.into_iter().find(|channel| channel.topic() == topic);
+            let channel =
+                PublishedChannel::ALL.into_iter().find(|channel| channel.topic() == topic);
             let channel = channel.unwrap_or_else(|| panic!("nobody publishes {topic}"));
             let mut schema = channel.schema();
             for field in fields.split('.').filter(|field| !field.is_empty()) {

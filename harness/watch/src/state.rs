@@ -235,7 +235,9 @@ impl RunState {
                     self.causes[at].outputs += 1;
                     self.causes[at].last_ns = time_ns;
                 }
-                Err(at) => self.causes.insert(at, ReportedCause { flag, outputs: 1, last_ns: time_ns }),
+                Err(at) => {
+                    self.causes.insert(at, ReportedCause { flag, outputs: 1, last_ns: time_ns })
+                }
             }
         }
     }

@@ -4,9 +4,9 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_sample::{DeviceTime, GimbalAngles, GimbalCommand, Navigation, Output, Sample};
 use octant_wire::Message;
-use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
-use octant_wire::message::{ClockTime, OutputMessage, EndRole, SampleMessage, StepNumber};
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
+use octant_wire::can::{self, BusFrame, CanVersion, Reassembler};
+use octant_wire::message::{ClockTime, EndRole, OutputMessage, SampleMessage, StepNumber};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use std::hint::black_box;
 
 /// Number of steps in the stream, at 200 Hz.

@@ -23,7 +23,7 @@ mod checksum;
 mod text;
 mod unreadable;
 
-pub use message::{MessageKind, Message, EndRole, StepNumber};
+pub use message::{EndRole, Message, MessageKind, StepNumber};
 pub use text::{Text, TextError};
 pub use unreadable::Unreadable;
 

@@ -1,7 +1,7 @@
 //! Order of requests: those that a device does, answers again or ignores, by the tables of "What is
 //! said when" in `README.md`.
 
-use crate::message::{AidingMessage, StepPacing, SampleMessage, DeviceStatus, StepNumber};
+use crate::message::{AidingMessage, DeviceStatus, SampleMessage, StepNumber, StepPacing};
 use octant_sample::Aiding;
 
 /// Decision of a device about a request.
@@ -57,7 +57,9 @@ impl Requests {
         }
         let aiding = self.aiding.filter(|aiding| aiding.step == message.step);
         match (aiding, self.pacing) {
-            (Some(aiding), _) => self.decide(message.step, RequestDecision::Do(Some(aiding.aiding))),
+            (Some(aiding), _) => {
+                self.decide(message.step, RequestDecision::Do(Some(aiding.aiding)))
+            }
             (None, pacing) => {
                 add(&mut self.status.aiding_missing, 1);
                 match pacing {
@@ -102,9 +104,9 @@ impl Requests {
 
 #[cfg(feature = "state")]
 mod state {
-    use super::{AidingMessage, StepPacing, Requests};
-    use crate::{MessageKind, Message};
-    use octant_state::{StateReader, State, StateError, Writer};
+    use super::{AidingMessage, Requests, StepPacing};
+    use crate::{Message, MessageKind};
+    use octant_state::{State, StateError, StateReader, Writer};
 
     impl State for Requests {
         fn save(&self, to: &mut Writer) {

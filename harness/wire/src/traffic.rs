@@ -1,6 +1,6 @@
 //! Rates of messages, from which the load of a line or bus is computed.
 
-use crate::message::{MessageKind, EndRole};
+use crate::message::{EndRole, MessageKind};
 
 /// Rates of the messages of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

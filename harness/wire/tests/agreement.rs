@@ -1,7 +1,7 @@
 //! Agreement of two hellos, and the bye to an end that doesn't fit.
 
 use octant_wire::message::{
-    Agreement, Capabilities, Hello, EndLimits, StepPacing, Reason, SessionRefusal, EndRole, agree,
+    Agreement, Capabilities, EndLimits, EndRole, Hello, Reason, SessionRefusal, StepPacing, agree,
 };
 
 fn harness() -> Hello {
@@ -26,8 +26,11 @@ fn refusal(harness: &Hello, device: &Hello) -> SessionRefusal {
 
 #[test]
 fn two_that_fit_agree() {
-    let expected =
-        Agreement { session: 0x1234_5678, pacing: StepPacing::LockStep, configuration_compared: true };
+    let expected = Agreement {
+        session: 0x1234_5678,
+        pacing: StepPacing::LockStep,
+        configuration_compared: true,
+    };
     assert_eq!(agree(&harness(), &device()), Ok(expected));
     assert_eq!(agree(&device(), &harness()), Ok(expected));
     let unknown = Hello { configuration: [0; 32], ..device() };

@@ -3,7 +3,7 @@
 
 use octant_wire::can::{Bits, Bus, CanVersion, Slot, classic_bits, fd_bits};
 use octant_wire::traffic::Traffic;
-use octant_wire::{MessageKind, EndRole};
+use octant_wire::{EndRole, MessageKind};
 use proptest::prelude::*;
 
 /// Lowest `count` bits of a number, highest first.

@@ -182,7 +182,8 @@ fn drive(mut peer: Peer, garbage: bool) -> (i32, String) {
         _ => None,
     });
     agree(&ours, &theirs).unwrap();
-    let (mut step, mut echo, mut gathering) = (StepNumber::default(), Echo::new(None), Gathering::new());
+    let (mut step, mut echo, mut gathering) =
+        (StepNumber::default(), Echo::new(None), Gathering::new());
     let mut request = |peer: &mut Peer, messages: &[Message], expected: &[Message]| {
         let mut found: Vec<Message> = Vec::new();
         peer.ask(messages, |message| {

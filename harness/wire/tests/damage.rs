@@ -2,9 +2,9 @@
 
 use crate::common::arbitrary::{message, one_of_each, output, sample};
 use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
-use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
-use octant_wire::serial::{FrameDefect, SerialDecoder, DecodeEvent, MAX_STUFFED_BYTES};
-use octant_wire::{MessageKind, Message, Unreadable};
+use octant_wire::can::{self, BusFrame, CanVersion, Reassembler};
+use octant_wire::serial::{DecodeEvent, FrameDefect, MAX_STUFFED_BYTES, SerialDecoder};
+use octant_wire::{Message, MessageKind, Unreadable};
 use proptest::prelude::*;
 
 #[test]
@@ -244,7 +244,8 @@ fn a_cut_line_or_datagram_ends_with_what_there_is() {
 
 #[test]
 fn what_is_intact_but_not_understood_is_said_in_plain_words() {
-    let words = |kind: MessageKind, payload: &[u8]| Message::read(kind, payload).unwrap_err().to_string();
+    let words =
+        |kind: MessageKind, payload: &[u8]| Message::read(kind, payload).unwrap_err().to_string();
     let mut hello = one_of_each()
         .into_iter()
         .find(|m| m.kind() == MessageKind::Hello)
@@ -259,13 +260,25 @@ fn what_is_intact_but_not_understood_is_said_in_plain_words() {
          or give the peer a firmware of version 1"
     );
     // Applies to a newer hello of any length.
-    assert_eq!(Message::read(MessageKind::Hello, &[3, 0]), Err(Unreadable::NewerVersion { found: 3 }));
-    assert_eq!(words(MessageKind::Sample, &[0; 3]), "a message sample has 3 bytes, expected are 52");
+    assert_eq!(
+        Message::read(MessageKind::Hello, &[3, 0]),
+        Err(Unreadable::NewerVersion { found: 3 })
+    );
+    assert_eq!(
+        words(MessageKind::Sample, &[0; 3]),
+        "a message sample has 3 bytes, expected are 52"
+    );
     let mut output = [0; 132];
     output[20] = 5;
-    assert_eq!(words(MessageKind::Output, &output), "a message output has mode 5, expected is 0 to 4");
+    assert_eq!(
+        words(MessageKind::Output, &output),
+        "a message output has mode 5, expected is 0 to 4"
+    );
     output[20..22].copy_from_slice(&[0, 2]);
-    assert_eq!(words(MessageKind::Output, &output), "a message output has moving 2, expected is 0 or 1");
+    assert_eq!(
+        words(MessageKind::Output, &output),
+        "a message output has moving 2, expected is 0 or 1"
+    );
     let mut bye = [b'x'; 44];
     bye[10] = 0xFF;
     assert_eq!(

@@ -73,7 +73,8 @@ fn lines() {
     }
     for vector in vectors("messages.json") {
         let kind = vector["kind"].as_str().unwrap();
-        let code = octant_wire::MessageKind::ALL.iter().find(|one| one.name() == kind).unwrap().code();
+        let code =
+            octant_wire::MessageKind::ALL.iter().find(|one| one.name() == kind).unwrap().code();
         let payload = unhex(vector["payload"].as_str().unwrap());
         let name = format!("payload {}", vector["name"].as_str().unwrap());
         seeds.push((name, [code].into_iter().chain(payload).collect()));

@@ -50,8 +50,9 @@ fn nothing_is_allocated() {
                 black_box(decoder.next(&mut bytes));
             }
             black_box(decoder.end());
-            for (sender, format) in
-                EndRole::ALL.into_iter().flat_map(|r| [(r, CanVersion::Classic), (r, CanVersion::Fd)])
+            for (sender, format) in EndRole::ALL
+                .into_iter()
+                .flat_map(|r| [(r, CanVersion::Classic), (r, CanVersion::Fd)])
             {
                 let mut reassembler = Reassembler::new(&EndRole::ALL, format);
                 for (i, frame) in

@@ -5,9 +5,9 @@ use octant_sample::{DeviceTime, GimbalAngles, Health, Sample};
 use octant_wire::can::{Bus, CanVersion, Slot};
 use octant_wire::layout::{FieldType, fields, parameter_unit};
 use octant_wire::message::{Capabilities, ClockTime, SampleMessage, StepNumber};
-use octant_wire::serial::{SerialEncoder, HEADER_BYTES};
+use octant_wire::serial::{HEADER_BYTES, SerialEncoder};
 use octant_wire::traffic::Traffic;
-use octant_wire::{MessageKind, Message};
+use octant_wire::{Message, MessageKind};
 use std::fmt::Write;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
@@ -77,7 +77,9 @@ fn field_table(kind: MessageKind) -> String {
                 row(field.at, "flag", flag, "", &format!("bit 15; {what}"));
             }
             FieldType::Bytes(n) => row(field.at, &format!("{n} bytes"), field.name, &unit, &what),
-            FieldType::Text(n) => row(field.at, &format!("text, {n} bytes"), field.name, &unit, &what),
+            FieldType::Text(n) => {
+                row(field.at, &format!("text, {n} bytes"), field.name, &unit, &what)
+            }
             FieldType::Zero(n) => row(field.at, &format!("zero, {n} bytes"), "", "", ""),
             ty => row(field.at, ty.name(), field.name, &unit, &what),
         }

@@ -3,9 +3,9 @@
 
 use octant_sample::{Aiding, DeviceTime, Reference, Sample};
 use octant_wire::message::{
-    AidingMessage, ClockTime, Message, Offset, StepPacing, SampleMessage, StepNumber, TimeReply,
+    AidingMessage, ClockTime, Message, Offset, SampleMessage, StepNumber, StepPacing, TimeReply,
 };
-use octant_wire::requests::{Requests, RequestDecision};
+use octant_wire::requests::{RequestDecision, Requests};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 

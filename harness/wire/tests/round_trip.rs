@@ -4,8 +4,8 @@ use crate::common::arbitrary::{message, one_of_each};
 use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
 use octant_wire::can::{CanVersion, Reassembler};
 use octant_wire::message::ClockTime;
-use octant_wire::serial::{SerialDecoder, SerialEncoder, MAX_FRAME_BYTES, FrameOrder};
-use octant_wire::{MessageKind, Message, EndRole};
+use octant_wire::serial::{FrameOrder, MAX_FRAME_BYTES, SerialDecoder, SerialEncoder};
+use octant_wire::{EndRole, Message, MessageKind};
 use proptest::prelude::*;
 
 proptest! {

@@ -3,9 +3,9 @@
 
 use crate::common::vectors::{self, Vector};
 use crate::common::{self, decode, reassemble, received, same};
-use octant_wire::can::{self, CanVersion, BusFrame, Reassembler, Slot};
+use octant_wire::can::{self, BusFrame, CanVersion, Reassembler, Slot};
 use octant_wire::layout::{FieldType, fields};
-use octant_wire::message::{MessageKind, Message, EndRole};
+use octant_wire::message::{EndRole, Message, MessageKind};
 use octant_wire::serial::{SerialDecoder, SerialEncoder};
 use serde_json::{Value, json};
 
@@ -716,7 +716,10 @@ fn damage_on_a_bus_leaves_this() {
         entries.push(vec![
             ("name", json!(case.name).to_string()),
             ("about", json!(case.about).to_string()),
-            ("format", json!(if case.format == CanVersion::Fd { "fd" } else { "classic" }).to_string()),
+            (
+                "format",
+                json!(if case.format == CanVersion::Fd { "fd" } else { "classic" }).to_string(),
+            ),
             ("senders", json!(listened.map(EndRole::name)).to_string()),
             ("frames", json!(texts(&case.frames)).to_string()),
             ("messages", json!(case.messages).to_string()),

@@ -199,7 +199,8 @@ impl Continuity {
         };
         let prior = |group| kalman.prior.of(group);
         let encoder = SLOPE * screening.encoder_sigma_rad;
-        let (scale, across) = (prior(ParameterGroup::GyroScale), prior(ParameterGroup::GyroMisalignment));
+        let (scale, across) =
+            (prior(ParameterGroup::GyroScale), prior(ParameterGroup::GyroMisalignment));
         let walk = noise.angle_random_walk;
         // Biases and Earth rate through the error of the initial attitude, rad/s.
         let known = AXES_SIGMAS

@@ -17,7 +17,7 @@
 //! δM ω + δG f and ∇ = δb_a + δM_a f are the errors that remain after compensation.
 
 use crate::config::ErrorModel;
-use crate::covariance::{DR, DV, PARAMETERS, PHI, CovarianceRow, Transition};
+use crate::covariance::{CovarianceRow, DR, DV, PARAMETERS, PHI, Transition};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 

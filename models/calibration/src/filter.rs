@@ -23,7 +23,7 @@ use crate::strapdown::Strapdown;
 use checkpoint::Checkpoint;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
+use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use sub_step::SubStep;
 
 /// Counts over the whole calibration.
@@ -133,7 +133,9 @@ impl CalibrationFilter {
         // A filter without a group of parameters attributes them to the others, which then aren't
         // constant: by design, and not by a fault of the sensors.
         let drift = match screening.drift_sigmas {
-            Some(limit) if kalman.estimated == [true; 7] => Some(DriftTest::new(limit, &covariance)),
+            Some(limit) if kalman.estimated == [true; 7] => {
+                Some(DriftTest::new(limit, &covariance))
+            }
             _ => None,
         };
         let start =

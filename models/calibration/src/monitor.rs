@@ -156,7 +156,11 @@ impl Monitor {
         }
         // Rounded to whole samples: stamps of real instruments jitter.
         let periods = (interval_ns + self.period_ns / 2) / self.period_ns;
-        if periods >= 2 { SampleOrder::Gap { missing: periods - 1 } } else { SampleOrder::Next(interval_ns) }
+        if periods >= 2 {
+            SampleOrder::Gap { missing: periods - 1 }
+        } else {
+            SampleOrder::Next(interval_ns)
+        }
     }
 
     /// Finds channels that repeat the same count; to be called for every sample.

@@ -306,6 +306,9 @@ mod tests {
     fn a_newer_version_is_refused_in_plain_words() {
         let mut bytes = example().to_bytes();
         bytes[6] = 9;
-        assert_eq!(CalibrationTable::from_bytes(&bytes), Err(CalibrationTableError::Version { found: 9 }));
+        assert_eq!(
+            CalibrationTable::from_bytes(&bytes),
+            Err(CalibrationTableError::Version { found: 9 })
+        );
     }
 }

@@ -10,7 +10,7 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::{c_cb, c_nc, quaternion_from_matrix};
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR_PER_G};
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 
 fn run(
     instrument: Instrument,

@@ -2,9 +2,9 @@
 
 use crate::instrument::{self, EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
 use octant_calibration::config::{GyroReference, LeastSquares, StaticIntervals};
-use octant_calibration::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
+use octant_calibration::least_squares::{Adjustment, AdjustmentRefusal, LeastSquaresEstimator};
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 
 fn settings(gyro: GyroReference) -> LeastSquares {
     LeastSquares { gravity_mps2: None, gyro, intervals: StaticIntervals::Commanded }
@@ -148,7 +148,10 @@ fn positions_that_do_not_determine_the_parameters_are_refused() {
         5.0,
         &Parameters::default(),
     );
-    assert!(matches!(rotated, Err(AdjustmentRefusal::Undetermined { parameter: 27..30 })), "{rotated:?}");
+    assert!(
+        matches!(rotated, Err(AdjustmentRefusal::Undetermined { parameter: 27..30 })),
+        "{rotated:?}"
+    );
     // Turning only one gimbal leaves the scale of body z undetermined.
     let one_gimbal = [(0.0, 0.0), (0.0, 90.0), (0.0, 180.0), (0.0, 270.0), (0.0, 0.0)];
     let chain = run(
@@ -340,7 +343,10 @@ fn settings_out_of_range_are_refused_before_the_first_sample() {
         Some(AdjustmentRefusal::NotPositive { field: "shortest_s", found: -1.0 })
     );
     let broken = Parameters { gyro_bias: [f64::NAN, 0.0, 0.0], ..zero };
-    assert_eq!(new(&detected(50.0, 1.0, 3.0, 1.0), &broken), Some(AdjustmentRefusal::InitialParameters));
+    assert_eq!(
+        new(&detected(50.0, 1.0, 3.0, 1.0), &broken),
+        Some(AdjustmentRefusal::InitialParameters)
+    );
     let text = AdjustmentRefusal::Undetermined { parameter: 29 }.to_string();
     assert_eq!(text, "the positions do not determine accel_misalignment_zy");
 }

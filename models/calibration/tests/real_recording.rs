@@ -3,7 +3,7 @@
 
 use octant_calibration::config::{GyroReference, LeastSquares, Site, StaticIntervals};
 use octant_calibration::least_squares::raw::{self, Nominal};
-use octant_calibration::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
+use octant_calibration::least_squares::{Adjustment, AdjustmentRefusal, LeastSquaresEstimator};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, Parameters, Sample};
 use std::path::{Path, PathBuf};

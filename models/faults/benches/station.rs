@@ -4,7 +4,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Channels, Setup, FaultSpec, Station, Value, Values, kinds};
+use octant_faults::{Channels, FaultSpec, Setup, Station, Value, Values, kinds};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, Mode, Output, Sample, Truth};
 use std::hint::black_box;

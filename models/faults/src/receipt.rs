@@ -4,7 +4,7 @@ use crate::wire::Altered;
 use alloc::string::String;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{Epoch, GimbalCommand};
-use octant_state::{StateReader, State, StateError, Writer};
+use octant_state::{State, StateError, StateReader, Writer};
 
 /// The receipt of one fault.
 #[derive(Clone, Debug, PartialEq, Eq)]

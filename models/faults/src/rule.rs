@@ -17,7 +17,7 @@ use octant_random::philox::block;
 use octant_random::stream::Phase;
 use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
-use octant_state::{StateReader, State, StateError, Writer};
+use octant_state::{State, StateError, StateReader, Writer};
 
 /// The rule of one fault, by the place where it acts.
 #[derive(Clone, Debug)]

@@ -113,7 +113,8 @@ fn a_delay_gives_what_was_sent_before() {
     let time = [("delay", Value::Quantity(0.025, Dimension::Time))];
     assert_eq!(sent(&[spec("delay", &time, schedule(4, 2))], 6).0[3..], [20.0, 30.0, 60.0]);
     let none = [("delay", Value::Quantity(0.004, Dimension::Time))];
-    let error = ConnectionStation::new(&[spec("delay", &none, schedule(1, 1))], SEED, PERIOD_S).unwrap_err();
+    let error = ConnectionStation::new(&[spec("delay", &none, schedule(1, 1))], SEED, PERIOD_S)
+        .unwrap_err();
     assert!(error.1.to_string().contains("0 steps"), "{}", error.1);
 }
 

@@ -4,7 +4,7 @@
 use crate::common::{self, Outcome, bytes, clean, fault, run};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Receipt, FaultSpec, Value};
+use octant_faults::{FaultSpec, Receipt, Value};
 use octant_sample::Epoch;
 use proptest::prelude::*;
 

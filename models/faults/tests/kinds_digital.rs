@@ -207,7 +207,13 @@ fn signs_flip_and_axes_swap() {
     assert_eq!(refused("axis-swap", &swap(X, Channels::GYRO)), "second");
 }
 
-fn bit(which: Channels, bit: i64, becomes: &'static str, probability: f64, epochs: u64) -> FaultSpec {
+fn bit(
+    which: Channels,
+    bit: i64,
+    becomes: &'static str,
+    probability: f64,
+    epochs: u64,
+) -> FaultSpec {
     let values = [
         channels(which),
         ("bit", Value::Integer(bit)),

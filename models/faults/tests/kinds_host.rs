@@ -5,7 +5,7 @@ use octant_faults::catalogue::Acts;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Setup, FaultSpec, Station, Value, Values, kinds};
+use octant_faults::{FaultSpec, Setup, Station, Value, Values, kinds};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
 

@@ -3,7 +3,7 @@
 use crate::common::{self, clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
-use octant_faults::trigger::{ThresholdSide, Repeat, Schedule, Signal, Trigger};
+use octant_faults::trigger::{Repeat, Schedule, Signal, ThresholdSide, Trigger};
 use octant_faults::{Channels, FaultSpec, Station, Value};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Mode, Output};

@@ -34,7 +34,12 @@ pub struct CoursePoint {
 impl Course {
     /// Makes the piece that starts at the points `from` and ends at the points `to`.
     #[must_use]
-    pub fn between(start_s: f64, duration_s: f64, from: &[CoursePoint; 6], to: &[CoursePoint; 6]) -> Self {
+    pub fn between(
+        start_s: f64,
+        duration_s: f64,
+        from: &[CoursePoint; 6],
+        to: &[CoursePoint; 6],
+    ) -> Self {
         let coefficients = core::array::from_fn(|dof| {
             let (a, b) = (&from[dof], &to[dof]);
             // Derivatives by the elapsed fraction of the piece.

@@ -6,7 +6,7 @@
 mod state;
 
 use crate::case::Case;
-use crate::config::{PlantConfig, Motion, Vibration};
+use crate::config::{Motion, PlantConfig, Vibration};
 use crate::disturbed::{Active, Registry};
 use crate::gimbal::{Arc, Gimbal};
 use crate::kinematics::Node;

@@ -40,5 +40,5 @@ mod vibration;
 mod window;
 
 pub use octant_sample::Truth;
-pub use plant::{Plant, STATE_FORMAT, PlantStep};
+pub use plant::{Plant, PlantStep, STATE_FORMAT};
 pub use validate::PlantConfigError;

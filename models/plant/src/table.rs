@@ -119,7 +119,8 @@ mod tests {
         let mut table = table();
         // 90° at 10 °/s with 10 °/s²: 1 s up, 8 s on, 1 s down.
         table.go_to(GimbalAxis::Roll, 90f64.to_radians(), 1.0, 0);
-        let at = |table: &GimbalTable, ms: u64| table.motion(GimbalAxis::Roll, ms * SECOND_NS / 1000);
+        let at =
+            |table: &GimbalTable, ms: u64| table.motion(GimbalAxis::Roll, ms * SECOND_NS / 1000);
         assert!((at(&table, 5000).angle_rad - 45f64.to_radians()).abs() < 1e-8);
         assert!((at(&table, 5000).rate_radps - 10f64.to_radians()).abs() < 1e-12);
         assert!(at(&table, 9999).moves && !at(&table, 10_001).moves);

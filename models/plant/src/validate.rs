@@ -1,6 +1,6 @@
 //! Checks of a configuration: every configuration that passes can be computed with.
 
-use crate::config::{AidingKind, PlantConfig, Dockside, Extensions, GaussMarkov, Motion, Sinusoid};
+use crate::config::{AidingKind, Dockside, Extensions, GaussMarkov, Motion, PlantConfig, Sinusoid};
 use octant_earth::units::DEG;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 

@@ -90,7 +90,12 @@ fn agrees(name: &str, config: &PlantConfig, lives: &[Life]) {
     assert!(apart > 1e-5, "{name}: nothing happened");
 }
 
-fn line(frequency_hz: f64, displacement_m: [f64; 3], angle_rad: [f64; 3], phase: f64) -> SpectralLine {
+fn line(
+    frequency_hz: f64,
+    displacement_m: [f64; 3],
+    angle_rad: [f64; 3],
+    phase: f64,
+) -> SpectralLine {
     SpectralLine {
         frequency_hz,
         displacement_m,

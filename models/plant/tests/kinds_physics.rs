@@ -16,7 +16,13 @@ fn level(_: u64) -> octant_sample::GimbalCommand {
     command(0.0, 0.0)
 }
 
-fn sine(acceleration: [f64; 3], angle: [f64; 3], phase: f64, first: u64, samples: u64) -> FaultSpec {
+fn sine(
+    acceleration: [f64; 3],
+    angle: [f64; 3],
+    phase: f64,
+    first: u64,
+    samples: u64,
+) -> FaultSpec {
     fault(
         "vibration-sine",
         &[

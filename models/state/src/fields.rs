@@ -1,6 +1,6 @@
 //! Fields of structures as states.
 
-use crate::{StateReader, State, StateError, Writer};
+use crate::{State, StateError, StateReader, Writer};
 
 /// Implements [`State`] for a structure by its fields: `values` that serde writes, `parts` that are
 /// states themselves, and fields that are `kept` because they follow from the configuration. Every

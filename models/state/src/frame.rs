@@ -1,6 +1,6 @@
 //! The frame around a state: magic, version, length, checksum.
 
-use crate::{StateReader, StateError, Writer};
+use crate::{StateError, StateReader, Writer};
 use alloc::vec::Vec;
 
 /// Outer form of the states of a model. Layout, little-endian: eight letters of magic, version u16,
@@ -85,7 +85,8 @@ mod tests {
     use proptest::prelude::*;
     use std::string::ToString;
 
-    const FORMAT: StateFormat = StateFormat { magic: "OCTTESTS", version: 3, what: "the state of a test" };
+    const FORMAT: StateFormat =
+        StateFormat { magic: "OCTTESTS", version: 3, what: "the state of a test" };
 
     fn frame(values: &[u64]) -> Vec<u8> {
         let mut bytes = Vec::new();

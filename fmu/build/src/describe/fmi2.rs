@@ -6,7 +6,9 @@ use super::{
     causality, default_experiment, has_start, index_of, initial_knowns, initial_unknowns,
     log_categories, root, start, variability,
 };
-use octant_fmu::table::{DeclaredCausality, DeclaredEnumeration, ElementType, Model, DeclaredVariable};
+use octant_fmu::table::{
+    DeclaredCausality, DeclaredEnumeration, DeclaredVariable, ElementType, Model,
+};
 
 /// Builds the description.
 pub(in super::super) fn fmi2(model: &Model, token: &str) -> Element {

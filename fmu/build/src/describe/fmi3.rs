@@ -7,7 +7,9 @@ use super::{
     initial_unknowns, log_categories, root, start, variability,
 };
 use octant_fmu::quantities::TIME;
-use octant_fmu::table::{ClockedBinary, DeclaredCausality, ElementType, Model, Ticks, DeclaredVariable};
+use octant_fmu::table::{
+    ClockedBinary, DeclaredCausality, DeclaredVariable, ElementType, Model, Ticks,
+};
 
 /// Builds the description.
 pub(in super::super) fn fmi3(model: &Model, token: &str) -> Element {
@@ -97,9 +99,14 @@ fn variable(model: &Model, variable: &DeclaredVariable, slot: usize) -> Element 
         element.with_some("min", variable.min.map(write)).with_some("max", variable.max.map(write))
     };
     element = match variable.kind {
-        ElementType::Real => limits(element, number).with_some("nominal", variable.nominal.map(number)),
+        ElementType::Real => {
+            limits(element, number).with_some("nominal", variable.nominal.map(number))
+        }
         ElementType::Integer | ElementType::Count => limits(element, whole),
-        ElementType::Boolean | ElementType::Enumeration(_) | ElementType::Binary(_) | ElementType::Clock(_) => element,
+        ElementType::Boolean
+        | ElementType::Enumeration(_)
+        | ElementType::Binary(_)
+        | ElementType::Clock(_) => element,
     };
     if has_start(variable) {
         let starts = (0..variable.slots()).map(|index| {
@@ -129,7 +136,12 @@ fn named(element: &'static str, variable: &DeclaredVariable, slot: usize) -> Ele
         .with("variability", variability(variable))
 }
 
-fn binary_variable(model: &Model, variable: &DeclaredVariable, binary: &ClockedBinary, slot: usize) -> Element {
+fn binary_variable(
+    model: &Model,
+    variable: &DeclaredVariable,
+    binary: &ClockedBinary,
+    slot: usize,
+) -> Element {
     let clock = model.find(binary.clock).map(|(slot, _)| slot.to_string());
     let element = named("Binary", variable, slot)
         .with("initial", if has_start(variable) { "exact" } else { "calculated" })

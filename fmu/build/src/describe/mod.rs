@@ -10,7 +10,7 @@ pub(super) use types::{base_unit, units};
 
 use super::element::Element;
 use octant_fmu::c::CATEGORIES;
-use octant_fmu::table::{DeclaredCausality, Model, DeclaredVariability, DeclaredVariable};
+use octant_fmu::table::{DeclaredCausality, DeclaredVariability, DeclaredVariable, Model};
 
 /// Name and version of the generating program.
 pub(super) const TOOL: &str = concat!("Octant ", env!("CARGO_PKG_VERSION"));

@@ -2,7 +2,7 @@
 
 use super::super::element::{Element, number};
 use octant_fmu::quantities::TIME;
-use octant_fmu::table::{DeclaredEnumeration, ElementType, Model, DeclaredQuantity, DeclaredUnit};
+use octant_fmu::table::{DeclaredEnumeration, DeclaredQuantity, DeclaredUnit, ElementType, Model};
 
 /// Lists the quantities of the variables, each once, in the order of their first use; time first.
 pub(super) fn quantities(model: &Model) -> Vec<&'static DeclaredQuantity> {

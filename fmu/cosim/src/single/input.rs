@@ -6,8 +6,8 @@
 //! the inputs that FMI 3.0 FMUs contain.
 
 use octant_fmu_host::description::units::{UnitConversion, known};
-use octant_fmu_host::description::{Causality, Description, VariableType, Variability, Variable};
-use octant_fmu_host::instance::{InstanceError, AccessPlan};
+use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
+use octant_fmu_host::instance::{AccessPlan, InstanceError};
 use octant_mapping::find::{ValueWay, allowed, count, find, unknown};
 use std::path::Path;
 
@@ -249,7 +249,10 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
     let Some(found) = found else { return Err(unknown(description, name, is_input).to_string()) };
     for (variable, element) in &found.elements {
         allowed(variable, ValueWay::In).map_err(|error| error.to_string())?;
-        if matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock) {
+        if matches!(
+            variable.kind,
+            VariableType::String | VariableType::Binary | VariableType::Clock
+        ) {
             return Err(format!(
                 "{name} is a {:?}, and a column of numbers can't be one",
                 variable.kind
@@ -268,7 +271,11 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
 }
 
 /// Returns the conversion from a column's unit to the variable's.
-fn units(description: &Description, variable: &Variable, unit: &str) -> Result<UnitConversion, String> {
+fn units(
+    description: &Description,
+    variable: &Variable,
+    unit: &str,
+) -> Result<UnitConversion, String> {
     let Some(own) = &variable.unit else {
         return Err(format!("found the unit {unit:?}, and {} has none", variable.name));
     };

@@ -1,7 +1,7 @@
 //! Writes rows of an FMU's outputs, as CSV or as an MCAP file of JSON messages.
 
-use octant_fmu_host::description::{Causality, Description, VariableType, Variable};
-use octant_fmu_host::instance::{InstanceError, AccessPlan};
+use octant_fmu_host::description::{Causality, Description, Variable, VariableType};
+use octant_fmu_host::instance::{AccessPlan, InstanceError};
 use octant_mapping::find::{UnknownVariable, count, find, unknown};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -93,7 +93,10 @@ impl Outputs {
     /// If there is no such variable, or it isn't a number.
     pub fn choose(description: &Description, names: &[String]) -> Result<Self, OutputError> {
         let number = |variable: &Variable| {
-            !matches!(variable.kind, VariableType::String | VariableType::Binary | VariableType::Clock)
+            !matches!(
+                variable.kind,
+                VariableType::String | VariableType::Binary | VariableType::Clock
+            )
         };
         let mut elements: Vec<(&Variable, usize)> = Vec::new();
         let mut left_out = Vec::new();

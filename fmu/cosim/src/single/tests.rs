@@ -1,7 +1,7 @@
 use super::input::{InputFileError, Inputs};
 use super::output::{Outputs, Sink, TOPIC};
 use super::*;
-use octant_fmu_host::description::{Causality, Description, VariableType, Variability};
+use octant_fmu_host::description::{Causality, Description, Variability, VariableType};
 use octant_mapping::settings::ValueSettings;
 use octant_mapping::testing::{Scripted, With, description, variable};
 use octant_scenario::Set;

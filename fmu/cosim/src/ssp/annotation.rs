@@ -12,7 +12,7 @@
 use super::SspError;
 use super::package::Package;
 use super::xml::{Element, SSC, SSD};
-use crate::order::{SteppingOrder, OrderError};
+use crate::order::{OrderError, SteppingOrder};
 use octant_scenario::quantity;
 
 /// Type of the annotation.

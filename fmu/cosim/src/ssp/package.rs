@@ -159,8 +159,8 @@ impl Package {
         if source.contains('#') {
             return Err(PackageSourceError::Part { found: found() });
         }
-        let decoded =
-            percent_decoded(source).ok_or_else(|| PackageSourceError::Percent { found: found() })?;
+        let decoded = percent_decoded(source)
+            .ok_or_else(|| PackageSourceError::Percent { found: found() })?;
         let has_scheme = decoded.split_once(':').is_some_and(|(scheme, _)| !scheme.contains('/'));
         if has_scheme || decoded.starts_with('/') || decoded.contains('\\') {
             return Err(PackageSourceError::Elsewhere { found: found() });

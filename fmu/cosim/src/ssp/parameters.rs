@@ -225,7 +225,9 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
     };
     let mut literal = Literal { kind, numbers: Vec::new(), text: String::new(), unit };
     match kind {
-        VariableType::String | VariableType::Enumeration | VariableType::Binary => literal.text = text.to_owned(),
+        VariableType::String | VariableType::Enumeration | VariableType::Binary => {
+            literal.text = text.to_owned()
+        }
         _ => {
             for part in text.split_ascii_whitespace() {
                 literal.numbers.push(number(part, kind).ok_or_else(|| {

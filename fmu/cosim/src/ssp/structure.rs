@@ -1,8 +1,8 @@
 //! `SystemStructure.ssd`: systems, components, connectors, connections and parameter bindings.
 
 pub use super::parts::{
-    Binding, SystemComponent, Connection, Connector, ConnectorKind, ConnectorType, ConnectionEnd, Implementation,
-    SystemElement, SspSystem,
+    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, ConnectorType, Implementation,
+    SspSystem, SystemComponent, SystemElement,
 };
 
 use super::SspError;

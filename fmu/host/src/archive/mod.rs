@@ -90,7 +90,11 @@ impl Archive {
     ///
     /// # Errors
     /// As [`Self::survey`].
-    pub fn survey_bytes(file: &str, bytes: Vec<u8>, limits: ArchiveLimits) -> Result<Self, ArchiveError> {
+    pub fn survey_bytes(
+        file: &str,
+        bytes: Vec<u8>,
+        limits: ArchiveLimits,
+    ) -> Result<Self, ArchiveError> {
         Self::survey_zip(file.to_owned(), Box::new(io::Cursor::new(bytes)), limits)
     }
 
@@ -105,7 +109,11 @@ impl Archive {
     }
 
     /// Lists the files below a folder. Links aren't followed.
-    fn survey_folder(path: &Path, file: String, limits: ArchiveLimits) -> Result<Self, ArchiveError> {
+    fn survey_folder(
+        path: &Path,
+        file: String,
+        limits: ArchiveLimits,
+    ) -> Result<Self, ArchiveError> {
         let mut entries = Vec::new();
         let mut problems = Vec::new();
         let mut folders = vec![(path.to_owned(), String::new())];

@@ -1,7 +1,7 @@
 //! Attributes that both standards share: of interfaces and of variables.
 
 use super::xml::Element;
-use super::{Causality, DescriptionError, Initial, Interface, VariableType, Standard, Variability};
+use super::{Causality, DescriptionError, Initial, Interface, Standard, Variability, VariableType};
 
 /// Reads an attribute, empty if missing.
 pub(super) fn optional(element: Element<'_, '_>, attribute: &str) -> String {

@@ -5,7 +5,8 @@ use super::attributes::{
 };
 use super::xml::Element;
 use super::{
-    Causality, Description, DescriptionError, VariableType, Standard, ModelUnknown, Variability, Variable,
+    Causality, Description, DescriptionError, ModelUnknown, Standard, Variability, Variable,
+    VariableType,
 };
 use std::collections::BTreeMap;
 

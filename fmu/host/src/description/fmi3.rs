@@ -6,8 +6,8 @@ use super::attributes::{
 use super::fmi2::items;
 use super::xml::Element;
 use super::{
-    Alias, Causality, ClockProperties, Description, DescriptionError, ArrayDimension, IntervalVariability, VariableType,
-    Standard, ModelUnknown, Variable,
+    Alias, ArrayDimension, Causality, ClockProperties, Description, DescriptionError,
+    IntervalVariability, ModelUnknown, Standard, Variable, VariableType,
 };
 use std::collections::{BTreeMap, BTreeSet};
 

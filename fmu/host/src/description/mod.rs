@@ -27,7 +27,8 @@ pub mod xml;
 pub use read::{read, read_bytes};
 pub use text::decode;
 pub use variable::{
-    Alias, Causality, ClockProperties, ArrayDimension, Initial, IntervalVariability, VariableType, Variability, Variable,
+    Alias, ArrayDimension, Causality, ClockProperties, Initial, IntervalVariability, Variability,
+    Variable, VariableType,
 };
 
 /// Reason why a model description can't be used.

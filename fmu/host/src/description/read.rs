@@ -4,8 +4,8 @@ use super::attributes::optional;
 use super::schema::{self, Breaks};
 use super::xml::{Element, File};
 use super::{
-    BaseUnit, Causality, Description, DescriptionError, DisplayUnit, DefaultExperiment, Initial, VariableType,
-    Standard, ModelStructure, UnitDefinition, fmi2, fmi3, text,
+    BaseUnit, Causality, DefaultExperiment, Description, DescriptionError, DisplayUnit, Initial,
+    ModelStructure, Standard, UnitDefinition, VariableType, fmi2, fmi3, text,
 };
 use std::collections::BTreeSet;
 

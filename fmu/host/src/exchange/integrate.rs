@@ -2,7 +2,7 @@
 
 use super::super::instance::co_simulation::Phase;
 use super::super::instance::unit::Continuous;
-use super::super::instance::{Instance, InstanceError, StepOutcome, REPEATS_MAX, Stepped};
+use super::super::instance::{Instance, InstanceError, REPEATS_MAX, StepOutcome, Stepped};
 use super::{Exchange, ended};
 
 /// Largest number of the solver's attempts at a step within one communication step.

@@ -23,7 +23,9 @@ use super::instance::call::Condition;
 use super::instance::co_simulation::Phase;
 use super::instance::states::States;
 use super::instance::unit::Continuous;
-use super::instance::{Access, VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update};
+use super::instance::{
+    Access, FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
+};
 use crossing::Indicators;
 use serde::{Deserialize, Serialize};
 use solver::Solver;
@@ -174,7 +176,11 @@ impl<U: Continuous> Instance for Exchange<U> {
         self.unit.get(group, values)
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_strings(group, values))
     }
 
@@ -182,7 +188,11 @@ impl<U: Continuous> Instance for Exchange<U> {
         self.unit.get_strings(group)
     }
 
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_binaries(group, values))
     }
 

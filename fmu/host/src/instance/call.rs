@@ -2,7 +2,7 @@
 
 use super::super::description::Description;
 use super::message::{Log, status_name};
-use super::{InstanceError, FmuMessage};
+use super::{FmuMessage, InstanceError};
 use octant_fmi::{fmi2, fmi3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

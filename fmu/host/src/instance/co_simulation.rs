@@ -7,7 +7,8 @@ use super::held::Held;
 use super::states::States;
 use super::unit::Steps;
 use super::{
-    Access, VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, REPEATS_MAX, Stepped, Update,
+    Access, FmuMessage, Instance, InstanceError, REPEATS_MAX, StepOutcome, Stepped, Update,
+    VariableGroup,
 };
 use serde::{Deserialize, Serialize};
 
@@ -230,7 +231,11 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.unit.get(group, values)
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_strings(group, values))
     }
 
@@ -238,7 +243,11 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.unit.get_strings(group)
     }
 
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set_binaries(group, values))
     }
 
@@ -259,7 +268,12 @@ impl<U: Steps> Instance for CoSimulation<U> {
         let ended = self.own.phase == Phase::Event && self.settle()?;
         self.expect("a step", &[Phase::Step])?;
         if ended {
-            return Ok(Stepped { time_s, outcome: StepOutcome::Early, event: false, terminate: true });
+            return Ok(Stepped {
+                time_s,
+                outcome: StepOutcome::Early,
+                event: false,
+                terminate: true,
+            });
         }
         if self.own.clocks.is_empty() {
             return self.unit.do_step(time_s, step_s);

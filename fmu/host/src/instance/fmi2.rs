@@ -8,7 +8,7 @@ use super::message::{Log, callbacks, text};
 use super::number::Truth;
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{VariableGroup, InstanceError, StepOutcome, Stepped, Update, group};
+use super::{InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
 use octant_fmi::fmi2;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
@@ -271,7 +271,11 @@ impl Unit for Component {
         }
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()

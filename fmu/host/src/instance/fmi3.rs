@@ -8,7 +8,7 @@ use super::message::{Log, log_message, text};
 use super::scratch::Scratch;
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{VariableGroup, InstanceError, StepOutcome, Stepped, Update, group};
+use super::{InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
 use octant_fmi::fmi3;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
@@ -234,15 +234,27 @@ impl Unit for Component {
                 set_through!(self, group, values, float32, set_float32 "fmi3SetFloat32")
             }
             VariableType::Int8 => set_through!(self, group, values, int8, set_int8 "fmi3SetInt8"),
-            VariableType::UInt8 => set_through!(self, group, values, uint8, set_uint8 "fmi3SetUInt8"),
-            VariableType::Int16 => set_through!(self, group, values, int16, set_int16 "fmi3SetInt16"),
-            VariableType::UInt16 => set_through!(self, group, values, uint16, set_uint16 "fmi3SetUInt16"),
-            VariableType::Int32 => set_through!(self, group, values, int32, set_int32 "fmi3SetInt32"),
-            VariableType::UInt32 => set_through!(self, group, values, uint32, set_uint32 "fmi3SetUInt32"),
+            VariableType::UInt8 => {
+                set_through!(self, group, values, uint8, set_uint8 "fmi3SetUInt8")
+            }
+            VariableType::Int16 => {
+                set_through!(self, group, values, int16, set_int16 "fmi3SetInt16")
+            }
+            VariableType::UInt16 => {
+                set_through!(self, group, values, uint16, set_uint16 "fmi3SetUInt16")
+            }
+            VariableType::Int32 => {
+                set_through!(self, group, values, int32, set_int32 "fmi3SetInt32")
+            }
+            VariableType::UInt32 => {
+                set_through!(self, group, values, uint32, set_uint32 "fmi3SetUInt32")
+            }
             VariableType::Int64 | VariableType::Enumeration => {
                 set_through!(self, group, values, int64, set_int64 "fmi3SetInt64")
             }
-            VariableType::UInt64 => set_through!(self, group, values, uint64, set_uint64 "fmi3SetUInt64"),
+            VariableType::UInt64 => {
+                set_through!(self, group, values, uint64, set_uint64 "fmi3SetUInt64")
+            }
             VariableType::Boolean => {
                 set_through!(self, group, values, truths, set_boolean "fmi3SetBoolean")
             }
@@ -272,15 +284,27 @@ impl Unit for Component {
                 get_through!(self, group, values, float32, get_float32 "fmi3GetFloat32")
             }
             VariableType::Int8 => get_through!(self, group, values, int8, get_int8 "fmi3GetInt8"),
-            VariableType::UInt8 => get_through!(self, group, values, uint8, get_uint8 "fmi3GetUInt8"),
-            VariableType::Int16 => get_through!(self, group, values, int16, get_int16 "fmi3GetInt16"),
-            VariableType::UInt16 => get_through!(self, group, values, uint16, get_uint16 "fmi3GetUInt16"),
-            VariableType::Int32 => get_through!(self, group, values, int32, get_int32 "fmi3GetInt32"),
-            VariableType::UInt32 => get_through!(self, group, values, uint32, get_uint32 "fmi3GetUInt32"),
+            VariableType::UInt8 => {
+                get_through!(self, group, values, uint8, get_uint8 "fmi3GetUInt8")
+            }
+            VariableType::Int16 => {
+                get_through!(self, group, values, int16, get_int16 "fmi3GetInt16")
+            }
+            VariableType::UInt16 => {
+                get_through!(self, group, values, uint16, get_uint16 "fmi3GetUInt16")
+            }
+            VariableType::Int32 => {
+                get_through!(self, group, values, int32, get_int32 "fmi3GetInt32")
+            }
+            VariableType::UInt32 => {
+                get_through!(self, group, values, uint32, get_uint32 "fmi3GetUInt32")
+            }
             VariableType::Int64 | VariableType::Enumeration => {
                 get_through!(self, group, values, int64, get_int64 "fmi3GetInt64")
             }
-            VariableType::UInt64 => get_through!(self, group, values, uint64, get_uint64 "fmi3GetUInt64"),
+            VariableType::UInt64 => {
+                get_through!(self, group, values, uint64, get_uint64 "fmi3GetUInt64")
+            }
             VariableType::Boolean => {
                 get_through!(self, group, values, truths, get_boolean "fmi3GetBoolean")
             }
@@ -303,7 +327,11 @@ impl Unit for Component {
         }
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()
@@ -325,7 +353,11 @@ impl Unit for Component {
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, VALUE_MAX) }).collect())
     }
 
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let sizes: Vec<usize> = values.iter().map(Vec::len).collect();
         let pointers: Vec<*const u8> = values.iter().map(|bytes| bytes.as_ptr()).collect();

@@ -1,6 +1,8 @@
 //! Variables that are set or got together, and the positions of their numbers.
 
-use super::super::description::{Causality, Description, VariableType, Standard, Variability, Variable};
+use super::super::description::{
+    Causality, Description, Standard, Variability, Variable, VariableType,
+};
 use super::InstanceError;
 use super::call::Base;
 use super::number::Number;
@@ -83,7 +85,11 @@ impl AccessPlan {
                 .iter()
                 .position(|group| group.kind == one.kind && group.access == one.access)
                 .unwrap_or_else(|| {
-                    groups.push(VariableGroup { references: Vec::new(), elements: 0, ..one.clone() });
+                    groups.push(VariableGroup {
+                        references: Vec::new(),
+                        elements: 0,
+                        ..one.clone()
+                    });
                     groups.len() - 1
                 });
             let group = &mut groups[place];
@@ -134,7 +140,11 @@ fn elements(description: &Description, variable: &Variable) -> Result<usize, Ins
 
 /// Name of the variable to which an element of a group belongs, with the element's number if the
 /// group has arrays.
-pub(super) fn element_name(description: &Description, group: &VariableGroup, element: usize) -> String {
+pub(super) fn element_name(
+    description: &Description,
+    group: &VariableGroup,
+    element: usize,
+) -> String {
     let mut first = 0;
     for reference in &group.references {
         let Some(variable) = description

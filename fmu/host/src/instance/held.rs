@@ -15,7 +15,8 @@ impl Held {
     /// it is set; and values that are set at events cause one.
     #[inline]
     pub(super) fn can_be(group: &VariableGroup, event_mode: bool) -> bool {
-        let changes = matches!(group.kind, VariableType::Int64 | VariableType::UInt64 | VariableType::Clock);
+        let changes =
+            matches!(group.kind, VariableType::Int64 | VariableType::UInt64 | VariableType::Clock);
         let rarely_changes = !group.kind.is_float() && !changes;
         let makes_event = match group.access {
             Access::Step => false,

@@ -37,7 +37,7 @@ pub(super) mod states;
 pub(super) mod unit;
 
 pub use error::InstanceError;
-pub use group::{Access, VariableGroup, AccessPlan};
+pub use group::{Access, AccessPlan, VariableGroup};
 pub use message::FmuMessage;
 pub use open::FmuOpenError;
 pub use options::{InterfaceKind, OpenOptions, ProcessPlace};
@@ -146,7 +146,11 @@ pub trait Instance: Send {
     ///
     /// # Errors
     /// If the FMU fails or refuses a value.
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError>;
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError>;
 
     /// Gets texts.
     ///
@@ -158,7 +162,11 @@ pub trait Instance: Send {
     ///
     /// # Errors
     /// If the FMU fails or refuses a value.
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError>;
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError>;
 
     /// Gets bytes (FMI 3.0).
     ///

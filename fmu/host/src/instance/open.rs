@@ -1,7 +1,9 @@
 //! Opening an FMU: its archive, its description, its library, an instance.
 
 use super::super::archive::{Archive, ArchiveError, Unpacked};
-use super::super::description::{self, Description, DescriptionError, Interface, VariableType, Standard};
+use super::super::description::{
+    self, Description, DescriptionError, Interface, Standard, VariableType,
+};
 use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
 use super::super::process;

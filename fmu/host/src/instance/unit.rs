@@ -2,7 +2,7 @@
 //! where the other needs one; the user of the trait is responsible for the order of calls.
 
 use super::call::Base;
-use super::{VariableGroup, InstanceError, Stepped, Update};
+use super::{InstanceError, Stepped, Update, VariableGroup};
 use std::ffi::c_void;
 
 /// A state as returned by the FMU.
@@ -24,9 +24,17 @@ pub(crate) trait Unit: Send {
 
     fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError>;
     fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError>;
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError>;
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError>;
     fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError>;
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError>;
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError>;
     fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError>;
 
     fn enter_configuration_mode(&mut self) -> Result<(), InstanceError>;

@@ -2,7 +2,9 @@
 
 use super::super::instance::call::Mark;
 use super::super::instance::open::{FmuOpenError, open_folder};
-use super::super::instance::{VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped};
+use super::super::instance::{
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, VariableGroup,
+};
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
 use super::shared::{Shared, Spin, Word, put, take};

@@ -1,7 +1,9 @@
 //! Messages between the two processes: postcard, each message after its length. A message of length
 //! zero only wakes the other process.
 
-use super::super::instance::{VariableGroup, InstanceError, FmuMessage, OpenOptions, Stepped, Update};
+use super::super::instance::{
+    FmuMessage, InstanceError, OpenOptions, Stepped, Update, VariableGroup,
+};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};

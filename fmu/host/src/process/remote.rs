@@ -3,7 +3,7 @@
 use super::super::archive::Unpacked;
 use super::super::description::Description;
 use super::super::instance::{
-    VariableGroup, Instance, InstanceError, FmuMessage, OpenOptions, StepOutcome, Stepped, Update,
+    FmuMessage, Instance, InstanceError, OpenOptions, StepOutcome, Stepped, Update, VariableGroup,
 };
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -177,7 +177,11 @@ impl Remote {
     }
 
     /// Number of an exchange with these groups; `None`: it doesn't go through shared memory.
-    fn plan(&mut self, set: &[VariableGroup], get: &[VariableGroup]) -> Result<Option<usize>, InstanceError> {
+    fn plan(
+        &mut self,
+        set: &[VariableGroup],
+        get: &[VariableGroup],
+    ) -> Result<Option<usize>, InstanceError> {
         if let Some(plan) = self.plans.iter().position(|(a, b)| a == set && b == get) {
             return Ok(Some(plan));
         }
@@ -240,7 +244,8 @@ impl Instance for Remote {
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
         self.watch.gone()?;
-        let count = |groups: &[VariableGroup]| groups.iter().map(|group| group.elements).sum::<usize>();
+        let count =
+            |groups: &[VariableGroup]| groups.iter().map(|group| group.elements).sum::<usize>();
         if inputs.len() != count(set) {
             return Err(InstanceError::numbers(&self.name, set, inputs.len()));
         }
@@ -318,7 +323,11 @@ impl Instance for Remote {
         }
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         self.done(&Request::SetStrings { group: group.clone(), values: values.to_vec() })
     }
 
@@ -329,7 +338,11 @@ impl Instance for Remote {
         }
     }
 
-    fn set_binaries(&mut self, group: &VariableGroup, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError> {
         self.done(&Request::SetBinaries { group: group.clone(), values: values.to_vec() })
     }
 

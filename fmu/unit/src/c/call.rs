@@ -122,7 +122,11 @@ pub(super) fn instantiate(
     unwound.unwrap_or(core::ptr::null_mut())
 }
 
-fn model(standard: ServedStandard, name: &str, token: Option<String>) -> Result<&'static Maker, String> {
+fn model(
+    standard: ServedStandard,
+    name: &str,
+    token: Option<String>,
+) -> Result<&'static Maker, String> {
     if name.trim().is_empty() {
         return Err("the instance has no name".to_owned());
     }

@@ -1,6 +1,8 @@
 //! Data of the slots for getting and setting, made from a model's table once.
 
-use crate::table::{DeclaredCausality, DeclaredEnumeration, ElementType, Model, Ticks, DeclaredVariability};
+use crate::table::{
+    DeclaredCausality, DeclaredEnumeration, DeclaredVariability, ElementType, Model, Ticks,
+};
 
 /// Largest number up to which all whole numbers are exact as f64.
 pub(super) const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
@@ -103,7 +105,8 @@ impl Layout {
             let slot = Slot {
                 cell,
                 settable: match (variable.causality, variable.variability) {
-                    (DeclaredCausality::Input, _) | (DeclaredCausality::Parameter, DeclaredVariability::Tunable) => {
+                    (DeclaredCausality::Input, _)
+                    | (DeclaredCausality::Parameter, DeclaredVariability::Tunable) => {
                         Settable::Always
                     }
                     (DeclaredCausality::Parameter, _) => Settable::Fixed,
@@ -112,7 +115,9 @@ impl Layout {
                 any: variable.non_finite,
                 computed: matches!(
                     variable.causality,
-                    DeclaredCausality::Output | DeclaredCausality::Local | DeclaredCausality::CalculatedParameter
+                    DeclaredCausality::Output
+                        | DeclaredCausality::Local
+                        | DeclaredCausality::CalculatedParameter
                 ),
                 elements: 0,
                 min: variable.min.unwrap_or(-f64::MAX),
@@ -131,7 +136,9 @@ impl Layout {
         let clocks: Box<[(&str, Clock)]> = model
             .with_slots()
             .filter_map(|(slot, variable)| match variable.kind {
-                ElementType::Clock(ticks) => Some((variable.name, Clock { slot: slot as u32, ticks })),
+                ElementType::Clock(ticks) => {
+                    Some((variable.name, Clock { slot: slot as u32, ticks }))
+                }
                 _ => None,
             })
             .collect();

@@ -9,11 +9,12 @@ use super::run::{Experiment, Run};
 use super::ticks::Clocked;
 use crate::values::CellValues;
 use core::ffi::c_void;
-use octant_state::{StateFormat, StateError, check_count};
+use octant_state::{StateError, StateFormat, check_count};
 
 /// Format of an FMU state as bytes: token, mode, experiment, time, the cells of all variables, and
 /// the bytes of the component if there is one.
-const FORMAT: StateFormat = StateFormat { magic: "OCTFMUST", version: 1, what: "the state of an FMU" };
+const FORMAT: StateFormat =
+    StateFormat { magic: "OCTFMUST", version: 1, what: "the state of an FMU" };
 
 impl Instance {
     /// Stores the present state: as a new one if `name` points to a null pointer, else in place of

@@ -1,7 +1,7 @@
 //! Clocks that tick, and the values of binary variables.
 
 use super::layout::Layout;
-use octant_state::{StateReader, State, StateError, Writer};
+use octant_state::{State, StateError, StateReader, Writer};
 
 /// Clocks and binary variables of a run.
 #[derive(Clone, Debug, Default)]

@@ -276,7 +276,10 @@ fn put_quaternion(q: &UnitQuaternion<f64>, slot: usize, values: &mut CellValues)
 }
 
 /// Without normalization, which would change its last bits.
-fn quaternion(slot: usize, values: &CellValues) -> Result<UnitQuaternion<f64>, CalibratorValueError> {
+fn quaternion(
+    slot: usize,
+    values: &CellValues,
+) -> Result<UnitQuaternion<f64>, CalibratorValueError> {
     let [w, i, j, k] = values.reals(slot);
     let q = Quaternion::new(w, i, j, k);
     let norm = q.norm();

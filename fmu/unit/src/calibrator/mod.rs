@@ -14,7 +14,7 @@ use crate::values::CellValues;
 use octant_calibration::Core;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Mode, Output, Reference, Sample, Status};
-use octant_state::{StateFormat, StateError, check_count};
+use octant_state::{StateError, StateFormat, check_count};
 use table::slot;
 
 /// Writes the state of the core into the Calibrator's outputs.
@@ -211,7 +211,8 @@ impl ModelComponent for Calibrator {
 }
 
 /// Format of the bytes of a Calibrator.
-const FORMAT: StateFormat = StateFormat { magic: "OCTCALIB", version: 1, what: "the state of a Calibrator" };
+const FORMAT: StateFormat =
+    StateFormat { magic: "OCTCALIB", version: 1, what: "the state of a Calibrator" };
 
 impl Calibrator {
     fn read(bytes: &[u8], values: &CellValues) -> Result<Self, StateError> {

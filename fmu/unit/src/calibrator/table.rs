@@ -9,7 +9,7 @@ pub use enumerations::*;
 pub(crate) use parameters::PARAMETERS;
 pub(crate) use ports::OUTPUTS;
 
-use crate::table::{Model, DeclaredVariable, concatenated};
+use crate::table::{DeclaredVariable, Model, concatenated};
 
 const COUNT: usize = ports::INPUTS.len() + ports::OUTPUTS.len() + parameters::PARAMETERS.len();
 
@@ -41,7 +41,10 @@ mod tests {
             let name = variable.name;
             assert!(names.insert(name), "{name} twice");
             assert!(variable.description.ends_with('.'), "{name}");
-            let has_start = matches!(variable.causality, DeclaredCausality::Parameter | DeclaredCausality::Input);
+            let has_start = matches!(
+                variable.causality,
+                DeclaredCausality::Parameter | DeclaredCausality::Input
+            );
             assert_eq!(variable.start.is_empty(), !has_start, "{name}");
             assert!(
                 variable.start.len() <= 1 || variable.start.len() == variable.slots(),

@@ -7,8 +7,10 @@
 use super::operation::{
     BusError, Configuration, ErrorCause, NodeState, Writer, is_format_error, transmit_bytes,
 };
-use octant_state::{StateReader, State, StateError, Writer as StateWriter, check_below, check_count};
-use octant_wire::can::{CanVersion, BusFrame};
+use octant_state::{
+    State, StateError, StateReader, Writer as StateWriter, check_below, check_count,
+};
+use octant_wire::can::{BusFrame, CanVersion};
 use std::collections::VecDeque;
 
 /// Largest number of waiting frames: fifty outputs with parameters of classic CAN, which a working

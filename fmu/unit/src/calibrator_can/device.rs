@@ -2,17 +2,17 @@
 
 use super::controller::Controller;
 use octant_calibration::state_machine::CoreConfigError;
-use octant_calibration::{CoreConfig, Core};
+use octant_calibration::{Core, CoreConfig};
 use octant_sample::{Mode, Output, Parameters};
-use octant_state::{StateReader, State, StateError, Writer, check_count};
+use octant_state::{State, StateError, StateReader, Writer, check_count};
 use octant_wire::can::{self, CanTraffic};
 use octant_wire::message::{
-    Agreement, Bye, Capabilities, ClockTime, EndCondition, End, Heartbeat, Hello, EndLimits,
-    OutputMessage, StepPacing, ParametersSegment, Ready, Reason, Restart, SampleMessage, DeviceStatus,
+    Agreement, Bye, Capabilities, ClockTime, DeviceStatus, End, EndCondition, EndLimits, Heartbeat,
+    Hello, OutputMessage, ParametersSegment, Ready, Reason, Restart, SampleMessage, StepPacing,
     TimeReply, TimeRequest, agree,
 };
-use octant_wire::requests::{Requests, RequestDecision};
-use octant_wire::{MessageKind, Message, EndRole, StepNumber, Text};
+use octant_wire::requests::{RequestDecision, Requests};
+use octant_wire::{EndRole, Message, MessageKind, StepNumber, Text};
 
 /// Largest number of samples accepted ahead of the first answer: each is answered at once, and the
 /// bound is for answers that wait for the bus.
@@ -274,14 +274,24 @@ impl Device {
         Changed(true)
     }
 
-    fn without_step(&mut self, verdict: RequestDecision, now_ns: u64, to: &mut Controller) -> Changed {
+    fn without_step(
+        &mut self,
+        verdict: RequestDecision,
+        now_ns: u64,
+        to: &mut Controller,
+    ) -> Changed {
         if verdict == RequestDecision::Again {
             self.repeat(now_ns, to);
         }
         Changed(false)
     }
 
-    fn answer_with_output(&mut self, step: StepNumber, now_ns: u64, to: &mut Controller) -> Changed {
+    fn answer_with_output(
+        &mut self,
+        step: StepNumber,
+        now_ns: u64,
+        to: &mut Controller,
+    ) -> Changed {
         let revision = self.output.parameters_revision;
         let follow = self.revision != Some(revision);
         let parameters = follow.then(|| {
@@ -441,7 +451,8 @@ impl State for Device {
             0 => Answer::None,
             1 => Answer::Ready(StepNumber::new(from.value("step")?)),
             2 => {
-                let Message::Output(output) = load_message(from, "output", MessageKind::Output)? else {
+                let Message::Output(output) = load_message(from, "output", MessageKind::Output)?
+                else {
                     return Err(StateError::value("output", "it is none"));
                 };
                 let mut parameters = None;

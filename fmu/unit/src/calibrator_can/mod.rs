@@ -24,8 +24,8 @@ use crate::table::{DeclaredCausality, Model};
 use crate::values::CellValues;
 use controller::{Controller, Setup};
 use device::{Changed, Device};
-use octant_state::{StateFormat, StateError};
-use octant_wire::can::{self, DropCause, ReassemblyEvent, BusFrame, Reassembler};
+use octant_state::{StateError, StateFormat};
+use octant_wire::can::{self, BusFrame, DropCause, Reassembler, ReassemblyEvent};
 use octant_wire::{EndRole, Unreadable};
 use operation::{ArbitrationLost, Configuration, Kind, Operation, Operations, Transmit};
 use table::slot;
@@ -51,7 +51,11 @@ fn ns(time_s: f64) -> u64 {
 }
 
 /// Copies the cells of variables that both tables have, of one causality.
-fn copy_same(causality: DeclaredCausality, from: (&Model, &CellValues), to: (&Model, &mut CellValues)) {
+fn copy_same(
+    causality: DeclaredCausality,
+    from: (&Model, &CellValues),
+    to: (&Model, &mut CellValues),
+) {
     for (slot, variable) in from.0.with_slots().filter(|(_, v)| v.causality == causality) {
         if let Some((other, _)) = to.0.find(variable.name) {
             let cells = &from.1.cells()[slot..slot + variable.slots()];

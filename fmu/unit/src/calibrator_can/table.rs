@@ -4,7 +4,9 @@ pub(super) mod slot;
 
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
-use crate::table::{ClockedBinary, DeclaredEnumeration, ElementType, Model, Ticks, DeclaredVariable, concatenated};
+use crate::table::{
+    ClockedBinary, DeclaredEnumeration, DeclaredVariable, ElementType, Model, Ticks, concatenated,
+};
 
 /// Largest number of bytes of a tick, in both directions.
 const BYTES_MAX: usize = 65_535;
@@ -72,16 +74,21 @@ const LINK: [DeclaredVariable; 14] = [
         .within(1.0, RATE_MAX)
         .start(&[2_000_000.0])
         .described("Bit rate of the data, bit/s, that the bus simulation is told of CAN FD."),
-    DeclaredVariable::parameter("can.arbitration_lost", ElementType::Enumeration(&ARBITRATION_LOST))
-        .start(&[1.0])
-        .described(
-            "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
+    DeclaredVariable::parameter(
+        "can.arbitration_lost",
+        ElementType::Enumeration(&ARBITRATION_LOST),
+    )
+    .start(&[1.0])
+    .described(
+        "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
              takes can.bus_notifications.",
-        ),
+    ),
     DeclaredVariable::output("can.node_state", ElementType::Enumeration(&NODE_STATE))
         .described("State of the node, as it follows from the error counters."),
-    DeclaredVariable::output("can.transmit_errors", ElementType::Count).described("Transmit error counter."),
-    DeclaredVariable::output("can.receive_errors", ElementType::Count).described("Receive error counter."),
+    DeclaredVariable::output("can.transmit_errors", ElementType::Count)
+        .described("Transmit error counter."),
+    DeclaredVariable::output("can.receive_errors", ElementType::Count)
+        .described("Receive error counter."),
     DeclaredVariable::output("can.waiting", ElementType::Count)
         .described("Frames that wait for the bus, one that is on it included."),
     DeclaredVariable::output("can.lost", ElementType::Count).described(
@@ -91,11 +98,12 @@ const LINK: [DeclaredVariable; 14] = [
 ];
 
 /// Sample period, which is not that of a communication step here.
-const PERIOD: [DeclaredVariable; 1] = [DeclaredVariable::parameter("imu.period_ns", ElementType::Count)
-    .of(&q::NANOSECONDS)
-    .within(1.0, 1e9)
-    .start(&[5e6])
-    .described("Sample period, ns, which the harness has to have as well.")];
+const PERIOD: [DeclaredVariable; 1] =
+    [DeclaredVariable::parameter("imu.period_ns", ElementType::Count)
+        .of(&q::NANOSECONDS)
+        .within(1.0, 1e9)
+        .start(&[5e6])
+        .described("Sample period, ns, which the harness has to have as well.")];
 
 /// Index of the first of the Calibrator's parameters that are copied here.
 const FIRST: usize = {

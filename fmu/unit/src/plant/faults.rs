@@ -3,9 +3,11 @@
 use super::error::{FaultError, Misplaced, Unplaced};
 use super::table::{FAULT_KIND, FAULT_NUMBERS, FAULT_SLOTS, MODEL, acts_in_plant, slot};
 use crate::values::CellValues;
-use octant_faults::catalogue::{Acts, ParameterBounds, Dimension, FaultKind, Lasts, FaultParameter, Takes};
+use octant_faults::catalogue::{
+    Acts, Dimension, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Channels, Setup, FaultSpec, Station, Value, kinds};
+use octant_faults::{Channels, FaultSpec, Setup, Station, Value, kinds};
 use octant_plant::config::PlantConfig;
 
 /// Id of a fault, by its index from 0.

@@ -13,7 +13,7 @@ pub mod table;
 mod tests;
 
 pub use config::config;
-pub use error::{PlantFailure, FaultError, Misplaced, PutError, Unplaced, PlantValueError};
+pub use error::{FaultError, Misplaced, PlantFailure, PlantValueError, PutError, Unplaced};
 pub use faults::{Number, faults, numbers, setup};
 
 use crate::component::ModelComponent;
@@ -24,7 +24,7 @@ use octant_faults::{FaultSpec, Station};
 use octant_plant::config::PlantConfig;
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output, Truth};
-use octant_state::{StateFormat, StateError};
+use octant_state::{StateError, StateFormat};
 use table::{FAULT_SLOTS, slot};
 
 /// Start values of all parameters that make a plant with this configuration and these faults: name,
@@ -48,7 +48,11 @@ pub fn start_values(
 ///
 /// # Errors
 /// As [`start_values`].
-pub fn put(config: &PlantConfig, faults: &[FaultSpec], values: &mut CellValues) -> Result<(), PutError> {
+pub fn put(
+    config: &PlantConfig,
+    faults: &[FaultSpec],
+    values: &mut CellValues,
+) -> Result<(), PutError> {
     config::put(config, values)?;
     faults::put(faults, config.sample_period_ns, values)?;
     Ok(())
@@ -272,7 +276,8 @@ impl ModelComponent for Plant {
 }
 
 /// Format of the bytes of a Plant.
-const FORMAT: StateFormat = StateFormat { magic: "OCTPLANT", version: 1, what: "the state of a Plant" };
+const FORMAT: StateFormat =
+    StateFormat { magic: "OCTPLANT", version: 1, what: "the state of a Plant" };
 
 impl Plant {
     fn read(bytes: &[u8], values: &CellValues) -> Result<Self, StateError> {

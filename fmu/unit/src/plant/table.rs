@@ -12,7 +12,7 @@ pub use enumerations::{AIDING, FAULT_KIND, MOTION, REFERENCE_KIND};
 pub use faults::{FAULT_NUMBERS, FAULT_SLOTS};
 pub use world::SINUSOIDS_MAX;
 
-use crate::table::{Model, DeclaredVariable, concatenated, count};
+use crate::table::{DeclaredVariable, Model, concatenated, count};
 
 const PARTS: &[&[DeclaredVariable]] = &[
     &ports::INPUTS,
@@ -52,7 +52,10 @@ mod tests {
             let name = variable.name;
             assert!(names.insert(name), "{name} twice");
             assert!(variable.description.ends_with('.'), "{name}");
-            let has_start = matches!(variable.causality, DeclaredCausality::Parameter | DeclaredCausality::Input);
+            let has_start = matches!(
+                variable.causality,
+                DeclaredCausality::Parameter | DeclaredCausality::Input
+            );
             assert_eq!(variable.start.is_empty(), !has_start, "{name}");
             assert!(
                 variable.start.len() <= 1 || variable.start.len() == variable.slots(),
@@ -92,7 +95,9 @@ mod tests {
                 input.name
             );
         }
-        for input in of(&MODEL, DeclaredCausality::Input).filter(|input| !input.name.starts_with("fault")) {
+        for input in
+            of(&MODEL, DeclaredCausality::Input).filter(|input| !input.name.starts_with("fault"))
+        {
             let (_, output) = calibrator.find(input.name).unwrap();
             assert_eq!((output.kind, output.elements), (input.kind, input.elements));
             assert_eq!(output.quantity, input.quantity);

@@ -12,12 +12,12 @@ use octant_fmu::values::CellValues;
 use octant_fmu::{calibrator, plant};
 use octant_plant::Plant;
 use octant_sample::{Aiding, Output, Parameters, Sample};
-use octant_wire::can::{ReassemblyEvent, CanVersion, BusFrame, Reassembler};
+use octant_wire::can::{BusFrame, CanVersion, Reassembler, ReassemblyEvent};
 use octant_wire::message::{
-    AidingMessage, EndCondition, End, Hello, EndLimits, StepPacing, ParametersSegment, Restart,
-    SampleMessage, TimeRequest,
+    AidingMessage, End, EndCondition, EndLimits, Hello, ParametersSegment, Restart, SampleMessage,
+    StepPacing, TimeRequest,
 };
-use octant_wire::{Message, EndRole, StepNumber};
+use octant_wire::{EndRole, Message, StepNumber};
 use std::ptr::null;
 
 const PERIOD_S: f64 = 0.005;

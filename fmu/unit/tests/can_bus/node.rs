@@ -4,8 +4,8 @@ use octant_fmi::fmi3::OK;
 use octant_fmu::c::fmi3::*;
 use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator_can::table::MODEL;
-use octant_wire::can::{CanVersion, BusFrame, Segments};
-use octant_wire::{Message, EndRole};
+use octant_wire::can::{BusFrame, CanVersion, Segments};
+use octant_wire::{EndRole, Message};
 use std::ffi::{CString, c_void};
 use std::ptr::{null, null_mut};
 
@@ -30,8 +30,10 @@ impl Drop for Node {
 
 impl Node {
     pub(crate) fn instantiated() -> Self {
-        let (name, token) =
-            (CString::new("node").unwrap(), CString::new(token(&MODEL, ServedStandard::Fmi3)).unwrap());
+        let (name, token) = (
+            CString::new("node").unwrap(),
+            CString::new(token(&MODEL, ServedStandard::Fmi3)).unwrap(),
+        );
         // SAFETY: strings, and no callbacks.
         let handle = unsafe {
             let (name, token) = (name.as_ptr(), token.as_ptr());

@@ -34,7 +34,12 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     }
 }
 
-fn chart(of: &str, unit: &str, estimates: &[(&str, ChartRole, &Vec<ConvergenceStep>)], factor: f64) -> Markup {
+fn chart(
+    of: &str,
+    unit: &str,
+    estimates: &[(&str, ChartRole, &Vec<ConvergenceStep>)],
+    factor: f64,
+) -> Markup {
     let mut chart = Chart::new(&format!("{of}: {unit} by number of draws"), "draws", unit);
     (chart.width, chart.height, chart.hours) = (320.0, 190.0, false);
     for (label, role, steps) in estimates {

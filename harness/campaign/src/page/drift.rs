@@ -148,7 +148,9 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
     };
     let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
-    for (role, from, to) in [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)] {
+    for (role, from, to) in
+        [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)]
+    {
         let points = envelope.hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),

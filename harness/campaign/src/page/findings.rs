@@ -3,7 +3,7 @@
 
 use super::elements::{case_link, heading};
 use crate::report::CampaignReport;
-use crate::report::rows::{RowOutcome, ReportRow};
+use crate::report::rows::{ReportRow, RowOutcome};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::discrepancies::table;

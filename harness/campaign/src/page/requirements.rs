@@ -2,7 +2,7 @@
 
 use super::elements::heading;
 use crate::report::requirement::{CombinationChecks, RequirementFigures};
-use crate::report::{POLICY, CampaignReport};
+use crate::report::{CampaignReport, POLICY};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::page::badge;

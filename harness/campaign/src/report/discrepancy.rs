@@ -2,7 +2,7 @@
 
 use super::combination::Combination;
 use super::requirement;
-use super::rows::{RowOutcome, ReportRow};
+use super::rows::{ReportRow, RowOutcome};
 use crate::plan::Plan;
 use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
@@ -91,7 +91,11 @@ fn counted(cases: usize) -> String {
 }
 
 /// Lists the discrepancies of one combination, each with all of its cases.
-fn of_combination(plan: &Plan, combination: &Combination, rows: &[ReportRow<'_>]) -> Vec<Discrepancy> {
+fn of_combination(
+    plan: &Plan,
+    combination: &Combination,
+    rows: &[ReportRow<'_>],
+) -> Vec<Discrepancy> {
     let name = combination.name();
     // Grouped by content, in the order of the names.
     let mut found: BTreeMap<(&'static str, Verdict, Option<String>, String), Vec<String>> =

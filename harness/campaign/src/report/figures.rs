@@ -9,7 +9,7 @@
 //! that of the good cases. Cases with the same stream count once.
 
 use super::combination::{self, Combination, number_of, takes_part};
-use super::rows::{Curve, CaseDrift, ReportRow};
+use super::rows::{CaseDrift, Curve, ReportRow};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
 use octant_statistics::envelope::envelope;
@@ -393,7 +393,10 @@ impl ScenarioFigures {
 }
 
 /// Lists cases that stand out from their combination, the farthest first.
-pub(super) fn standing_out(combinations: &[Combination], rows: &[ReportRow<'_>]) -> Vec<OutlierFigures> {
+pub(super) fn standing_out(
+    combinations: &[Combination],
+    rows: &[ReportRow<'_>],
+) -> Vec<OutlierFigures> {
     let mut found = Vec::new();
     for (place, combination) in combinations.iter().enumerate() {
         let there: Vec<(&Case, &CaseDrift)> = (combination.cases.iter())
@@ -402,16 +405,18 @@ pub(super) fn standing_out(combinations: &[Combination], rows: &[ReportRow<'_>])
         for (measure, of) in OUTLYING {
             let values: Vec<f64> = there.iter().map(|(_, drift)| of(drift)).collect();
             let median = percentile(&values, 0.5).unwrap_or(f64::NAN);
-            found.extend(outliers(&values, OutlierScale::Logarithm, LIMIT).into_iter().filter_map(|o| {
-                Some(OutlierFigures {
-                    case: there.get(o.index)?.0.id.clone(),
-                    combination: place,
-                    measure,
-                    value: *values.get(o.index)?,
-                    median,
-                    score: o.score,
-                })
-            }));
+            found.extend(outliers(&values, OutlierScale::Logarithm, LIMIT).into_iter().filter_map(
+                |o| {
+                    Some(OutlierFigures {
+                        case: there.get(o.index)?.0.id.clone(),
+                        combination: place,
+                        measure,
+                        value: *values.get(o.index)?,
+                        median,
+                        score: o.score,
+                    })
+                },
+            ));
         }
     }
     found.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()).then(a.case.cmp(&b.case)));

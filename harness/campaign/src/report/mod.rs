@@ -19,5 +19,5 @@ pub mod selftest;
 mod tables;
 
 pub(crate) use contents::again;
-pub use contents::{POLICY, CampaignReport, SCHEMA, Statistics};
+pub use contents::{CampaignReport, POLICY, SCHEMA, Statistics};
 pub use error::ReportError;

@@ -3,9 +3,9 @@
 
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
-use super::rows::{self, RowOutcome, ReportRow};
+use super::rows::{self, ReportRow, RowOutcome};
 use crate::plan::Plan;
-use crate::status::{RequirementStatus, CampaignStatus};
+use crate::status::{CampaignStatus, RequirementStatus};
 use octant_requirements::Verdict;
 use octant_requirements::requirement::{EnsembleRequirement, Requirements};
 use octant_requirements::trace::{VerdictCounts, claim};
@@ -94,7 +94,11 @@ struct Counted {
 }
 
 impl Counted {
-    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, &'a ReportRow<'a>)>) -> Self {
+    fn of<'a>(
+        plan: &Plan,
+        id: &str,
+        rows: impl Iterator<Item = (usize, &'a ReportRow<'a>)>,
+    ) -> Self {
         let mut counted = Self { counts: VerdictCounts::default(), rows: Vec::new() };
         for (draw, row) in rows {
             if !checks(plan, &row.case.scenario, id) {
@@ -216,7 +220,11 @@ fn one(
                 let row = |case: &usize| Some((*draws.get(*case)?, rows.get(*case)?));
                 let mine = Counted::of(plan, id, combination.cases.iter().filter_map(row));
                 let draws = mine.draws();
-                CombinationChecks { counts: mine.counts, draws, lower_bound: bound(draws, confidence) }
+                CombinationChecks {
+                    counts: mine.counts,
+                    draws,
+                    lower_bound: bound(draws, confidence),
+                }
             })
             .collect(),
     }

@@ -110,7 +110,8 @@ pub fn read<'a>(
 
 /// Returns the independent draw of each row.
 pub(super) fn draws(rows: &[ReportRow<'_>]) -> Vec<usize> {
-    let stream = |row: &ReportRow<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
+    let stream =
+        |row: &ReportRow<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
     let streams: Vec<Option<String>> = rows.iter().map(stream).collect();
     let cases = rows.iter().map(|row| row.case).zip(streams.iter().map(Option::as_deref));
     independence::draws(cases)

@@ -1,10 +1,10 @@
 //! The channels of a core, bound to the variables of an FMU.
 
 use octant_fmu_host::description::Description;
-use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell, Cells, Handle};
+use octant_mapping::bind::{BindError, Binder, Bound, Cells, ChannelCell, Handle};
 use octant_mapping::find::ValueWay;
 use octant_sample::Mode;
-use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
+use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::channel::{answer, sample};
 use octant_scenario::{Code, Fmu};
 

@@ -1,7 +1,7 @@
 use super::*;
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu_host::description::{Causality, VariableType};
-use octant_mapping::testing::{OwnModel as OwnModel, Scripted, With, description, variable};
+use octant_mapping::testing::{OwnModel, Scripted, With, description, variable};
 use octant_recorder::StreamHash;
 use octant_sample::Mode;
 use octant_scenario::{self as scenario, Method};

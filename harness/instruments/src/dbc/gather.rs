@@ -2,9 +2,9 @@
 
 use super::signal::{Extract, Named};
 use super::units::Quantity;
-use super::{Database, SignalMapping, One, DbcProblem, Three};
+use super::{Database, DbcProblem, One, SignalMapping, Three};
 use crate::rollover::Rollover;
-use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
+use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use can_dbc::MessageId;
 use octant_sample::{GimbalAngles, Status};
 use std::format;
@@ -383,7 +383,8 @@ impl Gatherer {
                 // counter.
                 Channel::Sequence => reading.sequence = Some(extract.raw(data)),
                 Channel::Stamp => {
-                    reading.stamp = Some(Stamp { ns: extract.raw(data), clock: StampClock::Startup });
+                    reading.stamp =
+                        Some(Stamp { ns: extract.raw(data), clock: StampClock::Startup });
                 }
                 Channel::Interval => reading.interval_s = Some(extract.value(data)),
                 Channel::Temperature => reading.temperature_c = Some(extract.value(data) as f32),

@@ -26,7 +26,7 @@ mod units;
 
 pub use database::Database;
 pub use gather::{CanCounters, CanFrame, Gatherer};
-pub use mapping::{GimbalSignals, SignalMapping, One, Three, Valid};
+pub use mapping::{GimbalSignals, One, SignalMapping, Three, Valid};
 
 use std::string::String;
 

@@ -2,7 +2,7 @@
 
 use super::raw::RawImu;
 use crate::checksum;
-use crate::framing::{ReadingDefect, Extent};
+use crate::framing::{Extent, ReadingDefect};
 use core::fmt::{self, Write};
 
 /// First byte of a line with the short header.

@@ -23,8 +23,8 @@ use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
 use crate::facts::ProtocolFacts;
-use crate::framing::{ReadingDefect, Extent, Framing};
-use crate::{StampClock, ReadingKind, MeasuredTriad, Reading, Stamp};
+use crate::framing::{Extent, Framing, ReadingDefect};
+use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 
 const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
@@ -132,9 +132,13 @@ impl NovAtel {
             .or_else(|| scale_of(raw.kind))
             .ok_or(ReadingDefect::Unknown { field: "IMU type", found: raw.kind.into() })?;
         if !(0.0..=604_800.0).contains(&raw.seconds) {
-            return Err(ReadingDefect::Unknown { field: "second of the week", found: raw.seconds as u32 });
+            return Err(ReadingDefect::Unknown {
+                field: "second of the week",
+                found: raw.seconds as u32,
+            });
         }
-        let counts = |counts, lsb| Some(MeasuredTriad::counts(ReadingKind::Increment, xyz(counts), lsb));
+        let counts =
+            |counts, lsb| Some(MeasuredTriad::counts(ReadingKind::Increment, xyz(counts), lsb));
         let ns = u64::from(raw.week) * WEEK_NS + libm::rint(raw.seconds * 1e9) as u64;
         let mut status = Status::empty();
         status.set(Status::INERTIAL_INVALID, raw.info & (ERROR | ENCRYPTED) != 0);

@@ -1,7 +1,7 @@
 //! Shared parts of the tests.
 
 use octant_instruments::{
-    AnyDecoder, AnyEncoder, StampClock, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp,
+    AnyDecoder, AnyEncoder, FramingEvent, MeasuredTriad, Protocol, Reading, Stamp, StampClock,
 };
 
 /// Parses hexadecimal digits.

@@ -9,15 +9,15 @@ pub use notice::Notice;
 
 use crate::port::{self, PortError};
 use crate::uri::Uri;
-use crate::wire::{TrafficCounts, Incoming, Wire};
+use crate::wire::{Incoming, TrafficCounts, Wire};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::message::{
-    Bye, Capabilities, EndCondition, Heartbeat, Hello, EndLimits, Message, OutputMessage,
-    PARAMETERS_SEGMENTS, StepPacing, ParametersSegment, Ready, Reason, EndRole, DeviceStatus, StepNumber, TimeReply,
-    agree,
+    Bye, Capabilities, DeviceStatus, EndCondition, EndLimits, EndRole, Heartbeat, Hello, Message,
+    OutputMessage, PARAMETERS_SEGMENTS, ParametersSegment, Ready, Reason, StepNumber, StepPacing,
+    TimeReply, agree,
 };
-use octant_wire::requests::{Requests, RequestDecision};
+use octant_wire::requests::{RequestDecision, Requests};
 use octant_wire::{Text, VERSION};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -154,7 +154,12 @@ impl<'a> Device<'a> {
         &self.wire
     }
 
-    fn say_hello(&mut self, session: u32, pacing: StepPacing, wait: Duration) -> Result<(), PortError> {
+    fn say_hello(
+        &mut self,
+        session: u32,
+        pacing: StepPacing,
+        wait: Duration,
+    ) -> Result<(), PortError> {
         let hello = self.hello(session, pacing);
         self.wire.send(&Message::Hello(hello), wait).map(|_| ())
     }
@@ -300,7 +305,9 @@ impl<'a> Device<'a> {
     }
 
     fn decide(&mut self, decide: impl FnOnce(&mut Requests) -> RequestDecision) -> RequestDecision {
-        self.session.as_mut().map_or(RequestDecision::Nothing, |session| decide(&mut session.requests))
+        self.session
+            .as_mut()
+            .map_or(RequestDecision::Nothing, |session| decide(&mut session.requests))
     }
 
     /// Acts on the verdict about a request: `make` computes its answer, which is remembered.

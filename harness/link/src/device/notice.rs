@@ -1,7 +1,7 @@
 //! Events that a device reports to its operator.
 
 use octant_wire::Text;
-use octant_wire::message::{StepPacing, DeviceStatus};
+use octant_wire::message::{DeviceStatus, StepPacing};
 use std::fmt;
 
 /// Event that a device reports to its operator.

@@ -2,9 +2,9 @@
 
 use super::lane::{Lane, below, seconds};
 use super::table::Table;
-use crate::port::{BusEvent, Frames, PortError, BusTrouble};
+use crate::port::{BusEvent, BusTrouble, Frames, PortError};
 use octant_faults::wire::{Altered, Way, WireAction, WireFault, Wired};
-use octant_wire::can::{CanVersion, BusFrame};
+use octant_wire::can::{BusFrame, CanVersion};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -2,7 +2,7 @@
 
 use crate::clock::Stamps;
 use octant_wire::message::{
-    AidingMessage, Gathered, Heartbeat, OutputMessage, SampleMessage, DeviceStatus, StepNumber,
+    AidingMessage, DeviceStatus, Gathered, Heartbeat, OutputMessage, SampleMessage, StepNumber,
 };
 use std::time::Duration;
 

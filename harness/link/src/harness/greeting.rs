@@ -3,7 +3,7 @@
 use super::error::{HeardTraffic, SessionError};
 use super::options::Patience;
 use crate::asking::Taken;
-use crate::wire::{TrafficCounts, Incoming, Wire};
+use crate::wire::{Incoming, TrafficCounts, Wire};
 use octant_wire::message::{Hello, Message, Reason};
 use std::time::Instant;
 

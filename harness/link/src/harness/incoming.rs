@@ -5,8 +5,8 @@ use super::error::SessionError;
 use super::event::LinkEvent;
 use super::greeting::heard;
 use crate::clock::Stamps;
-use crate::wire::{TrafficCounts, Incoming};
-use octant_wire::message::{Message, StepPacing, EndRole, StepNumber};
+use crate::wire::{Incoming, TrafficCounts};
+use octant_wire::message::{EndRole, Message, StepNumber, StepPacing};
 use std::time::Duration;
 
 impl Harness {
@@ -29,7 +29,11 @@ impl Harness {
     }
 
     /// Converts an incoming message to an event.
-    pub(super) fn take(&mut self, incoming: Incoming, during: &str) -> Result<LinkEvent, SessionError> {
+    pub(super) fn take(
+        &mut self,
+        incoming: Incoming,
+        during: &str,
+    ) -> Result<LinkEvent, SessionError> {
         let message = match incoming {
             Incoming::Message(message) => message,
             // The two ends have agreed on a version: on a bus a damaged frame can look like another

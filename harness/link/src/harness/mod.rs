@@ -12,7 +12,7 @@ mod options;
 
 pub use error::{HeardTraffic, SessionError};
 pub use event::{Effort, LinkEvent, Sending};
-pub use options::{SessionOptions, Patience};
+pub use options::{Patience, SessionOptions};
 
 use crate::asking::Taken;
 use crate::port::PortError;
@@ -21,9 +21,9 @@ use greeting::{draw_session, is_control, say_hello};
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::Text;
 use octant_wire::message::{
-    Agreement, AidingMessage, Bye, Capabilities, ClockTime, EndCondition, End, Gathered, Gathering,
-    Heartbeat, Hello, EndLimits, Message, OutputMessage, Reason, Restart, EndRole, SampleMessage, DeviceStatus,
-    StepNumber, TimeRequest, agree,
+    Agreement, AidingMessage, Bye, Capabilities, ClockTime, DeviceStatus, End, EndCondition,
+    EndLimits, EndRole, Gathered, Gathering, Heartbeat, Hello, Message, OutputMessage, Reason,
+    Restart, SampleMessage, StepNumber, TimeRequest, agree,
 };
 use std::time::{Duration, Instant};
 

@@ -20,7 +20,7 @@ pub use udp::UdpPort;
 use crate::Uri;
 use octant_faults::wire::Wired;
 use octant_wire::EndRole;
-use octant_wire::can::{CanVersion, BusFrame};
+use octant_wire::can::{BusFrame, CanVersion};
 use std::fmt::Debug;
 use std::time::Duration;
 

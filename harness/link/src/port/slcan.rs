@@ -3,10 +3,10 @@
 //! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
 //! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
 
-use super::{BusEvent, Bytes, Frames, HeardFrame, PortError, SerialLine, BusTrouble};
+use super::{BusEvent, BusTrouble, Bytes, Frames, HeardFrame, PortError, SerialLine};
 use crate::Uri;
 use crate::uri::{self, SLCAN_BITRATES};
-use octant_wire::can::{CanVersion, BusFrame};
+use octant_wire::can::{BusFrame, CanVersion};
 use std::time::{Duration, Instant};
 
 /// An adapter with its channel open.

@@ -1,10 +1,10 @@
 //! CAN interfaces of the Linux kernel.
 
-use super::{BusEvent, Frames, HeardFrame, PortError, BusTrouble};
+use super::{BusEvent, BusTrouble, Frames, HeardFrame, PortError};
 use crate::Uri;
 use crate::uri::Can;
 use octant_wire::EndRole;
-use octant_wire::can::{Bus, CanVersion, BusFrame, Slot};
+use octant_wire::can::{Bus, BusFrame, CanVersion, Slot};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{
     CanAnyFrame, CanDataFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, CanInterface,

@@ -2,7 +2,7 @@
 #![cfg_attr(not(unix), allow(dead_code, reason = "most sessions are tested on Unix alone"))]
 
 use octant_link::device::{Device, Facts, Notice, Steps};
-use octant_link::harness::{Harness, SessionOptions, Patience};
+use octant_link::harness::{Harness, Patience, SessionOptions};
 use octant_link::{Uri, Wire, port};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;

@@ -8,7 +8,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::interrupt;
 use octant_base::number::counted;
-use octant_campaign::execute::{CaseDone, ExecutionEvent, ExecuteError, ExecuteOptions, ExecutionSummary, Shard, execute};
+use octant_campaign::execute::{
+    CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
+};
 use octant_campaign::plan::Plan;
 use octant_campaign::stop::StopDecision;
 use octant_campaign::{merge, results, status};
@@ -95,7 +97,9 @@ pub(crate) fn in_rounds(
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Cases of earlier rounds were reported already.
-            ExecutionEvent::There(count) => tell(&ExecutionEvent::There(count.saturating_sub(told))),
+            ExecutionEvent::There(count) => {
+                tell(&ExecutionEvent::There(count.saturating_sub(told)))
+            }
             ExecutionEvent::Done(_) => tell(event),
         })?;
         // A case that ends as an error again isn't run a third time.

@@ -76,7 +76,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 /// Checks one file.
-fn one(file: &Path, arguments: &Arguments, options: &OpenOptions) -> Result<CheckReport, ArchiveError> {
+fn one(
+    file: &Path,
+    arguments: &Arguments,
+    options: &OpenOptions,
+) -> Result<CheckReport, ArchiveError> {
     let mut checked = check(file)?;
     if !arguments.no_load && checked.can_be_loaded() {
         load(&mut checked, options, arguments.step);

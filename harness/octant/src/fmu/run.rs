@@ -12,8 +12,10 @@ use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink};
 use octant_cosim::single::{Finished, SimulateError, Span, simulate};
 use octant_fmu_host::FmuOpenError;
-use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace};
-use octant_mapping::settings::{ValueSettings, Starts};
+use octant_fmu_host::instance::{
+    Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace,
+};
+use octant_mapping::settings::{Starts, ValueSettings};
 use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, setting_argument};
 use serde::Serialize;

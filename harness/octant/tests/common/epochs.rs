@@ -1,7 +1,7 @@
 //! Epochs for the tests of recordings.
 
 use octant_plant::Truth;
-use octant_recorder::{Extra, EpochFrame, Recorder, RecorderOptions, RecorderSummary};
+use octant_recorder::{EpochFrame, Extra, Recorder, RecorderOptions, RecorderSummary};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{
@@ -100,7 +100,11 @@ pub fn truth_of(step: &Step) -> Truth {
 
 /// Pushes one step as the run loop does.
 pub fn push(recorder: &mut Recorder, step: &Step) -> Result<(), octant_recorder::RecorderError> {
-    recorder.push(EpochFrame { clean: &step.clean, faulted: &step.faulted, output: &step.output })?;
+    recorder.push(EpochFrame {
+        clean: &step.clean,
+        faulted: &step.faulted,
+        output: &step.output,
+    })?;
     if recorder.truth_due() {
         recorder.extra(&Extra::Truth(truth_of(step)));
     }

@@ -9,7 +9,7 @@ use octant_sample::{GimbalAngles, GimbalCommand, Status};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use octant_turntable::simulate::{Controller, SimulatedServer};
-use octant_turntable::{TableAxis, Dialect};
+use octant_turntable::{Dialect, TableAxis};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};

@@ -82,8 +82,8 @@ fn an_interrupted_run_says_what_it_did() {
     // By the clock, the control is checked with every sample.
     let mut scenario = scenario;
     scenario.realtime.by_clock = true;
-    let run =
-        run_as_far_as_it_goes(&scenario, Method::Primary, 3, StreamKeeping::None, &control).unwrap();
+    let run = run_as_far_as_it_goes(&scenario, Method::Primary, 3, StreamKeeping::None, &control)
+        .unwrap();
     let summary = assemble(&scenario, 3, run, None).unwrap().summary;
     assert_eq!(summary.calibration.as_ref().unwrap().duration_h, 0.0, "what was done, not planned");
     check("interrupted", &INTERRUPTED, Ok(summary));

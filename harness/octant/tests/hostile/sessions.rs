@@ -9,7 +9,7 @@ use octant_run::method::core_of;
 use octant_sample::Output;
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::*;
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use std::net::UdpSocket;
 use std::path::Path;
 use std::sync::Arc;

@@ -228,9 +228,14 @@ pub fn run_of(scenario: &Scenario, over: Over, twist: Twist) -> Result<Summary, 
 /// Returns the summary of a run.
 pub fn summary_of(scenario: &Scenario) -> Result<Summary, String> {
     let control = Control::default();
-    let run =
-        run_as_far_as_it_goes(scenario, Method::Primary, scenario.seed, StreamKeeping::None, &control)
-            .map_err(|error| error.to_string())?;
+    let run = run_as_far_as_it_goes(
+        scenario,
+        Method::Primary,
+        scenario.seed,
+        StreamKeeping::None,
+        &control,
+    )
+    .map_err(|error| error.to_string())?;
     Ok(assemble(scenario, scenario.seed, run, None).unwrap().summary)
 }
 

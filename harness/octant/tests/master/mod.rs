@@ -7,7 +7,7 @@ use octant_cosim::error::MasterError;
 use octant_cosim::faults::{Faulting, looked_at};
 use octant_cosim::flat::Flat;
 use octant_cosim::order::SteppingOrder;
-use octant_cosim::simulation::{Abilities, SteppingSettings, Simulation};
+use octant_cosim::simulation::{Abilities, Simulation, SteppingSettings};
 use octant_cosim::solve::IterationLimits;
 use octant_cosim::ssp::package::Package;
 use octant_cosim::ssp::structure::SystemStructure;

@@ -2,7 +2,7 @@
 
 use octant_fmu_host::description::{Description, read};
 use octant_fmu_host::instance::{
-    VariableGroup, Instance, InstanceError, FmuMessage, StepOutcome, Stepped, Update,
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
 };
 use std::collections::BTreeMap;
 
@@ -158,7 +158,11 @@ impl Instance for Toy {
         Ok(())
     }
 
-    fn set_strings(&mut self, group: &VariableGroup, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         self.note(format!("text {}", values[0]));
         self.texts.insert(group.references[0], values[0].clone());
         Ok(())

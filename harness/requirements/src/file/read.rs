@@ -2,11 +2,11 @@
 
 use super::{Checker, SCHEMA};
 use crate::document::{Lines, Problems, Reader, describe};
-use crate::error::{RequirementsProblem, RequirementsError};
+use crate::error::{RequirementsError, RequirementsProblem};
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
-    ForeignAttribute, Check, Definition, EnsembleRequirement, AttributeKind, Limit, Parent, Requirement, Requirements,
-    Verification, probability,
+    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, Limit, Parent,
+    Requirement, Requirements, Verification, probability,
 };
 use crate::verdict::Comparison;
 use std::cell::RefCell;

@@ -22,7 +22,11 @@ pub(super) fn columns(requirements: &Requirements) -> Vec<Column> {
     };
     let mut columns = vec![
         Column { name: FOREIGN_ID.to_owned(), kind: AttributeKind::Text, formatted: false },
-        column(NAME, AttributeKind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
+        column(
+            NAME,
+            AttributeKind::Text,
+            &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>(),
+        ),
         Column { name: TEXT.to_owned(), kind: AttributeKind::Text, formatted: true },
     ];
     for field in ALL {

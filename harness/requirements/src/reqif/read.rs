@@ -3,10 +3,10 @@
 use super::types::{Types, Wrong, child, identifier, reference, within};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, xhtml};
 use crate::document::{control, normal};
-use crate::error::{Imported, Note, RequirementsProblem, RequirementsError};
+use crate::error::{Imported, Note, RequirementsError, RequirementsProblem};
 use crate::fields;
 use crate::requirement::{
-    ForeignAttribute, Definition, AttributeKind, Parent, Requirement, Requirements, Verification,
+    AttributeKind, Definition, ForeignAttribute, Parent, Requirement, Requirements, Verification,
 };
 use roxmltree::{Document, Node};
 use std::collections::{HashMap, HashSet};
@@ -357,7 +357,8 @@ impl<'a> Reader<'a> {
         };
         let mut attributes = Vec::new();
         for (name, kind, values, _) in object.values {
-            if kind != AttributeKind::Text && !self.found.definitions.iter().any(|d| d.name == name) {
+            if kind != AttributeKind::Text && !self.found.definitions.iter().any(|d| d.name == name)
+            {
                 let name = name.clone();
                 self.found.definitions.push(Definition { name, kind, field: None });
             }

@@ -3,9 +3,11 @@
 use super::grammar::{Field, kind};
 use super::{HEAD, OPTIONS, REQUIREMENT};
 use crate::document::{control, normal};
-use crate::error::{Imported, Note, RequirementsProblem, RequirementsError};
+use crate::error::{Imported, Note, RequirementsError, RequirementsProblem};
 use crate::fields as field;
-use crate::requirement::{ForeignAttribute, AttributeKind, Parent, Requirement, Requirements, Verification};
+use crate::requirement::{
+    AttributeKind, ForeignAttribute, Parent, Requirement, Requirements, Verification,
+};
 use std::collections::HashMap;
 
 /// Reads an `.sdoc`.
@@ -400,7 +402,9 @@ impl<'a> Parser<'a> {
             let known = self.fields.get(&(kind.to_owned(), written.name.clone()));
             let name = known.map_or(written.name.as_str(), Field::name).to_owned();
             let values = match known.map(|field| &field.kind) {
-                Some(AttributeKind::Choices(_)) => written.value.split(", ").map(str::to_owned).collect(),
+                Some(AttributeKind::Choices(_)) => {
+                    written.value.split(", ").map(str::to_owned).collect()
+                }
                 _ => vec![written.value],
             };
             match attributes.iter_mut().find(|a| a.name == name) {

@@ -127,7 +127,11 @@ fn columns(requirements: &Requirements) -> Vec<(&str, String, AttributeKind)> {
     columns
 }
 
-fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, String, AttributeKind)]) {
+fn grammar(
+    out: &mut String,
+    requirements: &Requirements,
+    columns: &[(&str, String, AttributeKind)],
+) {
     out.push_str("\n[GRAMMAR]\nELEMENTS:\n");
     out.push_str(
         "- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n  \

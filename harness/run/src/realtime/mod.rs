@@ -77,7 +77,8 @@ where
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let last = faulted.map_or_else(Vec::new, |faulted| faulted.last_words());
-        let time = TimeKeeping { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
+        let time =
+            TimeKeeping { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {

@@ -1,6 +1,6 @@
 //! Keys of the procedure: alignment, calibration, navigation, screening, baseline.
 
-use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key, section};
+use super::definition::{Default, KeyBounds, KeyDefinition, KeyKind, Section, key, section};
 use super::table::{
     At, Keys, Of, Value, boolean, choice, integer, keys, number, si, si_array, si_list, table,
     tables, text, time, within,

@@ -1,6 +1,8 @@
 //! Keys of a campaign: its scenarios and their variations.
 
-use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants, key, section};
+use super::definition::{
+    Default, KeyBounds, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants, key, section,
+};
 use crate::quantity::UnitDimension;
 
 /// Keys of a campaign.
@@ -38,9 +40,19 @@ pub static CAMPAIGN: Section = section(&[
         Default::Absent("draws are independent"),
         "Draws that go together.",
     ),
-    key("design", KeyKind::Choice(&DESIGNS), Default::Value("monte-carlo"), "How draws are spread."),
+    key(
+        "design",
+        KeyKind::Choice(&DESIGNS),
+        Default::Value("monte-carlo"),
+        "How draws are spread.",
+    ),
     key("limits", KeyKind::Table(&LIMITS), Default::Section, "What a case may use."),
-    key("stop", KeyKind::Table(&STOP), Default::Absent("every case is run"), "When enough is known."),
+    key(
+        "stop",
+        KeyKind::Table(&STOP),
+        Default::Absent("every case is run"),
+        "When enough is known.",
+    ),
 ]);
 
 static SCENARIO: Section = section(&[

@@ -1,6 +1,8 @@
 //! Keys of faults on connections of FMUs: a file of its own, or a part of a system structure.
 
-use super::definition::{Default, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants, key, section};
+use super::definition::{
+    Default, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants, key, section,
+};
 use super::faults::{
     AFTER, AFTER_FAULT, AT, EVERY, MANUAL, POISSON, SAMPLE, lasting, leak, leak_all, named,
     parameter,

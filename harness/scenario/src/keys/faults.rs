@@ -1,8 +1,10 @@
 //! Keys of faults: common keys, and the keys of each kind, made from the catalogue.
 
-use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, Tag, Variants, key, section};
+use super::definition::{
+    Default, KeyBounds, KeyDefinition, KeyKind, Section, Tag, Variants, key, section,
+};
 use crate::quantity::UnitDimension;
-use octant_faults::catalogue::{self, Lasts, FaultParameter, Takes};
+use octant_faults::catalogue::{self, FaultParameter, Lasts, Takes};
 use octant_faults::kinds;
 use std::sync::LazyLock;
 
@@ -61,7 +63,10 @@ pub(super) fn lasting(lasts: Lasts) -> [KeyDefinition; 3] {
     let recovery = match lasts {
         Lasts::Fading => key(
             "recovery",
-            KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::NotNegative),
+            KeyKind::Quantity(
+                &[UnitDimension::TIME, UnitDimension::SAMPLES],
+                KeyBounds::NotNegative,
+            ),
             Default::Value("0 s"),
             "How long it fades after that, down a straight line.",
         ),
@@ -156,10 +161,13 @@ pub(crate) fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
     }
 }
 
-const SPAN: KeyKind = KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::Positive);
+const SPAN: KeyKind =
+    KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::Positive);
 /// Kind of a delay: a time, or a number of samples, from 0.
-const DELAY: KeyKind = KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::NotNegative);
-pub(super) const AFTER: KeyDefinition = key("after", DELAY, Default::Value("0 s"), "How long after that.");
+const DELAY: KeyKind =
+    KeyKind::Quantity(&[UnitDimension::TIME, UnitDimension::SAMPLES], KeyBounds::NotNegative);
+pub(super) const AFTER: KeyDefinition =
+    key("after", DELAY, Default::Value("0 s"), "How long after that.");
 const STOP: KeyKind = KeyKind::Integer(1, u16::MAX as i64);
 const PHASE: KeyDefinition = key(
     "phase",
@@ -244,8 +252,10 @@ static MODE: Section = section(&[
     ),
     AFTER,
 ]);
-static WHEN: Section =
-    section(&[key("when", KeyKind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
+static WHEN: Section = section(&[
+    key("when", KeyKind::Condition, Default::Required, "A signal crosses a value."),
+    AFTER,
+]);
 pub(super) static EVERY: Section = section(&[
     key("every", SPAN, Default::Required, "Again and again, onsets so far apart."),
     FROM,

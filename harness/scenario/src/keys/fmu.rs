@@ -1,6 +1,6 @@
 //! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
-use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key, section};
+use super::definition::{Default, KeyBounds, KeyDefinition, KeyKind, Section, key, section};
 use super::table::{At, Of, Raw, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
 use crate::model::{InterfaceChoice, Process};

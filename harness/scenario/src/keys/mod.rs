@@ -25,7 +25,7 @@ pub(crate) use calibration::{
 };
 pub use campaign::CAMPAIGN;
 pub use connection::{CONNECTIONS, connection_section};
-pub use definition::{KeyBounds, Default, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants};
+pub use definition::{Default, KeyBounds, KeyDefinition, KeyKind, SCHEMA, Section, Tag, Variants};
 pub(crate) use drive::DriveKeys;
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};

@@ -8,7 +8,7 @@ use super::table::{
 use crate::error::Problem;
 use crate::quantity::UnitDimension;
 use crate::read::reader::TableReader;
-use crate::recorded::{RecordedColumn, Delimiter, RecordedQuantity, SPLIT_MAX, TimeUnit};
+use crate::recorded::{Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TimeUnit};
 
 keys! {
     /// `[source]`.

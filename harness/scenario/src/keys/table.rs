@@ -3,7 +3,7 @@
 //!
 //! A field that nobody takes is a warning of the compiler, and a key that isn't declared has no field.
 
-use super::definition::{KeyBounds, Default, KeyDefinition, KeyKind, Section, key};
+use super::definition::{Default, KeyBounds, KeyDefinition, KeyKind, Section, key};
 use crate::document::DocumentTable;
 use crate::error::{Place, Problem};
 use crate::quantity::UnitDimension;

@@ -1,7 +1,7 @@
 //! A real table that is moved by the core's set points.
 
 use super::file_name::FileName;
-use octant_turntable::{Dialect, Error, TablePlan, DriverSettings};
+use octant_turntable::{Dialect, DriverSettings, Error, TablePlan};
 use std::path::Path;
 use std::time::Duration;
 

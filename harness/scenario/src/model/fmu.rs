@@ -1,7 +1,7 @@
 //! An FMU of a scenario, as source or as endpoint.
 
 use super::file_name::FileName;
-use super::port::{Code, ChannelElement, Setting, EntryPlace};
+use super::port::{ChannelElement, Code, EntryPlace, Setting};
 use crate::channel::Channel;
 use octant_sample::Mode;
 

@@ -18,9 +18,11 @@ pub use fault::Fault;
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
 pub use instrument::{Instrument, Messages, Speaks};
-pub use motion::{MotionComponent, DocksideSpec, MotionSpec, ShipSpectrum};
+pub use motion::{DocksideSpec, MotionComponent, MotionSpec, ShipSpectrum};
 pub(crate) use motion::{MOTIONS, case_attitude};
-pub use port::{Code, Made, ChannelElement, Set, Setting, EntryPlace};
+pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
 pub use procedure::{AlignmentSpec, CalibrationSpec, Method};
-pub use scenario::{ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault};
+pub use scenario::{
+    ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault,
+};
 pub use source::SourceSpec;

@@ -4,7 +4,7 @@ use crate::error::Problem;
 use crate::keys::{At, DriveKeys};
 use crate::model::{Drive, FileName, Scenario};
 use octant_plant::config::TurntableConfig;
-use octant_turntable::{TableAxis, AxisLimits, TableLimits, DriverSettings};
+use octant_turntable::{AxisLimits, DriverSettings, TableAxis, TableLimits};
 use std::time::Duration;
 
 /// Reads `[turntable.drive]`.

@@ -9,7 +9,7 @@ use crate::error::Problem;
 use crate::keys::{
     At, ENDPOINT_MAP, EndpointKeys, FmuKeys, KeyKind, Raw, SOURCE_MAP, Section, SourceKeys,
 };
-use crate::model::{Code, EndpointSpec, FileName, Fmu, Mapped, EntryPlace};
+use crate::model::{Code, EndpointSpec, EntryPlace, FileName, Fmu, Mapped};
 use crate::ports;
 use octant_sample::Mode;
 
@@ -50,7 +50,10 @@ pub(super) fn source(
 }
 
 /// Reads `[endpoint]`.
-pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<EndpointSpec, Problem> {
+pub(super) fn endpoint(
+    keys: &EndpointKeys,
+    sample_period_ns: u64,
+) -> Result<EndpointSpec, Problem> {
     let uri = keys.uri.as_str();
     match uri.split_once(':') {
         None if uri == "in-process" => Ok(EndpointSpec::InProcess),
@@ -61,7 +64,9 @@ pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<End
             fmu.modes = of_fmu.modes.as_ref().map(modes).unwrap_or_default();
             Ok(EndpointSpec::Fmu(Box::new(fmu)))
         }
-        Some(_) if octant_link::Uri::is_one(uri) => Ok(EndpointSpec::Live(Box::new(live::live(keys)?))),
+        Some(_) if octant_link::Uri::is_one(uri) => {
+            Ok(EndpointSpec::Live(Box::new(live::live(keys)?)))
+        }
         _ => {
             Err(keys.uri.problem(format!("found {uri:?}, expected in-process, fmu:FILE or a port")))
         }

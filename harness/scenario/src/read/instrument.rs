@@ -2,7 +2,9 @@
 
 use crate::error::Problem;
 use crate::keys::{At, ExtensionsKeys, ImuKeys, MotionKeys, MotionKind, TurntableKeys};
-use crate::model::{MotionComponent, ParameterDistribution, DocksideSpec, MotionSpec, ShipSpectrum};
+use crate::model::{
+    DocksideSpec, MotionComponent, MotionSpec, ParameterDistribution, ShipSpectrum,
+};
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 
@@ -110,8 +112,9 @@ pub(super) fn motion(keys: &MotionKeys) -> MotionSpec {
     if let Some(preset) = ship.preset {
         for (index, (amplitude, period_s)) in preset.into_iter().enumerate() {
             let amplitude = amplitude * if index < 3 { DEG } else { 1.0 };
-            components[index]
-                .get_or_insert_with(|| vec![MotionComponent { amplitude, period_s, phase_rad: None }]);
+            components[index].get_or_insert_with(|| {
+                vec![MotionComponent { amplitude, period_s, phase_rad: None }]
+            });
         }
     }
     let spectrum = ship.spectrum.as_ref().map(|keys| ShipSpectrum {

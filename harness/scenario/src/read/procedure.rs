@@ -17,7 +17,7 @@ use octant_calibration::table::CalibrationTable;
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
-use octant_sample::parameters::{ParameterGroup, PARAMETER_COUNT};
+use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use std::path::Path;
 
 /// Properties of the run that the procedure must fit.
@@ -142,7 +142,8 @@ pub(super) fn baseline(
     setting: &Setting<'_>,
 ) -> Result<Option<CalibrationSpec>, Problem> {
     let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
-    let Some(DocumentNode { value: DocumentValue::Table(primary), .. }) = document.at("procedure.calibration")
+    let Some(DocumentNode { value: DocumentValue::Table(primary), .. }) =
+        document.at("procedure.calibration")
     else {
         let message = "found without procedure.calibration, which it is compared with";
         return Err(baseline.problem(message));

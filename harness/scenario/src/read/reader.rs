@@ -68,7 +68,10 @@ impl<'a> TableReader<'a> {
 
     /// Table under a key, if it is given.
     pub fn optional_table(&self, key: &str) -> Option<TableReader<'a>> {
-        let Some(DocumentNode { value: DocumentValue::Table(table), place }) = self.node(key) else { return None };
+        let Some(DocumentNode { value: DocumentValue::Table(table), place }) = self.node(key)
+        else {
+            return None;
+        };
         let place = if *place == Place::Default { &self.place } else { place };
         Some(TableReader::new(table, &join(&self.path, key), place))
     }

@@ -9,7 +9,7 @@ use octant_requirements::decision::{Decision, Uncertainty};
 use octant_requirements::equipment::{Day, Equipment};
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{measures, signed};
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 
 /// Unit suffixes of the names of measures, with the unit's own spelling.
 const SUFFIXES: [(&str, &str); 9] = [
@@ -217,7 +217,10 @@ pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureTextError> {
     let limit =
         quantity::parse(text).map_err(|_| MeasureTextError::Quantity { found: text.to_owned() })?;
     let Some((unit, one)) = unit_of(measure) else {
-        return Err(MeasureTextError::NoUnit { found: text.to_owned(), measure: measure.to_owned() });
+        return Err(MeasureTextError::NoUnit {
+            found: text.to_owned(),
+            measure: measure.to_owned(),
+        });
     };
     if !limit.same_dimension(one) {
         return Err(MeasureTextError::Dimension {

@@ -5,8 +5,8 @@ use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
 use crate::model::{FileName, SourceSpec};
 use crate::recorded::{
-    AxisColumn, RecordedColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, RecordedQuantity, TextFiles,
-    TextMapping, TimeColumn,
+    AxisColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, RecordedColumn,
+    RecordedQuantity, TextFiles, TextMapping, TimeColumn,
 };
 use std::path::PathBuf;
 
@@ -16,7 +16,10 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpe
         None if uri == "plant" => Ok(SourceSpec::Plant),
         Some(("replay", file)) if !file.is_empty() => {
             let mapping = keys.mcap.as_ref().map(|mcap| read_mcap(mcap, sample_period_ns));
-            Ok(SourceSpec::Replay { file: FileName(file.to_owned()), mapping: mapping.transpose()? })
+            Ok(SourceSpec::Replay {
+                file: FileName(file.to_owned()),
+                mapping: mapping.transpose()?,
+            })
         }
         Some(("text", file)) if !file.is_empty() => {
             let Some(text) = &*keys.text else {
@@ -127,7 +130,10 @@ fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Prob
     })
 }
 
-fn same_quantity(gyro: RecordedQuantity, accelerometer: &At<RecordedQuantity>) -> Result<(), Problem> {
+fn same_quantity(
+    gyro: RecordedQuantity,
+    accelerometer: &At<RecordedQuantity>,
+) -> Result<(), Problem> {
     if gyro == **accelerometer {
         return Ok(());
     }

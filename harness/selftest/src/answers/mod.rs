@@ -27,7 +27,7 @@ mod units;
 use super::bench::CaseBench;
 use super::case::SelftestCase;
 use super::error::CaseSetupError;
-use super::judge::{Expectation, Known, CaseOutcome};
+use super::judge::{CaseOutcome, Expectation, Known};
 use numbers::{Found, known};
 
 fn outcome(numbers: Found) -> CaseOutcome {
@@ -202,7 +202,8 @@ mod tests {
                 continue;
             }
             let Expectation::Numbers { known, .. } = &case.expectation else { panic!() };
-            let bench = CaseBench::new(std::path::Path::new("octant"), folder.path(), &cancel).unwrap();
+            let bench =
+                CaseBench::new(std::path::Path::new("octant"), folder.path(), &cancel).unwrap();
             let found = (case.run)(&bench).unwrap().numbers;
             let mut names: Vec<&str> = known.iter().map(|k| k.name.as_str()).collect();
             names.sort_unstable();

@@ -1,7 +1,9 @@
 //! Power, ratios, distances in the plane, hypercubes and correlated draws.
 
 use super::numbers::Found;
-use octant_statistics::draw::{FactorCorrelation, Distribution, Factor, latin_hypercube, monte_carlo};
+use octant_statistics::draw::{
+    Distribution, Factor, FactorCorrelation, latin_hypercube, monte_carlo,
+};
 use octant_statistics::radius::Plane;
 use octant_statistics::{deviation, paired, position, power};
 use std::hint::black_box;

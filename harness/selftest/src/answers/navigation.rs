@@ -2,7 +2,7 @@
 
 use crate::bench::CaseBench;
 use crate::error::CaseSetupError;
-use crate::judge::{Known, CaseOutcome};
+use crate::judge::{CaseOutcome, Known};
 
 const PERFECT: &str = include_str!("../../../../fixtures/selftest/perfect.toml");
 

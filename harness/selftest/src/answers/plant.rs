@@ -4,8 +4,8 @@
 use super::numbers::Found;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_plant::config::{
-    AidingKind, AidingSource, CaseAttitude, PlantConfig, Dockside, Extensions, GaussMarkov, Imu, Motion,
-    PlantSite, Temperature, TurntableConfig, Vibration,
+    AidingKind, AidingSource, CaseAttitude, Dockside, Extensions, GaussMarkov, Imu, Motion,
+    PlantConfig, PlantSite, Temperature, TurntableConfig, Vibration,
 };
 use octant_plant::draw::{ParameterDraws, parameters};
 use octant_plant::{Plant, interpolation, motion};

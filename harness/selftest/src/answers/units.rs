@@ -19,5 +19,8 @@ pub(super) fn found() -> Result<Found, String> {
 
 fn of_group(name: &str) -> Option<f64> {
     let plain = |group: &ParameterGroup| group.name().replace('_', " ") == name.replace('-', " ");
-    ParameterGroup::ALL.into_iter().find(plain).map(|group| std::hint::black_box(group).si_per_unit())
+    ParameterGroup::ALL
+        .into_iter()
+        .find(plain)
+        .map(|group| std::hint::black_box(group).si_per_unit())
 }

@@ -7,7 +7,7 @@
 use crate::counting::Triads;
 use crate::{Epoch, Source, SourceError};
 use octant_fmu_host::description::Description;
-use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell, Cells, Handle};
+use octant_mapping::bind::{BindError, Binder, Bound, Cells, ChannelCell, Handle};
 use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
 use octant_plant::Truth;

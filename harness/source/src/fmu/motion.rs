@@ -11,9 +11,9 @@ use octant_fmu_host::description::Description;
 use octant_mapping::bind::{BindError, Binder, Bound, ChannelCell};
 use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
-use octant_plant::config::{CaseAttitude, PlantConfig, Dockside, Motion, PlantSite};
+use octant_plant::config::{CaseAttitude, Dockside, Motion, PlantConfig, PlantSite};
 use octant_plant::course::{Course, CoursePoint};
-use octant_plant::{PlantConfigError, Plant, Truth};
+use octant_plant::{Plant, PlantConfigError, Truth};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 use octant_scenario::Fmu;
@@ -238,7 +238,10 @@ impl Moving {
 /// Configures the plant for an external motion: without sway and mean attitude of its own, because
 /// the external motion includes them.
 pub(super) fn on_a_course(config: &PlantConfig) -> PlantConfig {
-    PlantConfig { motion: Motion::Dockside(Dockside::calm(CaseAttitude::default())), ..config.clone() }
+    PlantConfig {
+        motion: Motion::Dockside(Dockside::calm(CaseAttitude::default())),
+        ..config.clone()
+    }
 }
 
 /// The plant on a case that an FMU moves.

@@ -391,7 +391,8 @@ fn a_ship_that_sways_as_the_plants_own_gives_the_same_counts() {
         let mut cells = [0.0; 64];
         give(&mut cells, 0.0);
         for variable in ship(geodetic).variables {
-            let group = octant_fmu_host::instance::VariableGroup::of(&ship(geodetic), &variable).unwrap();
+            let group =
+                octant_fmu_host::instance::VariableGroup::of(&ship(geodetic), &variable).unwrap();
             instance.set(&group, &[cells[variable.reference as usize]]).unwrap();
         }
         let kept = NamedInstance { instance, uri: "fmu:ship.fmu".to_owned() };

@@ -3,7 +3,7 @@
 use crate::SourceError;
 use octant_base::number::counted;
 use octant_instruments::Reading;
-use octant_instruments::dbc::{CanFrame, Database, Gatherer, SignalMapping, DbcProblem};
+use octant_instruments::dbc::{CanFrame, Database, DbcProblem, Gatherer, SignalMapping};
 use octant_link::Uri;
 use octant_link::port::{HeardFrame, Listener};
 use octant_scenario::{FileName, Messages};
@@ -76,7 +76,8 @@ fn gatherer(messages: &Messages, folder: &Path) -> Result<Gatherer, SourceError>
             Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
         }
     };
-    let wrong = |problem: DbcProblem| SourceError::Read { path: problem.place, reason: problem.what };
+    let wrong =
+        |problem: DbcProblem| SourceError::Read { path: problem.place, reason: problem.what };
     let (file, text) = read(&messages.database)?;
     let database = Database::parse(&file, &text).map_err(wrong)?;
     let (file, text) = read(&messages.mapping)?;

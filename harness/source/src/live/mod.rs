@@ -20,7 +20,7 @@ use self::table::Table;
 use super::{Epoch, Source, SourceError};
 use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
-use octant_recorder::event::{BenchRecord, BenchReadings};
+use octant_recorder::event::{BenchReadings, BenchRecord};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::{Instrument, Scenario, Speaks};
 use std::path::Path;
@@ -180,7 +180,10 @@ impl Source for LiveSource {
         true
     }
 
-    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let table = self.table.take();
         let told = table.as_ref().map(Table::told);
         // The table is stopped before anything else is done.

@@ -5,7 +5,7 @@ use octant_base::number::counted;
 use octant_recorder::event::{BenchAngles, BenchAxis, BenchTable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_scenario::Drive;
-use octant_turntable::{TableAxis, Following};
+use octant_turntable::{Following, TableAxis};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -82,7 +82,8 @@ impl Table {
             (place.age <= self.drive.oldest).then_some(place)
         };
         let ages = &mut self.ages;
-        let (Some(azimuth), Some(roll)) = (place(TableAxis::Azimuth), place(TableAxis::Roll)) else {
+        let (Some(azimuth), Some(roll)) = (place(TableAxis::Azimuth), place(TableAxis::Roll))
+        else {
             ages.without += 1;
             return None;
         };

@@ -8,8 +8,8 @@
 mod correlation;
 mod distribution;
 
-pub use correlation::{FactorCorrelation, Correlations};
-pub use distribution::{Distribution, Factor, DrawnFactor};
+pub use correlation::{Correlations, FactorCorrelation};
+pub use distribution::{Distribution, DrawnFactor, Factor};
 
 use crate::sample::ranks;
 use octant_random::normal::{uniform, words};

@@ -9,7 +9,7 @@ mod pattern;
 
 pub(crate) use pattern::{Field, Fields, Pattern};
 
-use crate::{TableAxis, Error};
+use crate::{Error, TableAxis};
 use std::collections::BTreeMap;
 
 /// A command of the table.

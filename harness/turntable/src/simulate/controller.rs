@@ -1,7 +1,7 @@
 //! Simulated controller: its reaction to a line.
 
 use crate::dialect::{Command, Fields, Pattern, Values};
-use crate::{TableAxis, Dialect};
+use crate::{Dialect, TableAxis};
 use octant_plant::config::TurntableConfig;
 use octant_plant::table::{self, GimbalTable};
 
@@ -140,7 +140,9 @@ impl Controller {
         match &self.behaviour {
             ControllerBehaviour::Well => reply,
             ControllerBehaviour::Nonsense(nonsense) => Some(nonsense.clone()),
-            ControllerBehaviour::Silent | ControllerBehaviour::Deaf | ControllerBehaviour::HangUp => None,
+            ControllerBehaviour::Silent
+            | ControllerBehaviour::Deaf
+            | ControllerBehaviour::HangUp => None,
         }
     }
 

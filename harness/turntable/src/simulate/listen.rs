@@ -26,8 +26,8 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(SimulatedServer, String), E
     let failed = |reason: String| Error::Listen { port: at.to_owned(), reason };
     match at.split_once(':') {
         Some(("tcp", address)) => {
-            let server =
-                SimulatedServer::tcp(controller, address, 1.0).map_err(|error| failed(error.to_string()))?;
+            let server = SimulatedServer::tcp(controller, address, 1.0)
+                .map_err(|error| failed(error.to_string()))?;
             let name =
                 server.address().map_or_else(|| at.to_owned(), |address| format!("tcp:{address}"));
             Ok((server, name))
@@ -49,8 +49,8 @@ fn on_pty(controller: Controller, link: &str) -> Result<(SimulatedServer, String
     }
     std::os::unix::fs::symlink(&name, link)
         .map_err(|error| failed(format!("link to {name}: {error}")))?;
-    let server =
-        SimulatedServer::line(controller, master, 1.0).map_err(|error| failed(error.to_string()))?;
+    let server = SimulatedServer::line(controller, master, 1.0)
+        .map_err(|error| failed(error.to_string()))?;
     Ok((server, format!("serial:{link}")))
 }
 

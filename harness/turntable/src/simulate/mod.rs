@@ -9,6 +9,6 @@ mod controller;
 mod listen;
 mod server;
 
-pub use controller::{ControllerBehaviour, Controller};
+pub use controller::{Controller, ControllerBehaviour};
 pub use listen::listen;
 pub use server::SimulatedServer;

@@ -1,6 +1,6 @@
 //! A simulated controller on a port.
 
-use super::{ControllerBehaviour, Controller};
+use super::{Controller, ControllerBehaviour};
 use crate::TablePort;
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, TcpListener};
@@ -71,7 +71,11 @@ impl SimulatedServer {
     ///
     /// # Errors
     /// If the thread can't be started.
-    pub fn line(controller: Controller, port: impl TablePort + 'static, speed: f64) -> io::Result<Self> {
+    pub fn line(
+        controller: Controller,
+        port: impl TablePort + 'static,
+        speed: f64,
+    ) -> io::Result<Self> {
         let mut port = port;
         Self::start(controller, speed, None, move |shared: &Shared| {
             // A pseudo-terminal that nobody has open is gone until it is opened again. The table moves

@@ -2,7 +2,9 @@
 
 use octant_plant::config::TurntableConfig as Config;
 use octant_turntable::simulate::{Controller, SimulatedServer};
-use octant_turntable::{TableAxis, AxisLimits, Dialect, Driver, TableLimits, TablePort, DriverSettings, open};
+use octant_turntable::{
+    AxisLimits, Dialect, Driver, DriverSettings, TableAxis, TableLimits, TablePort, open,
+};
 use std::time::{Duration, Instant};
 
 /// An invented language: another end of line, degrees a minute, one status line without a rate, one
@@ -86,7 +88,11 @@ pub(crate) fn tcp_at(dialect: Dialect, speed: f64) -> (SimulatedServer, String) 
     (server, name)
 }
 
-pub(crate) fn drive(name: &str, dialect: Dialect, settings: DriverSettings) -> Driver<Box<dyn TablePort>> {
+pub(crate) fn drive(
+    name: &str,
+    dialect: Dialect,
+    settings: DriverSettings,
+) -> Driver<Box<dyn TablePort>> {
     Driver::new(open(name).unwrap(), name, dialect, settings).unwrap()
 }
 

@@ -5,7 +5,7 @@ use super::stage::stage;
 use super::style::{ACTS, ALERT, GOOD, SOFT, row};
 use crate::follow::{Follow, Stage};
 use crate::plain;
-use crate::state::{SolutionError, RunState};
+use crate::state::{RunState, SolutionError};
 use octant_base::number::fixed;
 use octant_sample::Mode;
 use ratatui::Frame;

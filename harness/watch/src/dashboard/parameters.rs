@@ -6,7 +6,7 @@ use crate::state::RunState;
 use octant_base::number::{decimals_for, fixed};
 use octant_sample::Parameters;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{ParameterGroup, NAMES};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Style;

@@ -2,7 +2,7 @@
 
 use super::{CanVersion, Slot};
 use crate::layout::{self, Field, FieldType, image_at};
-use crate::message::{MessageKind, EndRole, SEGMENT_VALUES};
+use crate::message::{EndRole, MessageKind, SEGMENT_VALUES};
 use core::fmt::{Result, Write};
 use octant_sample::parameters::NAMES;
 

@@ -5,7 +5,7 @@
 //! next five.
 
 use super::{CanVersion, Slot};
-use crate::message::{MessageKind, PARAMETERS_SEGMENTS, EndRole};
+use crate::message::{EndRole, MessageKind, PARAMETERS_SEGMENTS};
 use crate::traffic::Traffic;
 
 /// Bits of a frame by the rate at which they are sent, with the three bits of intermission after it.

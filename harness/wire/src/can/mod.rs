@@ -15,9 +15,9 @@ mod slot;
 mod state;
 
 pub use dbc::write as write_dbc;
-pub use frame::{CanVersion, BusFrame};
+pub use frame::{BusFrame, CanVersion};
 pub use load::{Bits, Bus, BusLoad, Overload, classic_bits, fd_bits};
-pub use reassembler::{DropCause, CanTraffic, ReassemblyEvent, DroppedMessage, Reassembler};
+pub use reassembler::{CanTraffic, DropCause, DroppedMessage, Reassembler, ReassemblyEvent};
 pub use segments::{NotSent, Segments, segments};
 pub use slot::Slot;
 

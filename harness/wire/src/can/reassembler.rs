@@ -5,8 +5,8 @@
 //! The CRC detects segments of two different messages.
 
 use super::segments::checksum;
-use super::{CanVersion, BusFrame, Slot};
-use crate::message::{MessageKind, MAX_PAYLOAD_BYTES, Message, EndRole};
+use super::{BusFrame, CanVersion, Slot};
+use crate::message::{EndRole, MAX_PAYLOAD_BYTES, Message, MessageKind};
 use crate::{Unreadable, VERSION};
 
 /// Cause of a dropped message.
@@ -207,7 +207,9 @@ impl Reassembler {
         let image = &mut self.images[slot.offset()..][..slot.image_bytes()];
         let data = frame.data();
 
-        if let (MessageKind::Hello, 0, Some(version)) = (slot.kind, segment, data.first_chunk::<2>()) {
+        if let (MessageKind::Hello, 0, Some(version)) =
+            (slot.kind, segment, data.first_chunk::<2>())
+        {
             let found = u16::from_le_bytes(*version);
             // Only the version of a newer hello is known.
             if found > VERSION {

@@ -1,8 +1,8 @@
 //! Division of messages into CAN frames.
 
-use super::{CanVersion, BusFrame, MAX_IMAGE_BYTES, Slot};
+use super::{BusFrame, CanVersion, MAX_IMAGE_BYTES, Slot};
 use crate::checksum::crc32_after;
-use crate::message::{MessageKind, MAX_PAYLOAD_BYTES, Message, EndRole};
+use crate::message::{EndRole, MAX_PAYLOAD_BYTES, Message, MessageKind};
 
 /// Error of a message that its sender has no identifier for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -33,7 +33,11 @@ pub struct Segments {
 ///
 /// # Errors
 /// If the sender sends no such message.
-pub fn segments(message: &Message, sender: EndRole, format: CanVersion) -> Result<Segments, NotSent> {
+pub fn segments(
+    message: &Message,
+    sender: EndRole,
+    format: CanVersion,
+) -> Result<Segments, NotSent> {
     let kind = message.kind();
     let parameters = if let Message::Parameters(segment) = message { segment.segment } else { 0 };
     let slot = Slot::of(sender, kind, parameters).ok_or(NotSent { sender, kind })?;

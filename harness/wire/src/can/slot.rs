@@ -5,7 +5,7 @@
 //! others, and 31 because identifiers that begin with seven ones are not allowed on every bus.
 
 use super::{CanVersion, MAX_IMAGE_BYTES};
-use crate::message::{MessageKind, PARAMETERS_SEGMENTS, EndRole};
+use crate::message::{EndRole, MessageKind, PARAMETERS_SEGMENTS};
 
 /// A message of one sender; of parameters, each segment is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,7 +25,12 @@ const fn slot(number: u8, sender: EndRole, kind: MessageKind) -> Slot {
 }
 
 const fn sixth(parameters: u8) -> Slot {
-    Slot { number: 23 + parameters, sender: EndRole::Device, kind: MessageKind::Parameters, parameters }
+    Slot {
+        number: 23 + parameters,
+        sender: EndRole::Device,
+        kind: MessageKind::Parameters,
+        parameters,
+    }
 }
 
 const SLOTS: usize = 22 + PARAMETERS_SEGMENTS;

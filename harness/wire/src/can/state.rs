@@ -1,7 +1,7 @@
 //! State of a receiver as bytes: incomplete messages and counts.
 
 use super::{CanTraffic, Reassembler, Slot};
-use octant_state::{StateReader, State, StateError, Writer, check_below, check_count};
+use octant_state::{State, StateError, StateReader, Writer, check_below, check_count};
 
 /// Counts in the order of writing.
 fn counts(counters: &mut CanTraffic) -> [(&'static str, &mut u64); 11] {

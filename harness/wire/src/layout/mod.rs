@@ -47,7 +47,10 @@ mod tests {
         for kind in MessageKind::ALL {
             assert_eq!((kind.payload_bytes() + 4) % 8, 0, "{}", kind.name());
             for field in fields(kind) {
-                if !matches!(field.ty, FieldType::Bytes(_) | FieldType::Text(_) | FieldType::Zero(_)) {
+                if !matches!(
+                    field.ty,
+                    FieldType::Bytes(_) | FieldType::Text(_) | FieldType::Zero(_)
+                ) {
                     let at = image_at(field.at);
                     let last = at + field.ty.bytes() - 1;
                     assert_eq!(at / 8, last / 8, "{}.{}", kind.name(), field.name);

@@ -4,7 +4,7 @@ use super::field::{Field, FieldType};
 use crate::MessageKind;
 use crate::message::Reason;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
-use octant_sample::parameters::{ParameterGroup, NAMES, PARAMETER_COUNT};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 
 const fn field(
     at: usize,
@@ -53,19 +53,49 @@ const HELLO: &[Field] = &[
     field(4, FieldType::U32, "session", "", "drawn by the harness, not 0; the others repeat it"),
     field(8, FieldType::U32, "capabilities", "", "bits, see below"),
     field(12, FieldType::U64, "sample_period_ns", "ns", "sample period that it is configured with"),
-    field(20, FieldType::U16, "window", "", "samples that it takes before it has answered the first"),
-    field(22, FieldType::U16, "silence_ms", "ms", "silence after which the other is gone; 0: never"),
+    field(
+        20,
+        FieldType::U16,
+        "window",
+        "",
+        "samples that it takes before it has answered the first",
+    ),
+    field(
+        22,
+        FieldType::U16,
+        "silence_ms",
+        "ms",
+        "silence after which the other is gone; 0: never",
+    ),
     field(24, FieldType::U32, "shortest_period_ns", "ns", "shortest sample period in real time"),
-    field(28, FieldType::Bytes(32), "configuration", "", "hash of the configuration; zeros: not known"),
+    field(
+        28,
+        FieldType::Bytes(32),
+        "configuration",
+        "",
+        "hash of the configuration; zeros: not known",
+    ),
     field(60, FieldType::Text(24), "name", "", "name of the sender"),
     field(84, FieldType::Text(24), "firmware", "", "its firmware or program, with version"),
 ];
 
 const SAMPLE: &[Field] = &[
-    field(0, FieldType::Step(Some("aided")), "step", "", "aided: an aiding of this step came before"),
+    field(
+        0,
+        FieldType::Step(Some("aided")),
+        "step",
+        "",
+        "aided: an aiding of this step came before",
+    ),
     field(2, FieldType::U16, "status", "", "bits, see below"),
     field(4, FieldType::U64, "sequence", "", "number of the sample"),
-    field(12, FieldType::U64, "device_time_ns", "ns", "end of the interval, by the instrument's clock"),
+    field(
+        12,
+        FieldType::U64,
+        "device_time_ns",
+        "ns",
+        "end of the interval, by the instrument's clock",
+    ),
     count(20, "delta_theta_x", DELTA_THETA_LSB_RAD, "rad", "integrated angular rate, body x"),
     count(24, "delta_theta_y", DELTA_THETA_LSB_RAD, "rad", "the same, body y"),
     count(28, "delta_theta_z", DELTA_THETA_LSB_RAD, "rad", "the same, body z"),

@@ -1,6 +1,6 @@
 //! Hello messages, and the check that two ends fit together.
 
-use super::{Bye, MessageKind, Reason, EndRole};
+use super::{Bye, EndRole, MessageKind, Reason};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable, VERSION};
 use core::fmt;
@@ -141,7 +141,8 @@ impl Hello {
             1 => StepPacing::RealTime,
             found => return Err(wrong("pacing", found.into(), "0 (lock-step) or 1 (real-time)")),
         };
-        let text = |field| move |reason| Unreadable::Text { kind: MessageKind::Hello, field, reason };
+        let text =
+            |field| move |reason| Unreadable::Text { kind: MessageKind::Hello, field, reason };
         Ok(Self {
             version,
             role,

@@ -79,12 +79,13 @@ impl Heartbeat {
     pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
         let step = StepNumber::new(r.u16());
         let [condition, queued] = r.take();
-        let condition = *EndCondition::ALL.get(usize::from(condition)).ok_or(Unreadable::Value {
-            kind: MessageKind::Heartbeat,
-            field: "condition",
-            found: condition.into(),
-            expected: "0 to 4",
-        })?;
+        let condition =
+            *EndCondition::ALL.get(usize::from(condition)).ok_or(Unreadable::Value {
+                kind: MessageKind::Heartbeat,
+                field: "condition",
+                found: condition.into(),
+                expected: "0 to 4",
+            })?;
         Ok(Self { step, condition, queued, clock: ClockTime { ns: r.u64() } })
     }
 }

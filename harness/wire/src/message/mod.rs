@@ -12,10 +12,10 @@ mod parameters;
 mod step;
 mod steps;
 
-pub use hello::{Agreement, Capabilities, Hello, EndLimits, StepPacing, SessionRefusal, agree};
-pub use kind::{MessageKind, EndRole};
+pub use hello::{Agreement, Capabilities, EndLimits, Hello, SessionRefusal, StepPacing, agree};
+pub use kind::{EndRole, MessageKind};
 pub use link::{
-    Bye, ClockTime, EndCondition, Heartbeat, Offset, Reason, DeviceStatus, TimeReply, TimeRequest,
+    Bye, ClockTime, DeviceStatus, EndCondition, Heartbeat, Offset, Reason, TimeReply, TimeRequest,
 };
 pub use parameters::{Gathered, Gathering, PARAMETERS_SEGMENTS, ParametersSegment, SEGMENT_VALUES};
 pub use step::StepNumber;

@@ -3,7 +3,7 @@
 use super::{CRC_BYTES, HEADER_BYTES, MAX_STUFFED_BYTES};
 use crate::checksum::crc32;
 use crate::message::ClockTime;
-use crate::{MessageKind, Message, Unreadable};
+use crate::{Message, MessageKind, Unreadable};
 
 /// Position of a frame in the sequence of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -213,7 +213,8 @@ impl SerialDecoder {
         let length = cobs::decode_in_place(stretch).map_err(|_| FrameDefect::Malformed)?;
         let (bare, crc) =
             stretch[..length].split_last_chunk::<CRC_BYTES>().ok_or(FrameDefect::Malformed)?;
-        let (header, payload) = bare.split_first_chunk::<HEADER_BYTES>().ok_or(FrameDefect::Malformed)?;
+        let (header, payload) =
+            bare.split_first_chunk::<HEADER_BYTES>().ok_or(FrameDefect::Malformed)?;
         let (found, computed) = (u32::from_le_bytes(*crc), crc32(bare));
         if found != computed {
             return Err(FrameDefect::Checksum { found, computed });

@@ -2,7 +2,7 @@
 
 use super::{CRC_BYTES, HEADER_BYTES};
 use crate::MessageKind;
-use crate::message::{PARAMETERS_SEGMENTS, EndRole};
+use crate::message::{EndRole, PARAMETERS_SEGMENTS};
 use crate::traffic::Traffic;
 
 /// Bit rate and framing of a serial line.
@@ -37,7 +37,8 @@ impl Baud {
             let mut bits_per_s = 0.0;
             for (role, kind, rate_hz) in traffic.messages() {
                 if (role == EndRole::Harness) == harness {
-                    let frames = if kind == MessageKind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
+                    let frames =
+                        if kind == MessageKind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
                     let bits = frame_bytes(kind) * frames * self.bits_per_byte as usize;
                     bits_per_s += rate_hz * bits as f64;
                 }

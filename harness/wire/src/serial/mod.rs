@@ -8,7 +8,9 @@ mod decoder;
 mod encoder;
 mod load;
 
-pub use decoder::{FrameDefect, SerialCounters, SerialDecoder, DecodeEvent, SkippedBytes, FrameOrder, Received};
+pub use decoder::{
+    DecodeEvent, FrameDefect, FrameOrder, Received, SerialCounters, SerialDecoder, SkippedBytes,
+};
 pub use encoder::SerialEncoder;
 pub use load::{Baud, LineLoad};
 

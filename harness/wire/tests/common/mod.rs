@@ -4,9 +4,9 @@ pub(crate) mod arbitrary;
 pub(crate) mod peer;
 pub(crate) mod vectors;
 
-use octant_wire::can::{self, CanVersion, BusFrame, Reassembler};
-use octant_wire::message::{ClockTime, Message, EndRole};
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent, Received};
+use octant_wire::can::{self, BusFrame, CanVersion, Reassembler};
+use octant_wire::message::{ClockTime, EndRole, Message};
+use octant_wire::serial::{DecodeEvent, Received, SerialDecoder, SerialEncoder};
 
 /// Decodes bytes that arrive in pieces into events.
 pub(crate) fn decode(decoder: &mut SerialDecoder, pieces: &[&[u8]]) -> Vec<DecodeEvent> {
@@ -52,7 +52,10 @@ pub(crate) fn frames(message: &Message, format: CanVersion) -> Vec<BusFrame> {
 }
 
 /// Reassembles frames into events.
-pub(crate) fn reassemble(reassembler: &mut Reassembler, frames: &[BusFrame]) -> Vec<can::ReassemblyEvent> {
+pub(crate) fn reassemble(
+    reassembler: &mut Reassembler,
+    frames: &[BusFrame],
+) -> Vec<can::ReassemblyEvent> {
     frames.iter().filter_map(|frame| reassembler.receive(frame)).collect()
 }
 

@@ -5,8 +5,8 @@ use octant_sample::{
     GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters, Reference,
 };
 use octant_wire::message::*;
-use octant_wire::requests::{Requests, RequestDecision};
-use octant_wire::serial::{SerialDecoder, SerialEncoder, DecodeEvent};
+use octant_wire::requests::{RequestDecision, Requests};
+use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};

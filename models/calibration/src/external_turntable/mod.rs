@@ -21,7 +21,7 @@
 use crate::config::{self, Noise, Site};
 use crate::least_squares::accelerometer::norm_row;
 use crate::least_squares::chain::{self, AttitudePrior, Chain, Turn};
-use crate::least_squares::interval::{StaticInterval, Segmenter};
+use crate::least_squares::interval::{Segmenter, StaticInterval};
 use crate::least_squares::moves::{Compensation, Move, corrected};
 use crate::least_squares::{Adjustment, AdjustmentRefusal, positive};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};

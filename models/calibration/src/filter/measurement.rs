@@ -43,7 +43,12 @@ impl CalibrationFilter {
         {
             if gate.recovery == Recovery::Widening && !self.is_plausible(&error) {
                 self.tally.rejected += 1;
-                return Some(MeasurementResult { nis, rejected: true, recovery_started, turned_rad: 0.0 });
+                return Some(MeasurementResult {
+                    nis,
+                    rejected: true,
+                    recovery_started,
+                    turned_rad: 0.0,
+                });
             }
             if matches!(self.stage, Stage::Capture(_)) {
                 // The cause of the recovery still lasts, or one opening was not wide enough.

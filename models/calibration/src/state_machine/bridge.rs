@@ -12,7 +12,7 @@ use super::uncertainty::on;
 use super::{Core, increments};
 use crate::config::Base;
 use crate::continuity::{Edge, c_cb, gimbal_turn, share_of_turn};
-use crate::screen::{ACCELEROMETERS, SensorCounts, Examined, GYROS};
+use crate::screen::{ACCELEROMETERS, Examined, GYROS, SensorCounts};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{GimbalAngles, Health, Mode, Parameters, Sample, Status};

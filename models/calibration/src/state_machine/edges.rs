@@ -181,7 +181,8 @@ impl Core {
         let parameters = |group: ParameterGroup| {
             self.sigma[group.range()].iter().fold(0.0f64, |largest, sigma| largest.max(*sigma))
         };
-        let axes = parameters(ParameterGroup::GyroScale).max(parameters(ParameterGroup::GyroMisalignment));
+        let axes =
+            parameters(ParameterGroup::GyroScale).max(parameters(ParameterGroup::GyroMisalignment));
         2.0 * sigma * sigma + axes * axes
     }
 

@@ -2,7 +2,7 @@
 
 use super::estimation::Estimation;
 use super::judgement::judge;
-use super::{Core, CalibrationRefusal, kalman_of, strapdown_at};
+use super::{CalibrationRefusal, Core, kalman_of, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Estimator, Site};
@@ -53,7 +53,9 @@ impl Core {
             }
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
-        let Some(adjusted) = self.estimation.adjust() else { return Err(CalibrationRefusal::Numeric) };
+        let Some(adjusted) = self.estimation.adjust() else {
+            return Err(CalibrationRefusal::Numeric);
+        };
         let estimate = adjusted?;
         self.parameters = estimate.parameters;
         self.sigma = estimate.sigma;

@@ -3,7 +3,7 @@
 use crate::config::{Calibration, CoreConfig, Estimator};
 use crate::external_turntable::ExternalTurntableEstimator;
 use crate::filter::CalibrationFilter;
-use crate::least_squares::{Adjustment, LeastSquaresEstimator, AdjustmentRefusal};
+use crate::least_squares::{Adjustment, AdjustmentRefusal, LeastSquaresEstimator};
 use nalgebra::Vector3;
 use octant_sample::Sample;
 
@@ -19,7 +19,10 @@ pub(super) enum Estimation {
 }
 
 impl Estimation {
-    pub(super) fn new(config: &CoreConfig, calibration: &Calibration) -> Result<Self, AdjustmentRefusal> {
+    pub(super) fn new(
+        config: &CoreConfig,
+        calibration: &Calibration,
+    ) -> Result<Self, AdjustmentRefusal> {
         Ok(match &calibration.estimator {
             Estimator::Kalman(kalman) => Self::Kalman(CalibrationFilter::new(
                 kalman,

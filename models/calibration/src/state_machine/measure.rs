@@ -2,7 +2,7 @@
 
 use super::edges::CORRECTION_RAD;
 use super::estimation::Estimation;
-use super::{Core, CalibrationRefusal, kalman_of};
+use super::{CalibrationRefusal, Core, kalman_of};
 use crate::compensation::Compensation;
 use crate::drift::DriftTest;
 use octant_sample::{Aiding, Health, Sample};

@@ -11,7 +11,7 @@ use crate::schedule::Cursor;
 use alloc::string::ToString;
 use alloc::vec::Vec;
 use octant_sample::GimbalAngles;
-use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
+use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_below, check_count};
 
 extern crate alloc;
 

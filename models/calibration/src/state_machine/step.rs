@@ -1,7 +1,7 @@
 //! One sample: from its increments to the output.
 
 use super::estimation::{Estimation, Standstill};
-use super::{Core, Gimbals, CalibrationRefusal, increments, strapdown_at};
+use super::{CalibrationRefusal, Core, Gimbals, increments, strapdown_at};
 use crate::monitor::SampleOrder;
 use nalgebra::Vector3;
 use octant_sample::{Aiding, Health, Mode, Output, Sample};

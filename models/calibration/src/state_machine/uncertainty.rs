@@ -91,8 +91,8 @@ impl Core {
     /// readings of each gimbal that has turned, counted once, and the gimbal's axis, which is known
     /// relative to the body axes no better than the gyros' axes before they are calibrated.
     fn encoder_uncertainty(&mut self) -> Matrix3<f64> {
-        let axes_rad =
-            kalman_of(&self.config).map_or(0.0, |kalman| kalman.prior.of(ParameterGroup::GyroMisalignment));
+        let axes_rad = kalman_of(&self.config)
+            .map_or(0.0, |kalman| kalman.prior.of(ParameterGroup::GyroMisalignment));
         let sigma = self.config.screening.encoder_sigma_rad;
         let Bridge { start, gimbal, open, .. } = self.bridge;
         let turns = [

@@ -1,6 +1,6 @@
 //! The kinds of faults on connections.
 
-use crate::catalogue::{ParameterBounds, Dimension, Example, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Dimension, Example, FaultParameter, Lasts, ParameterBounds, Takes};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Value, Values};
 use alloc::vec;
@@ -148,7 +148,10 @@ static SCALE: ConnectionFaultKind = ConnectionFaultKind {
     build: |values, _, _| {
         let factor = values.number("factor")?;
         if factor == 1.0 {
-            return Err(FaultBuildError::value("factor", "found 1, with which nothing would happen"));
+            return Err(FaultBuildError::value(
+                "factor",
+                "found 1, with which nothing would happen",
+            ));
         }
         Ok(Rule::Scale(factor))
     },
@@ -227,7 +230,11 @@ static DROP: ConnectionFaultKind = ConnectionFaultKind {
     parameters: &[
         FaultParameter {
             name: "probability",
-            takes: Takes::Number(ParameterBounds::Within(f64::MIN_POSITIVE, 1.0, "above 0, up to 1")),
+            takes: Takes::Number(ParameterBounds::Within(
+                f64::MIN_POSITIVE,
+                1.0,
+                "above 0, up to 1",
+            )),
             default: Some("1"),
             doc: "Probability that a transfer is lost.",
         },

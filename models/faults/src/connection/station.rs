@@ -58,7 +58,11 @@ impl ConnectionStation {
     /// # Errors
     /// If a fault's values contradict each other, it can't act on the types of its elements, an id
     /// is given twice, or a fault waits for one that isn't there.
-    pub fn new(specs: &[ConnectionFaultSpec], seed: u64, period_s: f64) -> Result<Self, (String, FaultBuildError)> {
+    pub fn new(
+        specs: &[ConnectionFaultSpec],
+        seed: u64,
+        period_s: f64,
+    ) -> Result<Self, (String, FaultBuildError)> {
         let mut stages: Vec<Stage> = Vec::with_capacity(specs.len());
         for spec in specs {
             let stage = stage(spec, specs, &stages, seed, period_s);
@@ -226,7 +230,10 @@ fn stage(
         return Err(FaultBuildError::value("recovery", problem));
     }
     if spec.schedule.duration == Some(0) {
-        return Err(FaultBuildError::value("duration", "less than a step, at least one is expected"));
+        return Err(FaultBuildError::value(
+            "duration",
+            "less than a step, at least one is expected",
+        ));
     }
     if let Some((_, target)) = spec.elements.iter().find(|(_, target)| !target.takes(spec.kind.on))
     {

@@ -1,13 +1,16 @@
 //! Loss at random.
 
-use crate::catalogue::{ParameterBounds, Dimension, FaultParameter, Takes};
+use crate::catalogue::{Dimension, FaultParameter, ParameterBounds, Takes};
 use crate::setup::FaultBuildError;
 use crate::values::Values;
 
 /// Probability of a loss.
 pub(crate) const LOSS: FaultParameter = FaultParameter {
     name: "loss",
-    takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::Within(0.0, 1.0, "above 0, up to 100 %")),
+    takes: Takes::Quantity(
+        &[Dimension::Ratio],
+        ParameterBounds::Within(0.0, 1.0, "above 0, up to 100 %"),
+    ),
     default: Some("100 %"),
     doc: "Probability that one is lost, above 0; 100 %: all are.",
 };

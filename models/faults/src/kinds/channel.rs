@@ -44,7 +44,10 @@ pub(crate) fn gyros(values: &Values, name: &'static str) -> Result<Channels, Fau
     if channels.gyros_only() {
         Ok(channels)
     } else {
-        Err(FaultBuildError::value(name, "accelerometers are among the channels, gyros are expected"))
+        Err(FaultBuildError::value(
+            name,
+            "accelerometers are among the channels, gyros are expected",
+        ))
     }
 }
 

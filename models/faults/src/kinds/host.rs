@@ -1,6 +1,8 @@
 //! The harness's own host: processors, disk, recorder.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::host::HostAction;
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};
@@ -61,7 +63,9 @@ pub static STALLED: FaultKind = host(
      has room for 8192 samples and the blocks of the recorder for 1024 more: 9 s at 1 kHz, 46 s at \
      200 Hz. A pause that is shorter is borne.",
     &[time("pause", "1 s", "How long it stands still; host time.")],
-    |values, _| Ok(FaultRule::Host(HostAction::StallRecorder { pause_s: above_zero(values, "pause")? })),
+    |values, _| {
+        Ok(FaultRule::Host(HostAction::StallRecorder { pause_s: above_zero(values, "pause")? }))
+    },
 );
 
 const fn host(

@@ -8,7 +8,7 @@ use crate::values::Channels;
 use alloc::boxed::Box;
 use core::fmt;
 use octant_sample::Epoch;
-use octant_state::{StateReader, State, StateError, Writer};
+use octant_state::{State, StateError, StateReader, Writer};
 
 /// Adds `strength · change(channel, count)` to every channel, in counts, remainder carried.
 #[derive(Clone)]

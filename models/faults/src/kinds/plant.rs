@@ -1,7 +1,7 @@
 //! Common parts of the kinds that act inside the plant.
 
-use crate::catalogue::{ParameterBounds, Dimension, FaultParameter, Takes};
-use crate::rule::{Context, PlantRule, FaultRule};
+use crate::catalogue::{Dimension, FaultParameter, ParameterBounds, Takes};
+use crate::rule::{Context, FaultRule, PlantRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;

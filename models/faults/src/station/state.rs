@@ -3,13 +3,13 @@
 //! The bytes hold the changes since the start: of each fault its clock, its receipt and the state
 //! of its rule. A station to be loaded is built from the same faults.
 
-use super::{OCCURRENCES_MAX, Occurrence, FaultSpec, Stage, Station};
+use super::{FaultSpec, OCCURRENCES_MAX, Occurrence, Stage, Station};
 use crate::rule::UnitEvent;
 use crate::setup::Setup;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
+use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_below, check_count};
 
 /// Format of the state of a station. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.

@@ -2,8 +2,8 @@
 
 // `super` is the module that includes this file: the harness's tests include it too.
 use super::EPOCHS;
-use octant_faults::catalogue::{Acts, ParameterBounds, Dimension, FaultKind, Lasts, Takes};
-use octant_faults::trigger::{ThresholdSide, Repeat, Schedule, Signal, Trigger};
+use octant_faults::catalogue::{Acts, Dimension, FaultKind, Lasts, ParameterBounds, Takes};
+use octant_faults::trigger::{Repeat, Schedule, Signal, ThresholdSide, Trigger};
 use octant_faults::{Channels, FaultSpec, Value, Values, kinds};
 use octant_sample::{Health, Mode};
 use proptest::prelude::*;
@@ -36,7 +36,9 @@ fn quantity(dimensions: &'static [Dimension], bounds: ParameterBounds) -> BoxedS
                 ParameterBounds::NotZero => {
                     (size, any::<bool>()).prop_map(|(v, minus)| if minus { -v } else { v }).boxed()
                 }
-                ParameterBounds::Any => prop_oneof![Just(0.0), size.clone(), size.prop_map(|v| -v)].boxed(),
+                ParameterBounds::Any => {
+                    prop_oneof![Just(0.0), size.clone(), size.prop_map(|v| -v)].boxed()
+                }
                 ParameterBounds::Positive => size.boxed(),
                 ParameterBounds::NotNegative => prop_oneof![Just(0.0), size].boxed(),
                 ParameterBounds::Within(from, to, _) => prop_oneof![

@@ -12,7 +12,7 @@ use octant_faults::catalogue::{Acts, Family, Takes};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{FaultBuildError, Receipt, FaultSpec, Station, kinds};
+use octant_faults::{FaultBuildError, FaultSpec, Receipt, Station, kinds};
 use octant_sample::imu::Status;
 use octant_sample::{
     Aiding, Epoch, GimbalAngles, GimbalCommand, Health, Mode, Output, Reference, Truth,

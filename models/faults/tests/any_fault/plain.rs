@@ -1,7 +1,7 @@
 //! Plain values of every kind, the same on every run.
 
 use super::draw::usual;
-use octant_faults::catalogue::{ParameterBounds, FaultKind, Takes};
+use octant_faults::catalogue::{FaultKind, ParameterBounds, Takes};
 use octant_faults::{Channels, Value, Values};
 
 /// The first values of a small grid with which a fault of the kind can be built, the same on every

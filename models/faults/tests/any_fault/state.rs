@@ -8,7 +8,7 @@ use crate::common::{Log, bytes, setup};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, STATE_FORMAT};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{FaultKind, Receipt, FaultSpec, Station, kinds};
+use octant_faults::{FaultKind, FaultSpec, Receipt, Station, kinds};
 use octant_sample::disturbance::Disturbance;
 use octant_sample::{GimbalCommand, Truth};
 use octant_state::{StateError, Writer, assert_layout};

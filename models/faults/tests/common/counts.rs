@@ -2,7 +2,7 @@
 
 use super::{Outcome, PERIOD_NS, clean, fault, run};
 use octant_faults::catalogue::Dimension;
-use octant_faults::{FaultBuildError, Channels, FaultSpec, Station, Value};
+use octant_faults::{Channels, FaultBuildError, FaultSpec, Station, Value};
 use octant_sample::Epoch;
 use octant_sample::imu::Status;
 

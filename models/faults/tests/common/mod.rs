@@ -5,7 +5,7 @@ pub mod counts;
 
 use octant_faults::catalogue::Dimension;
 use octant_faults::rule::UnitEvent;
-use octant_faults::station::{Delivered, Occurrence, FaultSpec, World};
+use octant_faults::station::{Delivered, FaultSpec, Occurrence, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Setup, Station, Value, Values};
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};

@@ -6,11 +6,12 @@
 
 use super::Plant;
 use crate::config::PlantConfig;
-use octant_state::{StateFormat, StateReader, State, StateError, Writer, check_below, check_count};
+use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_below, check_count};
 
 /// Format of the state of a plant. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
-pub const FORMAT: StateFormat = StateFormat { magic: "OCTANTPL", version: 1, what: "the state of a plant" };
+pub const FORMAT: StateFormat =
+    StateFormat { magic: "OCTANTPL", version: 1, what: "the state of a plant" };
 
 impl Plant {
     /// Appends everything that the plant needs to continue bit for bit after this step: the same

@@ -3,7 +3,7 @@
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Setup, FaultSpec, Station, Value, Values, kinds};
+use octant_faults::{FaultSpec, Setup, Station, Value, Values, kinds};
 use octant_plant::config::PlantConfig;
 use octant_plant::{Plant, PlantStep, Truth};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};

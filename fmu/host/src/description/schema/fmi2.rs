@@ -1,14 +1,27 @@
 //! The schema of FMI 2.0 (`fmi2ModelDescription.xsd`).
 
-use super::{Child, MANY, ElementRule, Open, AttributeType, any, may, must, node, one, optional, some};
+use super::{
+    AttributeType, Child, ElementRule, MANY, Open, any, may, must, node, one, optional, some,
+};
 
-const CAUSALITY: AttributeType =
-    AttributeType::Word(&["parameter", "calculatedParameter", "input", "output", "local", "independent"]);
+const CAUSALITY: AttributeType = AttributeType::Word(&[
+    "parameter",
+    "calculatedParameter",
+    "input",
+    "output",
+    "local",
+    "independent",
+]);
 pub(super) const VARIABILITY: AttributeType =
     AttributeType::Word(&["constant", "fixed", "tunable", "discrete", "continuous"]);
 pub(super) const INITIAL: AttributeType = AttributeType::Word(&["exact", "approx", "calculated"]);
-pub(super) const KINDS: AttributeType =
-    AttributeType::List(&AttributeType::Word(&["dependent", "constant", "fixed", "tunable", "discrete"]));
+pub(super) const KINDS: AttributeType = AttributeType::List(&AttributeType::Word(&[
+    "dependent",
+    "constant",
+    "fixed",
+    "tunable",
+    "discrete",
+]));
 pub(super) const NAMING: AttributeType = AttributeType::Word(&["flat", "structured"]);
 
 /// The root element.
@@ -79,8 +92,11 @@ static SOURCE_FILES: ElementRule = node("SourceFiles", &[], &[some(0, &FILE)]);
 static FILE: ElementRule = node("File", &[must("name", AttributeType::Line)], &[]);
 
 static UNIT_DEFINITIONS: ElementRule = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
-static UNIT: ElementRule =
-    node("Unit", &[must("name", AttributeType::Line)], &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)]);
+static UNIT: ElementRule = node(
+    "Unit",
+    &[must("name", AttributeType::Line)],
+    &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)],
+);
 pub(super) static BASE_UNIT: ElementRule = node(
     "BaseUnit",
     &[
@@ -99,7 +115,11 @@ pub(super) static BASE_UNIT: ElementRule = node(
 );
 static DISPLAY_UNIT: ElementRule = node(
     "DisplayUnit",
-    &[must("name", AttributeType::Line), may("factor", AttributeType::Double), may("offset", AttributeType::Double)],
+    &[
+        must("name", AttributeType::Line),
+        may("factor", AttributeType::Double),
+        may("offset", AttributeType::Double),
+    ],
     &[],
 );
 
@@ -131,7 +151,11 @@ static REAL_TYPE: ElementRule = node(
 );
 static INTEGER_TYPE: ElementRule = node(
     "Integer",
-    &[may("quantity", AttributeType::Line), may("min", AttributeType::INT), may("max", AttributeType::INT)],
+    &[
+        may("quantity", AttributeType::Line),
+        may("min", AttributeType::INT),
+        may("max", AttributeType::INT),
+    ],
     &[],
 );
 // The schema gives no type at all to these two.
@@ -143,13 +167,20 @@ static ENUMERATION_TYPE: ElementRule =
     node("Enumeration", &[may("quantity", AttributeType::Line)], &[some(0, &ITEM)]);
 static ITEM: ElementRule = node(
     "Item",
-    &[must("name", AttributeType::Line), must("value", AttributeType::INT), may("description", AttributeType::Text)],
+    &[
+        must("name", AttributeType::Line),
+        must("value", AttributeType::INT),
+        may("description", AttributeType::Text),
+    ],
     &[],
 );
 
 static LOG_CATEGORIES: ElementRule = node("LogCategories", &[], &[some(0, &CATEGORY)]);
-static CATEGORY: ElementRule =
-    node("Category", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static CATEGORY: ElementRule = node(
+    "Category",
+    &[must("name", AttributeType::Line), may("description", AttributeType::Text)],
+    &[],
+);
 static DEFAULT_EXPERIMENT: ElementRule = node(
     "DefaultExperiment",
     &[
@@ -220,10 +251,16 @@ static INTEGER: ElementRule = node(
     ],
     &[],
 );
-static BOOLEAN: ElementRule =
-    node("Boolean", &[may("declaredType", AttributeType::Line), may("start", AttributeType::Boolean)], &[]);
-static STRING: ElementRule =
-    node("String", &[may("declaredType", AttributeType::Line), may("start", AttributeType::Text)], &[]);
+static BOOLEAN: ElementRule = node(
+    "Boolean",
+    &[may("declaredType", AttributeType::Line), may("start", AttributeType::Boolean)],
+    &[],
+);
+static STRING: ElementRule = node(
+    "String",
+    &[may("declaredType", AttributeType::Line), may("start", AttributeType::Text)],
+    &[],
+);
 static ENUMERATION: ElementRule = node(
     "Enumeration",
     &[

@@ -1,7 +1,10 @@
 //! The schemas of FMI 3.0 (`fmi3ModelDescription.xsd`, `fmi3BuildDescription.xsd`).
 
 use super::fmi2::{BASE_UNIT, INITIAL, KINDS, NAMING, VARIABILITY};
-use super::{AttributeRule, Child, ElementRule, Open, AttributeType, any, may, must, node, one, optional, some};
+use super::{
+    AttributeRule, AttributeType, Child, ElementRule, Open, any, may, must, node, one, optional,
+    some,
+};
 
 const CAUSALITY: AttributeType = AttributeType::Word(&[
     "parameter",
@@ -117,8 +120,11 @@ static DISPLAY_UNIT: ElementRule = node(
 );
 
 static LOG_CATEGORIES: ElementRule = node("LogCategories", &[], &[some(0, &CATEGORY)]);
-static CATEGORY: ElementRule =
-    node("Category", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], ANNOTATED);
+static CATEGORY: ElementRule = node(
+    "Category",
+    &[must("name", AttributeType::Line), may("description", AttributeType::Text)],
+    ANNOTATED,
+);
 static DEFAULT_EXPERIMENT: ElementRule = node(
     "DefaultExperiment",
     &[
@@ -174,14 +180,24 @@ const HEX_ARRAY: &[Child] =
 
 static DIMENSION: ElementRule = node(
     "Dimension",
-    &[may("start", AttributeType::UNSIGNED_LONG), may("valueReference", AttributeType::UNSIGNED_INT)],
+    &[
+        may("start", AttributeType::UNSIGNED_LONG),
+        may("valueReference", AttributeType::UNSIGNED_INT),
+    ],
     &[],
 );
-static ALIAS: ElementRule =
-    node("Alias", &[must("name", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static ALIAS: ElementRule = node(
+    "Alias",
+    &[must("name", AttributeType::Line), may("description", AttributeType::Text)],
+    &[],
+);
 static FLOAT_ALIAS: ElementRule = node(
     "Alias",
-    &[must("name", AttributeType::Line), may("description", AttributeType::Text), may("displayUnit", AttributeType::Line)],
+    &[
+        must("name", AttributeType::Line),
+        may("description", AttributeType::Text),
+        may("displayUnit", AttributeType::Line),
+    ],
     &[],
 );
 static TEXT_START: ElementRule = node("Start", &[may("value", AttributeType::Text)], &[]);
@@ -279,7 +295,11 @@ typed!(CLOCK "Clock", CLOCK_TYPE "ClockType",
 
 static ITEM: ElementRule = node(
     "Item",
-    &[must("name", AttributeType::Line), must("value", AttributeType::LONG), may("description", AttributeType::Text)],
+    &[
+        must("name", AttributeType::Line),
+        must("value", AttributeType::LONG),
+        may("description", AttributeType::Text),
+    ],
     ANNOTATED,
 );
 
@@ -343,7 +363,8 @@ const UNKNOWN: &[AttributeRule] = &[
     may("dependenciesKind", KINDS),
 ];
 static OUTPUT: ElementRule = node("Output", UNKNOWN, ANNOTATED);
-static CONTINUOUS_STATE_DERIVATIVE: ElementRule = node("ContinuousStateDerivative", UNKNOWN, ANNOTATED);
+static CONTINUOUS_STATE_DERIVATIVE: ElementRule =
+    node("ContinuousStateDerivative", UNKNOWN, ANNOTATED);
 static CLOCKED_STATE: ElementRule = node("ClockedState", UNKNOWN, ANNOTATED);
 static INITIAL_UNKNOWN: ElementRule = node("InitialUnknown", UNKNOWN, ANNOTATED);
 static EVENT_INDICATOR: ElementRule = node("EventIndicator", UNKNOWN, ANNOTATED);
@@ -378,8 +399,10 @@ static SOURCE_FILE_SET: ElementRule = node(
         optional(3, &ANNOTATIONS),
     ],
 );
-static SOURCE_FILE: ElementRule = node("SourceFile", &[must("name", AttributeType::Line)], ANNOTATED);
-static INCLUDE_DIRECTORY: ElementRule = node("IncludeDirectory", &[must("name", AttributeType::Line)], ANNOTATED);
+static SOURCE_FILE: ElementRule =
+    node("SourceFile", &[must("name", AttributeType::Line)], ANNOTATED);
+static INCLUDE_DIRECTORY: ElementRule =
+    node("IncludeDirectory", &[must("name", AttributeType::Line)], ANNOTATED);
 static PREPROCESSOR_DEFINITION: ElementRule = node(
     "PreprocessorDefinition",
     &[
@@ -390,8 +413,11 @@ static PREPROCESSOR_DEFINITION: ElementRule = node(
     ],
     &[any(0, &OPTION), optional(1, &ANNOTATIONS)],
 );
-static OPTION: ElementRule =
-    node("Option", &[may("value", AttributeType::Line), may("description", AttributeType::Text)], &[]);
+static OPTION: ElementRule = node(
+    "Option",
+    &[may("value", AttributeType::Line), may("description", AttributeType::Text)],
+    &[],
+);
 static LIBRARY: ElementRule = node(
     "Library",
     &[

@@ -1,7 +1,7 @@
 //! The schema of `terminalsAndIcons.xml` (`fmi3TerminalsAndIcons.xsd`).
 
 use super::fmi3::ANNOTATIONS;
-use super::{ElementRule, AttributeType, any, may, must, node, optional, some};
+use super::{AttributeType, ElementRule, any, may, must, node, optional, some};
 
 /// The root element.
 pub static TERMINALS_AND_ICONS: ElementRule = node(

@@ -97,7 +97,8 @@ fn temperatures_have_offsets_and_differences_have_none() {
     let fahrenheit = UnitConversion::between(&plain, "degF", "degC").expect("converts");
     assert!((fahrenheit.apply(212.0) - 100.0).abs() < 1e-12);
     let difference = description("", r#"unit="degC" relativeQuantity="true""#);
-    let conversion = UnitConversion::of(&difference, &difference.variables[0], "K").expect("converts");
+    let conversion =
+        UnitConversion::of(&difference, &difference.variables[0], "K").expect("converts");
     assert!(conversion.is_identity());
 }
 
@@ -130,7 +131,8 @@ fn definitions_count_before_names() {
 #[test]
 fn what_measures_something_else_is_refused_with_both_names() {
     let plain = description("", r#"unit="m""#);
-    let error = |from, to| UnitConversion::between(&plain, from, to).expect_err("refused").to_string();
+    let error =
+        |from, to| UnitConversion::between(&plain, from, to).expect_err("refused").to_string();
     assert_eq!(error("m", "rad"), "unit \"m\" (m) can't become \"rad\" (rad)");
     assert_eq!(error("Hz", "rad/s"), "unit \"Hz\" (s^-1) can't become \"rad/s\" (s^-1·rad)");
     assert_eq!(error("1", "rad"), "unit \"1\" (no dimension) can't become \"rad\" (rad)");

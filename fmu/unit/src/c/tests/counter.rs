@@ -2,7 +2,7 @@
 
 use crate::c::models::Maker;
 use crate::component::ModelComponent;
-use crate::table::{DeclaredEnumeration, ElementType, Model, DeclaredVariable};
+use crate::table::{DeclaredEnumeration, DeclaredVariable, ElementType, Model};
 use crate::values::CellValues;
 
 static LEVEL: DeclaredEnumeration = DeclaredEnumeration {

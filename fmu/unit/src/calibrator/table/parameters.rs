@@ -278,9 +278,10 @@ const AIDING: [DeclaredVariable; 5] = [
 ];
 
 const LEAST_SQUARES: [DeclaredVariable; 8] = [
-    DeclaredVariable::parameter("procedure.calibration.least_squares.gravity_given", Boolean).described(
-        "Least squares: local gravity is as given; else it is normal gravity at the site.",
-    ),
+    DeclaredVariable::parameter("procedure.calibration.least_squares.gravity_given", Boolean)
+        .described(
+            "Least squares: local gravity is as given; else it is normal gravity at the site.",
+        ),
     DeclaredVariable::parameter("procedure.calibration.least_squares.gravity", Real)
         .of(&q::ACCELERATION)
         .min(0.0)

@@ -3,8 +3,8 @@
 use super::enumerations as of;
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
 use crate::table::DeclaredVariable;
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
 
 /// Largest angle of a gimbal that its counts can hold, rad.
 const GIMBAL_MAX_RAD: f64 = 16.0;
@@ -123,7 +123,8 @@ const SOLUTION: [DeclaredVariable; 16] = [
     DeclaredVariable::output("stop", Integer).within(0.0, 65535.0).described(
         "Stop of the sequence that the gimbals are at or move to, from 0, over all passes.",
     ),
-    DeclaredVariable::output("moving", Boolean).described("The gimbals are on their way to the stop."),
+    DeclaredVariable::output("moving", Boolean)
+        .described("The gimbals are on their way to the stop."),
     DeclaredVariable::output("navigation.latitude", Real)
         .of(&q::ANGLE)
         .nominal(1.0)

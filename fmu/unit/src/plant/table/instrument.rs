@@ -38,11 +38,13 @@ const NOISE: [DeclaredVariable; 2] = [
 macro_rules! gauss_markov {
     ($name:literal, $quantity:ident, $nominal:expr, $what:literal) => {
         [
-            DeclaredVariable::parameter(concat!("imu.", $name, ".enabled"), Boolean).described(concat!(
-                "The ",
-                $what,
-                " wander as a first-order Gauss-Markov process, which the filter doesn't model."
-            )),
+            DeclaredVariable::parameter(concat!("imu.", $name, ".enabled"), Boolean).described(
+                concat!(
+                    "The ",
+                    $what,
+                    " wander as a first-order Gauss-Markov process, which the filter doesn't model."
+                ),
+            ),
             DeclaredVariable::parameter(concat!("imu.", $name, ".sigma"), Real)
                 .of(&q::$quantity)
                 .min(0.0)

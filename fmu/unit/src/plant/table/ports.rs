@@ -2,8 +2,8 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
 use crate::table::DeclaredVariable;
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
 
 /// Largest angle of a gimbal that its counts can hold, rad.
 const GIMBAL_MAX_RAD: f64 = 16.0;

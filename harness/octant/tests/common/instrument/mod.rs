@@ -49,7 +49,11 @@ impl Case {
             sample_period_ns: PERIOD_NS,
             seed: self.seed,
             calibration_samples: (self.calibration_h * 3600.0 * 200.0) as u64,
-            site: plant::PlantSite { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
+            site: plant::PlantSite {
+                latitude_rad: LATITUDE_RAD,
+                longitude_rad: 2.0,
+                height_m: 0.0,
+            },
             motion: plant::Motion::Static(plant::CaseAttitude::default()),
             turntable: plant::TurntableConfig {
                 rate_radps: 10.0 * DEG,

@@ -22,7 +22,11 @@ impl Grid {
     }
 
     /// Converts a time, or a number of samples, to epochs.
-    pub(super) fn epochs(&self, table: &TableReader<'_>, key: &str) -> Result<Option<u64>, Problem> {
+    pub(super) fn epochs(
+        &self,
+        table: &TableReader<'_>,
+        key: &str,
+    ) -> Result<Option<u64>, Problem> {
         let Some(text) = table.optional_text(key) else { return Ok(None) };
         let quantity = quantity::parse(text).map_err(|_| table.problem(key, "missing"))?;
         Ok(Some(if quantity.is(UnitDimension::SAMPLES) {

@@ -250,7 +250,9 @@ impl<'a> Timing<'a> {
     fn start(&self, mode: Mode) -> u64 {
         match (mode, self.scenario.alignment) {
             (Mode::Navigating, _) => self.calibration_samples,
-            (Mode::Calibrating, AlignmentSpec::Coarse { duration_s }) => self.grid.of_time(duration_s),
+            (Mode::Calibrating, AlignmentSpec::Coarse { duration_s }) => {
+                self.grid.of_time(duration_s)
+            }
             _ => 0,
         }
     }

@@ -8,7 +8,10 @@ use octant_faults::catalogue::{FaultParameter, Takes};
 use octant_faults::{Channels, Value};
 
 /// Value of a parameter, which the check has already accepted.
-pub(super) fn value(table: &TableReader<'_>, parameter: &'static FaultParameter) -> Result<Value, Problem> {
+pub(super) fn value(
+    table: &TableReader<'_>,
+    parameter: &'static FaultParameter,
+) -> Result<Value, Problem> {
     let key = parameter.name;
     let missing = || table.problem(key, "missing");
     Ok(match parameter.takes {

@@ -1,6 +1,8 @@
 //! References that arrive late.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::span::samples;
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
@@ -28,7 +30,10 @@ pub(super) static AIDING_LATE: FaultKind = FaultKind {
     parameters: &[
         FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
+            takes: Takes::Quantity(
+                &[Dimension::Time, Dimension::Samples],
+                ParameterBounds::Positive,
+            ),
             default: None,
             doc: "How late aiding is: at least one sample period, at most 4096.",
         },

@@ -1,6 +1,8 @@
 //! References that are wrong.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::{Value, Values};
@@ -132,7 +134,10 @@ pub(super) static AIDING_NOISE: FaultKind = FaultKind {
             where the reference's noise dominates the innovation.",
     parameters: &[FaultParameter {
         name: "sigma",
-        takes: Takes::Quantity(&[Dimension::Velocity, Dimension::Length], ParameterBounds::Positive),
+        takes: Takes::Quantity(
+            &[Dimension::Velocity, Dimension::Length],
+            ParameterBounds::Positive,
+        ),
         default: None,
         doc: "Standard deviation of the noise on each axis: a velocity or a length.",
     }],

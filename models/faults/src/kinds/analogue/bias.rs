@@ -1,6 +1,8 @@
 //! A constant error that sets in at once or grows.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::Added;
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, FaultRule, SampleRule};
@@ -15,7 +17,8 @@ const CHANNELS: FaultParameter = FaultParameter {
     default: None,
     doc: "Channels that get the bias: gyros or accelerometers.",
 };
-const BIAS: Takes = Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::NotZero);
+const BIAS: Takes =
+    Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::NotZero);
 
 pub(super) static BIAS_STEP: FaultKind = FaultKind {
     name: "bias-step",

@@ -1,6 +1,8 @@
 //! A coarser least significant bit.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, write_saturating};
 use crate::kinds::onset::Onset;
@@ -34,7 +36,10 @@ pub(super) static QUANTIZATION: FaultKind = FaultKind {
         },
         FaultParameter {
             name: "resolution",
-            takes: Takes::Quantity(&[Dimension::SmallAngle, Dimension::Velocity], ParameterBounds::Positive),
+            takes: Takes::Quantity(
+                &[Dimension::SmallAngle, Dimension::Velocity],
+                ParameterBounds::Positive,
+            ),
             default: None,
             doc: "The step: an angle for gyros, a velocity for accelerometers.",
         },

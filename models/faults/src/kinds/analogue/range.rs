@@ -1,6 +1,8 @@
 //! Saturation and dead zone: the ends and the middle of the range.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, saturated, write};
 use crate::kinds::mapped::Mapped;
@@ -80,7 +82,10 @@ pub(super) static DEAD_ZONE: FaultKind = FaultKind {
         },
         FaultParameter {
             name: "threshold",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::Positive),
+            takes: Takes::Quantity(
+                &[Dimension::GyroBias, Dimension::AccelBias],
+                ParameterBounds::Positive,
+            ),
             default: None,
             doc: "D: largest magnitude that gives no output.",
         },

@@ -1,6 +1,8 @@
 //! Errors of scale factors.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::mapped::Mapped;
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};

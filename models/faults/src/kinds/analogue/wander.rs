@@ -1,6 +1,8 @@
 //! Biases that wander at random.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::{Adder, counts_per_si, fitting};
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
@@ -70,7 +72,10 @@ pub(super) static GAUSS_MARKOV: FaultKind = FaultKind {
         CHANNELS,
         FaultParameter {
             name: "sigma",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::Positive),
+            takes: Takes::Quantity(
+                &[Dimension::GyroBias, Dimension::AccelBias],
+                ParameterBounds::Positive,
+            ),
             default: None,
             doc: "Standard deviation of the bias: an angular rate for gyros, an acceleration for \
                   accelerometers.",

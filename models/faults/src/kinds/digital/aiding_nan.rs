@@ -1,6 +1,6 @@
 //! NaN and infinity where a port has real numbers.
 
-use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;

@@ -1,6 +1,8 @@
 //! Single bits of counts.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::channel::{read, write};
 use crate::kinds::six::Six;
 use crate::rule::{Context, FaultRule, SampleRule};

@@ -1,6 +1,8 @@
 //! Samples without content: they arrive, but carry no new measurement.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::channel::{counts, write};
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, FaultRule, SampleRule};
@@ -167,7 +169,11 @@ struct Dropout {
 octant_state::state! { Dropout { values: out, fill, onset; parts: ; kept: channels, gimbal, held, chain } }
 
 impl Dropout {
-    fn rule(values: &Values, held: bool, chain: Option<Chain>) -> Result<FaultRule, FaultBuildError> {
+    fn rule(
+        values: &Values,
+        held: bool,
+        chain: Option<Chain>,
+    ) -> Result<FaultRule, FaultBuildError> {
         Ok(FaultRule::Samples(Box::new(Self {
             channels: values.channels("channels")?,
             gimbal: values.flag("gimbal")?,

@@ -1,6 +1,6 @@
 //! Channels that are read less often than they are sent.
 
-use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::kinds::channel::{counts, read, write, write_saturating};
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, FaultRule, SampleRule};
@@ -69,7 +69,14 @@ fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
         _ => Between::Repeated,
     };
     let onset = Onset::default();
-    Ok(FaultRule::Samples(Box::new(SlowRate { channels, every, between, seen: 0, kept: [0; 6], onset })))
+    Ok(FaultRule::Samples(Box::new(SlowRate {
+        channels,
+        every,
+        between,
+        seen: 0,
+        kept: [0; 6],
+        onset,
+    })))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,8 @@
 //! A pulse on one or more channels.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::Added;
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
@@ -27,7 +29,10 @@ pub(super) static SPIKE: FaultKind = FaultKind {
         },
         FaultParameter {
             name: "amplitude",
-            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], ParameterBounds::NotZero),
+            takes: Takes::Quantity(
+                &[Dimension::GyroBias, Dimension::AccelBias],
+                ParameterBounds::NotZero,
+            ),
             default: None,
             doc: "Height of the pulse: an angular rate for gyros, an acceleration for accelerometers.",
         },

@@ -1,6 +1,8 @@
 //! Counts that stay constant.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{counts, read, saturated, write};
 use crate::kinds::onset::Onset;
@@ -54,7 +56,10 @@ pub(super) static STUCK_AT_VALUE: FaultKind = FaultKind {
         },
         FaultParameter {
             name: "value",
-            takes: Takes::Quantity(&[Dimension::AngularRate, Dimension::Acceleration], ParameterBounds::Any),
+            takes: Takes::Quantity(
+                &[Dimension::AngularRate, Dimension::Acceleration],
+                ParameterBounds::Any,
+            ),
             default: None,
             doc: "V: the angular rate or the acceleration that is read.",
         },

@@ -1,6 +1,6 @@
 //! Size effect.
 
-use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::kinds::plant::{fixed, within};
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};

@@ -1,15 +1,17 @@
 //! Motions of the whole case that the core doesn't expect: a jerk of the mooring, and sway.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::plant::{EDGE, angular, fixed, not_nothing, within};
-use crate::rule::{Context, PlantRule, FaultRule};
+use crate::rule::{Context, FaultRule, PlantRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
-use octant_sample::disturbance::{Disturbance, SpectralLine, Motor};
+use octant_sample::disturbance::{Disturbance, Motor, SpectralLine};
 
 pub(super) static MOORING_JERK: FaultKind = FaultKind {
     name: "mooring-jerk",
@@ -173,7 +175,8 @@ impl PlantRule for Sway {
                 angle_phase_rad: angular(phases[1][axis]),
             };
             if self.angles[axis] != 0.0 {
-                let mut line = SpectralLine { frequency_hz: 1.0 / self.angle_periods_s[axis], ..still };
+                let mut line =
+                    SpectralLine { frequency_hz: 1.0 / self.angle_periods_s[axis], ..still };
                 line.angle_rad[axis] = self.angles[axis];
                 lines.push(line);
             }

@@ -1,15 +1,17 @@
 //! Random vibration of the sensor block by its spectral density.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::plant::{EDGE, angular, frequency, not_nothing, within};
-use crate::rule::{Context, PlantRule, FaultRule};
+use crate::rule::{Context, FaultRule, PlantRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
-use octant_sample::disturbance::{Disturbance, SpectralLine, Motor};
+use octant_sample::disturbance::{Disturbance, Motor, SpectralLine};
 
 /// Distance of the counters of two onsets: more than there can be lines.
 const PER_FIRING: u64 = 1000;

@@ -1,6 +1,8 @@
 //! Sinusoidal vibration of the sensor block.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::plant::{EDGE, angular, fixed, frequency, not_nothing, within};
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};

@@ -1,6 +1,8 @@
 //! Dither that remains in the increments.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::gyros;
 use crate::kinds::onset::Onset;

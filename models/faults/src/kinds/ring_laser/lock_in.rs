@@ -1,6 +1,8 @@
 //! Lock-in: the two beams couple, and slow rotation is not measured.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::added::counts_per_si;
 use crate::kinds::channel::gyros;
 use crate::kinds::mapped::Mapped;

@@ -1,6 +1,6 @@
 //! Samples that are lost.
 
-use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::kinds::chance::{self, LOSS};
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup, Stream};

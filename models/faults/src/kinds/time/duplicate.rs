@@ -1,7 +1,9 @@
 //! Samples that are delivered more than once.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup};
@@ -35,7 +37,10 @@ pub(super) static DUPLICATE: FaultKind = FaultKind {
         },
         FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::NotNegative),
+            takes: Takes::Quantity(
+                &[Dimension::Time, Dimension::Samples],
+                ParameterBounds::NotNegative,
+            ),
             default: Some("0 s"),
             doc: "How much later the copies come, to the nearest sample: up to 4096 samples.",
         },

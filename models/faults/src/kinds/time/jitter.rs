@@ -1,7 +1,9 @@
 //! Stamps with noise.
 
 use super::clock::{CLOCK, Clocks, to_ns};
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;

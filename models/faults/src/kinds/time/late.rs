@@ -1,7 +1,9 @@
 //! Samples that arrive late.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup};
@@ -34,7 +36,10 @@ pub(super) static LATE_DELIVERY: FaultKind = FaultKind {
     parameters: &[
         FaultParameter {
             name: "delay",
-            takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], ParameterBounds::Positive),
+            takes: Takes::Quantity(
+                &[Dimension::Time, Dimension::Samples],
+                ParameterBounds::Positive,
+            ),
             default: None,
             doc: "How late samples are: at least one sample period, at most 4096.",
         },

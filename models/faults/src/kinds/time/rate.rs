@@ -1,7 +1,9 @@
 //! Clocks with a wrong rate: too fast or slow, stopped, backwards.
 
 use super::clock::{AFTERWARDS, CLOCK, Clocks, stays, to_ns};
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;

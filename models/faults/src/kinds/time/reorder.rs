@@ -1,6 +1,6 @@
 //! Samples that arrive in another order.
 
-use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::rule::{Context, DeliveryRule, FaultRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::station::FLIGHT_MAX;

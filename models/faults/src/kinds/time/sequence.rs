@@ -1,6 +1,6 @@
 //! Sequence numbers that jump although no sample was lost.
 
-use crate::catalogue::{Acts, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::rule::{Context, FaultRule, SampleRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
@@ -46,9 +46,16 @@ pub(super) static SEQUENCE_GAP: FaultKind = FaultKind {
 fn build(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
     let skip = values.integer("skip")?;
     if skip == 0 {
-        return Err(FaultBuildError::value("skip", "0: no number would change, another is expected"));
+        return Err(FaultBuildError::value(
+            "skip",
+            "0: no number would change, another is expected",
+        ));
     }
-    Ok(FaultRule::Samples(Box::new(SequenceGap { skip, stays: super::clock::stays(values)?, error: 0 })))
+    Ok(FaultRule::Samples(Box::new(SequenceGap {
+        skip,
+        stays: super::clock::stays(values)?,
+        error: 0,
+    })))
 }
 
 #[derive(Clone, Debug)]

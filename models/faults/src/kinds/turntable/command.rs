@@ -1,6 +1,8 @@
 //! Set points on their way from the core to the turntable.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::span::samples;
 use crate::rule::{CommandRule, Context, FaultRule};
 use crate::setup::{FaultBuildError, Setup};
@@ -70,7 +72,10 @@ fn build_repeated(values: &Values, _: &Setup) -> Result<FaultRule, FaultBuildErr
     instead(values, |now| now.set_points.before)
 }
 
-fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<FaultRule, FaultBuildError> {
+fn instead(
+    values: &Values,
+    place: fn(&Context<'_>) -> GimbalCommand,
+) -> Result<FaultRule, FaultBuildError> {
     Ok(FaultRule::Command(Box::new(Instead {
         positions: values.integer("positions")?,
         place,

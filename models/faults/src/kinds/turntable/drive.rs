@@ -1,7 +1,9 @@
 //! Drives that don't follow their commands.
 
 use super::gimbal::{GIMBAL, happens, limited};
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;

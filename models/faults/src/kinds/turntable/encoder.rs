@@ -1,8 +1,10 @@
 //! Encoders that read a wrong angle; no part moves.
 
 use super::gimbal::{GIMBAL, chosen, happens, limited};
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
-use crate::rule::{Context, PlantRule, FaultRule};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
+use crate::rule::{Context, FaultRule, PlantRule};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;

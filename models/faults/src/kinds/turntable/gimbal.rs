@@ -1,6 +1,8 @@
 //! Motions of the body against its drive: slip, play, ringing.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::kinds::plant::{fixed, frequency, within};
 use crate::rule::FaultRule;
 use crate::setup::{FaultBuildError, Setup};

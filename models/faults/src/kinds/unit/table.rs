@@ -1,7 +1,7 @@
 //! Start of the unit under test from a wrong calibration.
 
 use super::power::Once;
-use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, Takes};
 use crate::rule::{FaultRule, UnitEvent};
 use crate::setup::{FaultBuildError, Setup};
 use crate::values::Values;

@@ -1,7 +1,7 @@
 //! Frames that arrive damaged.
 
 use super::rule::{SHARE, WAYS, rule, wire};
-use crate::catalogue::{FaultKind, Lasts, FaultParameter};
+use crate::catalogue::{FaultKind, FaultParameter, Lasts};
 use crate::wire::WireAction;
 
 const PARAMETERS: &[FaultParameter] = &[WAYS, SHARE];

@@ -1,7 +1,7 @@
 //! Frames that are lost, late, doubled, in another order, or foreign.
 
 use super::rule::{SHARE, WAYS, count, number, rule, time, wire};
-use crate::catalogue::{FaultKind, Lasts, FaultParameter};
+use crate::catalogue::{FaultKind, FaultParameter, Lasts};
 use crate::wire::WireAction;
 
 const PARAMETERS: &[FaultParameter] = &[WAYS, SHARE];

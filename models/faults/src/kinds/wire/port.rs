@@ -82,7 +82,8 @@ mod tests {
                 };
                 values.set(parameter.name, value);
             }
-            let crate::rule::FaultRule::Wire(mut rule) = (kind.build)(&values, &setup).unwrap() else {
+            let crate::rule::FaultRule::Wire(mut rule) = (kind.build)(&values, &setup).unwrap()
+            else {
                 panic!("{} is no fault of a wire", kind.name);
             };
             let output = octant_sample::Output::default();

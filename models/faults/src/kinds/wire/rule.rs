@@ -1,6 +1,8 @@
 //! The rule of all faults of the wire, and parameters that they share.
 
-use crate::catalogue::{Acts, ParameterBounds, Dimension, Example, Family, FaultKind, Lasts, FaultParameter, Takes};
+use crate::catalogue::{
+    Acts, Dimension, Example, Family, FaultKind, FaultParameter, Lasts, ParameterBounds, Takes,
+};
 use crate::rule::{Context, FaultRule, WireRule};
 use crate::setup::{FaultBuildError, Setup, Stream};
 use crate::values::Values;
@@ -24,7 +26,10 @@ pub(super) const WAYS: FaultParameter = FaultParameter {
 /// Share of the frames that a fault acts on.
 pub(super) const SHARE: FaultParameter = FaultParameter {
     name: "share",
-    takes: Takes::Quantity(&[Dimension::Ratio], ParameterBounds::Within(0.0, 1.0, "above 0, up to 100 %")),
+    takes: Takes::Quantity(
+        &[Dimension::Ratio],
+        ParameterBounds::Within(0.0, 1.0, "above 0, up to 100 %"),
+    ),
     default: Some("100 %"),
     doc: "Probability that it acts on a frame, each on its own, above 0; 100 %: on all.",
 };
@@ -42,7 +47,11 @@ pub(super) const fn wire(
 }
 
 /// Makes the rule of a fault that acts on frames.
-pub(super) fn rule(values: &Values, setup: &Setup, action: WireAction) -> Result<FaultRule, FaultBuildError> {
+pub(super) fn rule(
+    values: &Values,
+    setup: &Setup,
+    action: WireAction,
+) -> Result<FaultRule, FaultBuildError> {
     let chance = match values.get(SHARE.name) {
         Some(_) => values.quantity(SHARE.name)?,
         None => 1.0,
@@ -87,7 +96,10 @@ pub(super) const fn time(
 ) -> FaultParameter {
     FaultParameter {
         name,
-        takes: Takes::Quantity(&[Dimension::Time], ParameterBounds::Within(0.0, 3600.0, "from 0 s to 1 h")),
+        takes: Takes::Quantity(
+            &[Dimension::Time],
+            ParameterBounds::Within(0.0, 3600.0, "from 0 s to 1 h"),
+        ),
         default: Some(default),
         doc,
     }

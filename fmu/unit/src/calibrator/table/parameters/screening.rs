@@ -2,8 +2,8 @@
 
 use crate::calibrator::table::enumerations as of;
 use crate::quantities as q;
-use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
 use crate::table::DeclaredVariable;
+use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
 use octant_calibration::config::{Base, Gate, Screening};
 use octant_earth::units::ARCSEC;
 
