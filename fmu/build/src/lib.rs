@@ -41,7 +41,7 @@ use octant_fmu::c::token;
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu::calibrator_can::CalibratorCan;
 use octant_fmu::component::ModelComponent as _;
-use octant_fmu::plant::Plant;
+use octant_fmu::plant::PlantFmu;
 use octant_fmu::table::Model;
 use octant_scenario::Scenario;
 use own::Own;

@@ -96,7 +96,7 @@ fn wires(from: &'static Model, to: &'static Model) -> Vec<(usize, usize)> {
 /// Both models under a parallel master: values are exchanged at communication points, then both
 /// step.
 struct Pair {
-    plant: Instance<plant::Plant>,
+    plant: Instance<plant::PlantFmu>,
     calibrator: Instance<Calibrator>,
     there: Vec<(usize, usize)>,
     back: Vec<(usize, usize)>,
@@ -450,7 +450,7 @@ fn what_was_put_is_found_again_bit_for_bit() {
         plant.seed = seed;
         for samples in [plant.calibration_samples, 0, u64::MAX] {
             plant.calibration_samples = samples;
-            let found = Instance::<plant::Plant>::new(&plant::start_values(&plant, &[]).unwrap());
+            let found = Instance::<plant::PlantFmu>::new(&plant::start_values(&plant, &[]).unwrap());
             let found = plant::config(&found.unwrap().values).unwrap();
             assert_eq!(found, plant);
             assert_eq!(format!("{found:?}"), format!("{plant:?}"));
@@ -460,7 +460,7 @@ fn what_was_put_is_found_again_bit_for_bit() {
     for kind in can_act() {
         let fault = fault_of(kind);
         let start = plant::start_values(&plant, std::slice::from_ref(&fault)).unwrap();
-        let found = Instance::<plant::Plant>::new(&start).unwrap();
+        let found = Instance::<plant::PlantFmu>::new(&start).unwrap();
         let found = plant::faults(&found.values).unwrap();
         assert_eq!(found.len(), 1);
         let (place, found) = &found[0];

@@ -6,7 +6,7 @@ use super::token::token;
 use crate::calibrator::Calibrator;
 use crate::calibrator_can::CalibratorCan;
 use crate::component::{ModelComponent, Network};
-use crate::plant::Plant;
+use crate::plant::PlantFmu;
 use crate::table::Model;
 use crate::values::CellValues;
 use std::sync::OnceLock;
@@ -103,7 +103,7 @@ impl Maker {
 
 /// All models.
 static MAKERS: [Maker; 3] =
-    [Maker::of::<Calibrator>(), Maker::of::<Plant>(), Maker::of::<CalibratorCan>()];
+    [Maker::of::<Calibrator>(), Maker::of::<PlantFmu>(), Maker::of::<CalibratorCan>()];
 
 /// Finds the model with this token.
 pub(super) fn find(standard: ServedStandard, token: &str) -> Option<&'static Maker> {

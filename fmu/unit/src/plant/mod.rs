@@ -60,7 +60,7 @@ pub fn put(
 
 /// The plant with its faults.
 #[derive(Clone, Debug)]
-pub struct Plant {
+pub struct PlantFmu {
     plant: octant_plant::Plant,
     period_ns: u64,
     with_truth: bool,
@@ -147,7 +147,7 @@ impl Faults {
     }
 }
 
-impl Plant {
+impl PlantFmu {
     /// Makes a step with faults: the last epoch gets its set point, which is known only now, then
     /// the next one begins.
     #[inline(never)]
@@ -182,7 +182,7 @@ impl Plant {
     }
 }
 
-impl ModelComponent for Plant {
+impl ModelComponent for PlantFmu {
     const MODEL: &'static Model = &table::MODEL;
 
     type Error = PlantFailure;
@@ -279,7 +279,7 @@ impl ModelComponent for Plant {
 const FORMAT: StateFormat =
     StateFormat { magic: "OCTPLANT", version: 1, what: "the state of a Plant" };
 
-impl Plant {
+impl PlantFmu {
     fn read(bytes: &[u8], values: &CellValues) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let plant: Vec<u8> = from.value("plant")?;

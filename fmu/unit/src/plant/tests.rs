@@ -2,7 +2,7 @@
 //! in the harness compares its outputs with those of the plant in one process.
 
 use super::table::{FAULT_KIND, FAULT_NUMBERS, MODEL, slot};
-use super::{Plant, numbers};
+use super::{PlantFmu, numbers};
 use crate::component::ModelComponent;
 use crate::values::CellValues;
 use octant_faults::kinds;
@@ -27,15 +27,15 @@ fn bias_step(place: usize, values: &mut CellValues) {
     values.set_reals(of("values"), &[1.0, 1e-3, 0.0]);
 }
 
-fn made(mut values: CellValues) -> (Plant, CellValues) {
-    let plant = Plant::initialize(&mut values).unwrap();
+fn made(mut values: CellValues) -> (PlantFmu, CellValues) {
+    let plant = PlantFmu::initialize(&mut values).unwrap();
     (plant, values)
 }
 
 fn refused(change: impl FnOnce(&mut CellValues)) -> String {
     let mut values = CellValues::new(&MODEL);
     change(&mut values);
-    match Plant::initialize(&mut values) {
+    match PlantFmu::initialize(&mut values) {
         Ok(_) => panic!("it was taken: {:?}", super::faults(&values)),
         Err(error) => error.to_string(),
     }
@@ -244,7 +244,7 @@ fn a_state_is_of_one_plant_and_whole() {
     }
     let mut bytes = Vec::new();
     plant.save(&mut bytes);
-    let mut loaded = Plant::load(&bytes, &values).unwrap();
+    let mut loaded = PlantFmu::load(&bytes, &values).unwrap();
     let mut copy = values.clone();
     for _ in 0..300 {
         plant.step(&mut values).unwrap();
@@ -252,17 +252,17 @@ fn a_state_is_of_one_plant_and_whole() {
         assert_eq!(values.cells(), copy.cells());
     }
     for end in 0..bytes.len() {
-        assert!(Plant::load(&bytes[..end], &values).is_err());
+        assert!(PlantFmu::load(&bytes[..end], &values).is_err());
     }
     for at in 0..bytes.len() {
         let mut altered = bytes.clone();
         altered[at] ^= 0x10;
-        assert!(Plant::load(&altered, &values).is_err(), "{at}");
+        assert!(PlantFmu::load(&altered, &values).is_err(), "{at}");
     }
     let said = |change: &dyn Fn(&mut CellValues)| {
         let mut values = values.clone();
         change(&mut values);
-        Plant::load(&bytes, &values).unwrap_err().to_string()
+        PlantFmu::load(&bytes, &values).unwrap_err().to_string()
     };
     assert_eq!(
         said(&|values| values.set_count(at("random.seed"), 2)),
