@@ -92,7 +92,7 @@ pub enum Trigger {
     /// By hand: [`crate::Station::fire`].
     Manual,
     /// A delay after a condition has come true that the caller evaluates: on connections, where
-    /// there is no core; see [`crate::connection::Station::begin`].
+    /// there is no core; see [`crate::connection::ConnectionStation::begin`].
     Outside {
         /// Epochs after the condition.
         delay: u64,

@@ -49,7 +49,7 @@ pub enum MessageKind {
     Ready = 8,
     /// [`super::Heartbeat`].
     Heartbeat = 9,
-    /// [`super::Status`].
+    /// [`super::DeviceStatus`].
     Status = 10,
     /// [`super::TimeRequest`].
     TimeRequest = 11,
