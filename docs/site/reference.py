@@ -1,0 +1,353 @@
+"""Reference pages, made from what the program says: keys, commands, measures, faults.
+
+Each page asks the program itself, so that none can be older than it:
+
+- keys: the JSON Schema that `octant schema` prints;
+- commands: `--help` of every command;
+- measures: the keys that `octant requirements check` names for a path that is none, level by level;
+- faults: the list that `octant faults list --json` prints.
+
+An answer of another form than expected ends the build.
+"""
+
+import html
+import json
+import pathlib
+import re
+import subprocess
+import tempfile
+
+
+class AnswerError(Exception):
+    """The program answered in a form from which no page can be made."""
+
+
+class Program:
+    """The program, called by the name that its users know."""
+
+    def __init__(self, path):
+        self.path = str(pathlib.Path(path).resolve())
+
+    def run(self, *arguments, folder=None):
+        """Exit status, stdout and stderr."""
+        # Wide enough for every line of a help text, and no colours.
+        environment = {"PATH": "/usr/bin:/bin", "NO_COLOR": "1", "COLUMNS": "100"}
+        done = subprocess.run(["octant", *arguments], executable=self.path, cwd=folder, env=environment,
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+        return done.returncode, done.stdout, done.stderr
+
+    def ask(self, *arguments):
+        """Stdout of a command that has to succeed."""
+        status, out, err = self.run(*arguments)
+        if status != 0:
+            raise AnswerError(f"octant {' '.join(arguments)}: exit status {status}: {err.strip()}")
+        return out
+
+    def version(self):
+        return self.ask("--version").split()[-1]
+
+
+def write(folder, program):
+    """Writes all reference pages into `folder`, and returns the kinds of faults."""
+    folder.mkdir(parents=True, exist_ok=True)
+    kinds = json.loads(program.ask("faults", "list", "--json"))["kinds"]
+    version = program.version()
+    pages = {
+        "keys.md": keys(json.loads(program.ask("schema")), kinds),
+        "commands.md": commands(program),
+        "measures.md": measures(program),
+        "faults.md": faults(kinds),
+    }
+    for name, text in pages.items():
+        note = f"\n\n---\n\nMade from the program itself, version {version}.\n"
+        (folder / name).write_text(text.rstrip("\n") + note, encoding="utf-8")
+    return kinds
+
+
+def cell(text):
+    """Text of a table's cell: a pipe ends no cell, and nothing in it is markup."""
+    text = re.sub(r"\s*\n\s*", " ", text.strip())
+    # What stands in backticks already stays as it is.
+    parts = text.split("`")
+    for at in range(0, len(parts), 2):
+        parts[at] = re.sub(r"([\\*_<\[\]|$])", r"\\\1", parts[at])
+        parts[at] = re.sub(r'"([^"]*)"', lambda found: code(found[0].replace("\\", "")), parts[at])
+    return "`".join(parts)
+
+
+def code(text):
+    """Text as code, in a cell too."""
+    if "|" not in text and "`" not in text:
+        return f"`{text}`"
+    return f"<code>{html.escape(text, quote=False).replace('|', '&#124;').replace('`', '&#96;')}</code>"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines) + "\n\n"
+
+
+# --- keys -------------------------------------------------------------------------------------------------
+
+def keys(schema, kinds):
+    """Every key of a scenario, a table for each table of the file."""
+    own = {kind["name"]: {parameter["name"] for parameter in kind["parameters"]} for kind in kinds}
+    count = 0
+    sections = []
+    top = []
+    for name, node in sorted(schema["properties"].items()):
+        if name == "faults":
+            node = dict(node, items={"properties": fault_keys(node["items"]["oneOf"], own)})
+        inner = children(node)
+        if not inner:
+            top.append((name, node))
+            count += 1
+            continue
+        rows = []
+        collect(name, inner, rows)
+        count += sum(len(found) for _, found in rows)
+        sections.append((name, node, rows))
+    text = (f"# Keys\n\nAll {count} keys of a scenario. Quantities are texts with a unit, such as `\"12 h\"`: "
+            "[units](../docs/scenario.md#quantities). A key of a table `[a.b]` is written `a.b.key` after `--set`. Keys of "
+            "other files: [campaigns](../docs/campaigns.md#the-file), [requirements](../docs/requirements.md#the-file).\n\n")
+    text += "## Outside of tables\n\n" + key_table("", top)
+    for name, node, rows in sections:
+        about, takes, left_out = description(node)
+        brackets = f"[[{name}]]" if node.get("type") == "array" else f"[{name}]"
+        text += f"## {name}\n\n`{brackets}`: {cell(about)}{default_words(node, left_out)}\n\n"
+        if name == "faults":
+            text += "The parameters of each kind are in [faults](faults.md).\n\n"
+        for path, found in rows:
+            if path != name:
+                text += f"### {path}\n\n"
+            text += key_table(path + ".", found)
+    return text
+
+
+def default_words(node, left_out):
+    return f" Left out: {cell(left_out)}" if left_out else ""
+
+
+def fault_keys(branches, own):
+    """The keys that faults of several kinds have; those of one kind are its parameters."""
+    common = {}
+    for branch in branches:
+        (kind,) = branch["properties"]["kind"]["enum"]
+        for key, node in branch["properties"].items():
+            if key not in own[kind]:
+                common.setdefault(key, node)
+    about, _, _ = description(common["kind"])
+    common["kind"] = {"description": f"{about} Takes the name of a kind."}
+    return common
+
+
+def children(node):
+    """The described keys of the table, or of the tables, that a key takes."""
+    found = {}
+    for branch in [node.get("items")] + [one for key in ("anyOf", "oneOf") for one in node.get(key, [])]:
+        if branch:
+            found.update(children(branch))
+    for key, inner in node.get("properties", {}).items():
+        if "description" in inner:
+            found[key] = inner
+    return found
+
+
+def collect(path, inner, rows):
+    """Appends a table of keys, then those inside of it, in the order of the alphabet."""
+    rows.append((path, sorted(inner.items())))
+    for key, node in sorted(inner.items()):
+        deeper = children(node)
+        if deeper:
+            collect(f"{path}.{key}", deeper, rows)
+
+
+def description(node):
+    """The three parts of a description: meaning, what it takes, what stands where it is left out."""
+    if "description" not in node:
+        raise AnswerError(f"a key without a description: {json.dumps(node)[:200]}")
+    text = node["description"]
+    about, has, rest = text.partition(" Takes ")
+    if not has:
+        raise AnswerError(f"a description without \"Takes\": {text}")
+    takes, has, left_out = re.match(r"(.*?)(?: (Left out|Default): (.*))?$", rest, re.S).groups()
+    return about, takes.rstrip("."), left_out if has else ""
+
+
+def key_table(prefix, found):
+    rows = []
+    for key, node in found:
+        about, takes, left_out = description(node)
+        if "default" in node:
+            value = node["default"]
+            left_out = code(json.dumps(value, ensure_ascii=False))
+        elif left_out:
+            left_out = cell(left_out.rstrip("."))
+        else:
+            left_out = "always given"
+        rows.append([f'<code id="{prefix}{key}">{key}</code>', cell(about), cell(takes), left_out])
+    return table(["key", "meaning", "takes", "left out"], rows)
+
+
+# --- commands ---------------------------------------------------------------------------------------------
+
+def commands(program):
+    """The help of every command, and of those inside of it."""
+    text = ("# Commands and options\n\nThe help texts of all commands. What they print, with examples and exit statuses: "
+            "[commands](../docs/commands.md).\n\n")
+    waiting = [()]
+    count = 0
+    while waiting:
+        words = waiting.pop(0)
+        help_text = program.ask(*words, "--help").rstrip()
+        inner = [(*words, name) for name in subcommands(help_text)]
+        waiting = inner + waiting
+        count += 1
+        level = "##" if len(words) < 2 else "###"
+        text += f"{level} {' '.join(('octant', *words))}\n\n```text\n{help_text}\n```\n\n"
+    if count < 10:
+        raise AnswerError(f"the help names {count} commands, expected many")
+    return text
+
+
+def subcommands(help_text):
+    """Names in the section `Commands:` of a help text."""
+    section = re.search(r"^Commands:\n((?:  .*\n)+)", help_text + "\n", re.M)
+    found = re.findall(r"^  (\S+)", section[1], re.M) if section else []
+    return [name for name in found if name != "help"]
+
+
+# --- measures ---------------------------------------------------------------------------------------------
+
+# No measure has this name, and no measure is comparable with a temperature.
+UNKNOWN = "no_such_name"
+QUESTION = "1 K"
+
+
+def measures(program):
+    """Every measure with its unit, found by asking for keys until only numbers are left."""
+    numbers = {}
+    tables = [""]
+    while tables:
+        answers = asked(program, [f"{path}.{UNKNOWN}".lstrip(".") for path in tables])
+        wanted = [f"{path}.{key}".lstrip(".") for path, keys in zip(tables, answers) for key in keys]
+        tables = []
+        for path, answer in zip(wanted, asked(program, wanted)):
+            if isinstance(answer, list):
+                tables.append(path)
+            else:
+                numbers[path] = answer
+    if len(numbers) < 100:
+        raise AnswerError(f"the program names {len(numbers)} measures, expected many")
+    return measure_page(numbers)
+
+
+def asked(program, paths):
+    """What the program says about each path: the keys of a table, or the unit of a number."""
+    with tempfile.TemporaryDirectory() as folder:
+        entries = [f'[[requirements]]\nid = "R{at}"\ntext = "x"\nmeasure = "{path}"\nlimit = "{QUESTION}"\n'
+                   for at, path in enumerate(paths)]
+        file = pathlib.Path(folder) / "r.toml"
+        file.write_text('schema = 1\ntitle = "x"\n' + "".join(entries), encoding="utf-8")
+        _, _, said = program.run("requirements", "check", file.name, folder=folder)
+    lines = [line for line in said.splitlines() if re.match(r"(?:octant: )?r\.toml:\d+:\d+: ", line)]
+    if len(lines) != len(paths):
+        raise AnswerError(f"{len(paths)} questions about measures, {len(lines)} answers: {said[:500]}")
+    return [understood(path, line) for path, line in zip(paths, lines)]
+
+
+def understood(path, line):
+    keys = re.search(r"(?:, it has|, expected a number in it): (.*)$", line)
+    if keys:
+        return keys[1].split(", ")
+    unit = re.search(r"expected a quantity that is comparable with (\S+), the unit of ", line)
+    if unit:
+        return unit[1]
+    if re.search(r"expected a plain number: \S+ has no unit$", line):
+        return ""
+    raise AnswerError(f"no answer about the measure {path}: {line}")
+
+
+OF_PARAMETER = "the unit of the parameter"
+
+
+def unit_words(unit):
+    if unit == OF_PARAMETER:
+        return unit
+    return code(unit) if unit else "a plain number"
+
+
+def measure_page(numbers):
+    """Groups the measures by table; tables of parameters, which are all alike, become one."""
+    parameters = sorted({path.split(".")[2] for path in numbers if path.startswith("calibration.parameters.")})
+    groups = {}
+    for path, unit in numbers.items():
+        if path.startswith("baseline."):
+            other = path.removeprefix("baseline.")
+            if numbers.get(other) != unit:
+                raise AnswerError(f"{path} has no counterpart {other}")
+            continue
+        parts = path.split(".")
+        if len(parts) > 3 and parts[1] == "parameters":
+            place, unit = ".".join([*parts[:2], "NAME", *parts[3:]]), OF_PARAMETER if unit else ""
+        else:
+            place = path
+        top = place.split(".")[0]
+        groups.setdefault(top, {})[place] = unit
+    text = (f"# Measures\n\nAll {len(numbers)} numbers that a [requirement](../docs/requirements.md#the-file) of a scenario, a "
+            "campaign or a file of requirements can limit: paths into "
+            "[`summary.json`](../docs/results.md#summaryjson-schema-2), which tells their meaning. Bars take the magnitude: "
+            '`"|calibration.parameters.g_zz.error|"`. A limit is a number in the unit of the measure, or a quantity. Where no '
+            "unit stands a limit is a plain number.\n\n")
+    for top, found in groups.items():
+        text += f"## {top}\n\n"
+        rows = [[f'<code id="{place}">{place}</code>', unit_words(unit)]
+                for place, unit in found.items()]
+        text += table(["measure", "a limit is in"], rows)
+    units = {}
+    for name in parameters:
+        units.setdefault(numbers[f"calibration.parameters.{name}.error"], []).append(name)
+    text += "## Names of parameters\n\nEach takes the place of `NAME`.\n\n"
+    text += table(["unit", "parameters"],
+                  [[code(unit), ", ".join(code(name) for name in names)] for unit, names in units.items()])
+    text += ("## baseline\n\nThe second method has the measures of `calibration`, `navigation`, `counterfactual`, `planned` and "
+             "`done` too, such as `baseline.navigation.longitude_error_arcmin.max`.\n")
+    return text
+
+
+# --- faults -----------------------------------------------------------------------------------------------
+
+LASTS = {"span": "for its duration", "fading": "for its duration, then it can fade", "instant": "an instant"}
+
+
+def families(kinds):
+    """Kinds by family, in the order of the program."""
+    found = {}
+    for kind in kinds:
+        found.setdefault(kind["family"], []).append(kind)
+    return found
+
+
+def faults(kinds):
+    """Every kind of fault with its parameters."""
+    text = (f"# Kinds of faults\n\nAll {len(kinds)} kinds. How a fault is written, when it sets in and how its effect is found: "
+            "[faults](../docs/faults.md).\n\n")
+    for family, members in families(kinds).items():
+        text += f"## {family[0].upper()}{family[1:]}\n\n"
+        for kind in members:
+            text += fault(kind)
+    return text
+
+
+def fault(kind):
+    name = kind["name"]
+    page = pathlib.Path(__file__).parent.parent / "faults" / f"{name}.md"
+    more = f" [Model, example and picture](../docs/faults/{name}.md)." if page.exists() else ""
+    if kind["lasts"] not in LASTS:
+        raise AnswerError(f"the fault {name} lasts {kind['lasts']!r}, expected one of {', '.join(LASTS)}")
+    text = f"### {name}\n\n{cell(kind['summary'])} Acts {kind['acts']}; lasts {LASTS[kind['lasts']]}.{more}\n\n"
+    rows = [[code(parameter["name"]), cell(parameter["doc"]), cell(parameter["takes"]),
+             "always given" if parameter["default"] is None else code(parameter["default"])]
+            for parameter in kind["parameters"]]
+    return text + (table(["parameter", "meaning", "takes", "default"], rows) if rows else "No parameters.\n\n")
