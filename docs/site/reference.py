@@ -70,7 +70,7 @@ def cell(text):
     # What stands in backticks already stays as it is.
     parts = text.split("`")
     for at in range(0, len(parts), 2):
-        parts[at] = re.sub(r"([\\*_<\[\]|$])", r"\\\1", parts[at])
+        parts[at] = re.sub(r"([\\*_<\[\]|])", r"\\\1", parts[at])
         parts[at] = re.sub(r'"([^"]*)"', lambda found: code(found[0].replace("\\", "")), parts[at])
     return "`".join(parts)
 
@@ -80,6 +80,12 @@ def code(text):
     if "|" not in text and "`" not in text:
         return f"`{text}`"
     return f"<code>{html.escape(text, quote=False).replace('|', '&#124;').replace('`', '&#96;')}</code>"
+
+
+def named(anchor, text):
+    """A name as code with an anchor, which may break after a dot or before an underscore."""
+    broken = text.replace(".", ".<wbr>").replace("_", "<wbr>_")
+    return f'<code id="{anchor}">{broken}</code>'
 
 
 def table(header, rows):
@@ -98,10 +104,10 @@ def keys(schema, kinds):
     top = []
     for name, node in sorted(schema["properties"].items()):
         if name == "faults":
-            node = dict(node, items={"properties": fault_keys(node["items"]["oneOf"], own)})
+            node = dict(node, items=fault_keys(node["items"]["oneOf"], own))
         inner = children(node)
         if not inner:
-            top.append((name, node))
+            top.append((name, dict(node, given="always given" if name in schema.get("required", []) else "")))
             count += 1
             continue
         rows = []
@@ -131,26 +137,32 @@ def default_words(node, left_out):
 
 def fault_keys(branches, own):
     """The keys that faults of several kinds have; those of one kind are its parameters."""
-    common = {}
+    common, required = {}, set()
     for branch in branches:
         (kind,) = branch["properties"]["kind"]["enum"]
         for key, node in branch["properties"].items():
             if key not in own[kind]:
                 common.setdefault(key, node)
+                required.update({key} & set(branch.get("required", [])))
     about, _, _ = description(common["kind"])
     common["kind"] = {"description": f"{about} Takes the name of a kind."}
-    return common
+    return {"properties": common, "required": sorted(required)}
 
 
 def children(node):
-    """The described keys of the table, or of the tables, that a key takes."""
+    """The described keys of the table, or of the tables, that a key takes; of tables to choose from, those of all."""
     found = {}
-    for branch in [node.get("items")] + [one for key in ("anyOf", "oneOf") for one in node.get(key, [])]:
-        if branch:
-            found.update(children(branch))
+    choices = [children(one) for key in ("anyOf", "oneOf") for one in node.get(key, [])]
+    alone = sum(bool(choice) for choice in choices) == 1
+    for choice in choices:
+        for key, inner in choice.items():
+            given = inner["given"] if alone or not inner["given"] else "another is given"
+            found[key] = dict(inner, given=given)
+    if "items" in node:
+        found.update(children(node["items"]))
     for key, inner in node.get("properties", {}).items():
         if "description" in inner:
-            found[key] = inner
+            found[key] = dict(inner, given="always given" if key in node.get("required", []) else "")
     return found
 
 
@@ -184,9 +196,11 @@ def key_table(prefix, found):
             left_out = code(json.dumps(value, ensure_ascii=False))
         elif left_out:
             left_out = cell(left_out.rstrip("."))
+        elif node["given"]:
+            left_out = node["given"]
         else:
-            left_out = "always given"
-        rows.append([f'<code id="{prefix}{key}">{key}</code>', cell(about), cell(takes), left_out])
+            left_out = "the defaults of its keys" if children(node) else ""
+        rows.append([named(prefix + key, key), cell(about), cell(takes), left_out])
     return table(["key", "meaning", "takes", "left out"], rows)
 
 
@@ -302,7 +316,7 @@ def measure_page(numbers):
             "unit stands a limit is a plain number.\n\n")
     for top, found in groups.items():
         text += f"## {top}\n\n"
-        rows = [[f'<code id="{place}">{place}</code>', unit_words(unit)]
+        rows = [[named(place, place), unit_words(unit)]
                 for place, unit in found.items()]
         text += table(["measure", "a limit is in"], rows)
     units = {}

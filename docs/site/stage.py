@@ -24,6 +24,8 @@ LANGUAGES = {".rs": "rust", ".toml": "toml", ".py": "python", ".c": "c", ".h": "
              ".sh": "bash", "": "bash"}
 # Code has no links: a fence to its end, or a span.
 CODE = re.compile(r"^(?P<fence>[ >]*(`{3,}|~{3,})).*?^[ >]*\2[`~]*[ ]*$|(?<!`)(`+)(?!`).+?(?<!`)\3(?!`)", re.S | re.M)
+# A place to be filled in, such as `<commit>`: neither a comment, nor an address, nor a line break.
+PLACEHOLDER = re.compile(r"<(?!!--|https?:|br>)")
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 
 
@@ -55,7 +57,8 @@ class Stage:
         self.write(page, "".join(out))
 
     def relinked(self, page, text):
-        return LINK.sub(lambda found: found[1] + self.target(page, found[2]) + found[3], text)
+        text = LINK.sub(lambda found: found[1] + self.target(page, found[2]) + found[3], text)
+        return PLACEHOLDER.sub("&lt;", text)
 
     def target(self, page, link):
         if re.match(r"[a-z]+:|#", link):
