@@ -30,8 +30,8 @@ class Program:
 
     def run(self, *arguments, folder=None):
         """Exit status, stdout and stderr."""
-        # Wide enough for every line of a help text, and no colours.
-        environment = {"PATH": "/usr/bin:/bin", "NO_COLOR": "1", "COLUMNS": "100"}
+        # Help texts as wide as a page, without colours.
+        environment = {"PATH": "/usr/bin:/bin", "NO_COLOR": "1", "COLUMNS": "88"}
         done = subprocess.run(["octant", *arguments], executable=self.path, cwd=folder, env=environment,
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
         return done.returncode, done.stdout, done.stderr
@@ -312,8 +312,8 @@ def measure_page(numbers):
     text = (f"# Measures\n\nAll {len(numbers)} numbers that a [requirement](../docs/requirements.md#the-file) of a scenario, a "
             "campaign or a file of requirements can limit: paths into "
             "[`summary.json`](../docs/results.md#summaryjson-schema-2), which tells their meaning. Bars take the magnitude: "
-            '`"|calibration.parameters.g_zz.error|"`. A limit is a number in the unit of the measure, or a quantity. Where no '
-            "unit stands a limit is a plain number.\n\n")
+            '`"|calibration.parameters.g_zz.error|"`. A limit is a plain number, or a quantity where the table '
+            "names a unit; a plain number is in that unit.\n\n")
     for top, found in groups.items():
         text += f"## {top}\n\n"
         rows = [[named(place, place), unit_words(unit)]
