@@ -265,7 +265,7 @@ def asked(program, paths):
         file = pathlib.Path(folder) / "r.toml"
         file.write_text('schema = 1\ntitle = "x"\n' + "".join(entries), encoding="utf-8")
         _, _, said = program.run("requirements", "check", file.name, folder=folder)
-    lines = [line for line in said.splitlines() if re.match(r"(?:octant: )?r\.toml:\d+:\d+: ", line)]
+    lines = [line for line in said.splitlines() if re.match(r"(?:[a-z]+: )?r\.toml:\d+:\d+: ", line)]
     if len(lines) != len(paths):
         raise AnswerError(f"{len(paths)} questions about measures, {len(lines)} answers: {said[:500]}")
     return [understood(path, line) for path, line in zip(paths, lines)]
