@@ -125,9 +125,10 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
-    let mut epochs = Epochs::new(recording);
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
     let mut watcher = Watcher::new(Plan::lasting(scenario));
+    watcher.recorded(&recording.info().run);
+    let mut epochs = Epochs::new(recording);
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };

@@ -133,17 +133,17 @@ fn text(scores: &Scores) -> String {
         out += &octant_run::assemble::parameter_lines(&scores.parameters);
     }
     if let Some(navigation) = &scores.navigation {
-        let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
         let radial = &navigation.radial_error_nmi;
         let _ = writeln!(
             out,
             "  navigation {} h, height held",
             octant_base::number::plain(navigation.duration_h, 4)
         );
-        for (name, error) in [("latitude", lat), ("longitude", lon)] {
+        for (name, unit, error) in navigation.errors() {
+            let Some(error) = error else { continue };
             let _ = writeln!(
                 out,
-                "    {name:10} max {:.3}, rms {:.3}, final {:+.3} arcmin",
+                "    {name:10} max {:.3}, rms {:.3}, final {:+.3} {unit}",
                 error.max, error.rms, error.r#final
             );
         }

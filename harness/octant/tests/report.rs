@@ -110,6 +110,8 @@ fn navigation(residual_g_zz: f64, tilt_arcsec: f64) -> Navigation {
             t_s,
             latitude_error_rad,
             longitude_error_rad,
+            attitude_error: None,
+            velocity_error_mps: None,
             latitude_rad: LATITUDE,
             height_m: 0.0,
         });

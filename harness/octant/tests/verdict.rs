@@ -19,7 +19,13 @@ use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn summary() -> Summary {
-    let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day: None };
+    let score = ErrorScore {
+        max: 0.75,
+        rms: 0.4,
+        r#final: -0.6,
+        slope_per_day: None,
+        schuler_amplitude: None,
+    };
     Summary {
         schema: SCHEMA,
         octant: "0.1.0".to_owned(),
@@ -52,6 +58,11 @@ fn summary() -> Summary {
             latitude_error_arcmin: score,
             longitude_error_arcmin: score,
             radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
+            heading_error_arcmin: None,
+            pitch_error_arcmin: None,
+            roll_error_arcmin: None,
+            velocity_north_error_mps: None,
+            velocity_east_error_mps: None,
             slope_window: None,
             marks: BTreeMap::new(),
             series_hours: vec![[0.0, 0.0, 0.0], [1.0, 0.1, -0.6]],

@@ -1,6 +1,7 @@
 //! Navigation of a run: errors over time, scores beside their analytic references.
 
 use super::chart::{Band, Chart, Line, Role};
+use super::scores::scores;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::reference::{Reference, VerticalDrift};
@@ -62,6 +63,7 @@ pub(super) fn drift(summary: &Summary) -> Markup {
             leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
         (chart("Latitude", 1))
         (chart("Longitude", 2))
+        (scores(&all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>()))
         (drift_table(summary, &all))
     }
 }

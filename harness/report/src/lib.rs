@@ -15,5 +15,6 @@ mod pacing;
 pub mod page;
 mod parameters;
 pub mod run;
+mod scores;
 
 pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};

@@ -34,7 +34,7 @@ pub fn check(path: &str) -> Result<(), (String, Option<String>, Vec<&'static str
 
 /// Content at an existing place.
 fn shape(path: &[&str]) -> Shape {
-    let error = ["max", "rms", "final", "slope_per_day"];
+    let error = ["max", "rms", "final", "slope_per_day", "schuler_amplitude"];
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
     match path {
         [] => table(&[
@@ -121,10 +121,24 @@ fn shape(path: &[&str]) -> Shape {
             "latitude_error_arcmin",
             "longitude_error_arcmin",
             "radial_error_nmi",
+            "heading_error_arcmin",
+            "pitch_error_arcmin",
+            "roll_error_arcmin",
+            "velocity_north_error_mps",
+            "velocity_east_error_mps",
             "slope_window",
             "marks",
         ]),
-        ["navigation", "latitude_error_arcmin" | "longitude_error_arcmin"] => table(&error),
+        [
+            "navigation",
+            "latitude_error_arcmin"
+            | "longitude_error_arcmin"
+            | "heading_error_arcmin"
+            | "pitch_error_arcmin"
+            | "roll_error_arcmin"
+            | "velocity_north_error_mps"
+            | "velocity_east_error_mps",
+        ] => table(&error),
         ["navigation", "radial_error_nmi"] => table(&["max", "rms", "final", "rate_per_h"]),
         ["navigation", "slope_window"] => table(&["periods", "hours"]),
         ["navigation", "marks"] => table(&["24h", "72h"]),

@@ -52,6 +52,8 @@ mod tests {
             "navigation.latitude_error_arcmin.final",
             "navigation.longitude_error_arcmin.slope_per_day",
             "baseline.navigation.longitude_error_arcmin.final",
+            "navigation.heading_error_arcmin.final",
+            "navigation.velocity_north_error_mps.slope_per_day",
             "navigation.marks.24h.longitude_arcmin",
             "calibration.parameters.g_zz.error",
             "calibration.parameters.g_zz.normalized",
@@ -63,6 +65,7 @@ mod tests {
         for magnitude in [
             "navigation.latitude_error_arcmin.max",
             "navigation.radial_error_nmi.final",
+            "navigation.heading_error_arcmin.schuler_amplitude",
             "navigation.marks.24h.longitude_max_arcmin",
             "calibration.parameters.g_zz.sigma",
             "calibration.nis_mean",

@@ -2,6 +2,7 @@
 
 use super::findings::findings;
 use super::method::MethodRun;
+use super::scores_text::navigation_lines;
 use super::twin::difference;
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
@@ -261,18 +262,8 @@ pub fn text(summary: &Summary) -> String {
             }
         }
         if let Some(n) = navigation {
-            let error = |e: &octant_score::summary::ErrorScore| {
-                let slope =
-                    e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
-                format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
-            };
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
-            line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
-            line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
-            line(format!(
-                "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
-                n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
-            ));
+            navigation_lines(n).into_iter().for_each(&mut line);
         }
     }
     let differences = std::iter::once((&summary.method, &summary.counterfactual))

@@ -6,7 +6,7 @@
 //! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
 //! from its scenario to its scores; [`concluded`] stores a calibration that ended with the stream;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
-//! summary and report of a run of one or two methods.
+//! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 
 pub mod assemble;
 pub mod concluded;
@@ -27,6 +27,7 @@ pub mod raw_counts;
 pub mod realtime;
 mod recording;
 pub mod replayed;
+pub mod scores_text;
 pub mod twin;
 pub mod unit;
 pub mod watch;

@@ -9,7 +9,7 @@ use super::drive::{Ended, Line, RunError, drive_in_time};
 use super::faulted::Faulted;
 use super::host::Host;
 use super::realtime::{Kept, drive_by_clock};
-use super::watch::Watcher;
+use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY, Watcher};
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
 use octant_calibration::config as core;
@@ -152,17 +152,22 @@ pub fn run_as_far_as_it_goes(
     let opened = octant_source::open(scenario, &plant).map_err(SetupError::Source)?;
     let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
     let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
-    let options = RecorderOptions {
-        trouble,
-        ..recorder_options(scenario, seed, &draws, method, true_parameters)
-    };
+    let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
+    let mut options = recorder_options(scenario, seed, &draws, method);
+    options.trouble = trouble;
+    for (key, told) in [
+        ("true_parameters", true_parameters),
+        (TELLS_VELOCITY, tells.velocity),
+        (TELLS_ATTITUDE, tells.attitude),
+    ] {
+        options.metadata.insert(key.to_owned(), told.to_string());
+    }
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
         Recording::Hash => Recorder::hash_only(&options),
         Recording::HashAlone => Recorder::stream_hash_only(&options),
         Recording::None => Recorder::none(),
     };
-    let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
     let plan = Plan::of(scenario, method, &core, tells, recorded);
     let mut watcher = Watcher::new(plan);
@@ -328,7 +333,6 @@ fn recorder_options(
     seed: u64,
     draws: &Draws,
     method: Method,
-    true_parameters: bool,
 ) -> RecorderOptions {
     let record = &scenario.record;
     let method = match method {
@@ -342,13 +346,9 @@ fn recorder_options(
             parameters_period_ns: record.parameters_period_ns,
         },
         scenario: scenario.to_resolved_toml(seed, draws),
-        metadata: [
-            ("method", method.to_owned()),
-            ("seed", seed.to_string()),
-            ("true_parameters", true_parameters.to_string()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value))
-        .into(),
+        metadata: [("method", method.to_owned()), ("seed", seed.to_string())]
+            .map(|(key, value)| (key.to_owned(), value))
+            .into(),
         ..RecorderOptions::default()
     }
 }

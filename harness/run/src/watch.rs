@@ -6,16 +6,19 @@
 
 use super::done::{Done, Plan};
 use super::follow::Follow;
+use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
 use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output};
+use octant_score::attitude::CaseAttitude;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::health::HealthMonitor;
 use octant_score::trace::Trace;
 use octant_score::work::Work;
 use octant_source::Epoch;
+use std::collections::BTreeMap;
 
 /// Interval at which truth is compared with the navigation solution, ns.
 const SCORE_PERIOD_NS: u64 = 1_000_000_000;
@@ -27,6 +30,11 @@ const STANDING_PERIOD_NS: u64 = 60_000_000_000;
 const NIS_POINTS_MAX: usize = 50_000;
 /// Maximum number of gimbal points: days of rotation in navigation are all alike.
 const GIMBAL_POINTS_MAX: usize = 40_000;
+
+/// Key of a recording's metadata: whether the unit tells its velocity.
+pub(crate) const TELLS_VELOCITY: &str = "tells_velocity";
+/// Key of a recording's metadata: whether the unit tells its attitude.
+pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
 
 /// Observes one run.
 #[derive(Debug)]
@@ -44,6 +52,7 @@ pub struct Watcher {
     /// Device time of the last sample of the drift.
     scored_ns: Option<u64>,
     last_ns: u64,
+    tells: Tells,
     check: AnswerCheck,
     follow: Follow,
     done: Done,
@@ -97,6 +106,7 @@ impl Watcher {
             navigation_start_ns: None,
             scored_ns: None,
             last_ns: 0,
+            tells: plan.tells().unwrap_or(Tells::ALL),
             check: AnswerCheck::new(),
             follow: Follow::new(plan.tells()),
             done: Done::towards(plan),
@@ -113,6 +123,14 @@ impl Watcher {
             misbehaved: None,
             bench_broke: None,
         }
+    }
+
+    /// Sets which quantities the unit of a recording tells, from the recording's metadata. A recording
+    /// without a statement has all of them.
+    pub fn recorded(&mut self, run: &BTreeMap<String, String>) {
+        let told = |key: &str| run.get(key).is_none_or(|text| text != "false");
+        self.tells.velocity = told(TELLS_VELOCITY);
+        self.tells.attitude = told(TELLS_ATTITUDE);
     }
 
     /// Takes the source's epoch, before faults alter it.
@@ -285,6 +303,8 @@ impl Watcher {
             t_s: (now_ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
+            attitude_error: self.attitude_error(output, truth),
+            velocity_error_mps: self.velocity_error(output, truth),
             latitude_rad: truth.latitude_rad,
             height_m: truth.height_m,
         };
@@ -293,6 +313,22 @@ impl Watcher {
             trace.drift(sample.t_s, north, east);
         }
         self.drift.push(&sample);
+    }
+
+    /// Attitude error of the case; `None` where unit or source don't tell an attitude.
+    fn attitude_error(&self, output: &Output, truth: &Truth) -> Option<CaseAttitude> {
+        let known = self.tells.attitude && truth.q_nb.iter().all(|q| q.is_finite());
+        let computed = output.navigation.q_nb;
+        known.then(|| CaseAttitude::error(computed, truth.q_nb, truth.gimbal_rad))
+    }
+
+    /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a
+    /// velocity.
+    fn velocity_error(&self, output: &Output, truth: &Truth) -> Option<[f64; 2]> {
+        let [north, east, _] = truth.velocity_mps;
+        let known = self.tells.velocity && north.is_finite() && east.is_finite();
+        let [computed_north, computed_east, _] = output.navigation.velocity_mps;
+        known.then(|| [computed_north - north, computed_east - east])
     }
 
     /// Returns the drift so far; `None` without navigation or without truth.

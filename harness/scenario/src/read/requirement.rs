@@ -265,6 +265,10 @@ mod tests {
         assert_eq!(slope.as_deref(), Some("arcmin/day"));
         assert_eq!(unit("navigation.radial_error_nmi.rate_per_h").as_deref(), Some("nmi/h"));
         assert_eq!(unit("calibration.parameters.g_zz.sigma").as_deref(), Some("deg/h/g"));
+        let unit_of_slope = unit("navigation.velocity_north_error_mps.slope_per_day");
+        assert_eq!(unit_of_slope.as_deref(), Some("m/s/day"));
+        assert_eq!(unit("navigation.velocity_east_error_mps.rms").as_deref(), Some("m/s"));
+        assert_eq!(limit_of("navigation.velocity_east_error_mps.max", "2 kn"), Ok(3704.0 / 3600.0));
         assert_eq!(unit("calibration.nis_mean"), None);
     }
 }

@@ -59,6 +59,8 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
             t_s,
             latitude_error_rad: latitude * black_box(RAD_PER_ARCMIN),
             longitude_error_rad: longitude * black_box(RAD_PER_ARCMIN),
+            attitude_error: None,
+            velocity_error_mps: None,
             latitude_rad: black_box(30.5) * (PI / 180.0),
             height_m: 120.0,
         });
