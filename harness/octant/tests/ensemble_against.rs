@@ -106,6 +106,8 @@ impl Bench {
             altered_streams: None,
             method: "eight".to_owned(),
             calibration: Some(Calibration {
+                reference: None,
+                solution: None,
                 positions: "eight".to_owned(),
                 estimator: "kalman".to_owned(),
                 duration_h: 0.4,
@@ -131,6 +133,7 @@ impl Bench {
                 marks: BTreeMap::new(),
                 series_hours: std::iter::once([0.0; 3]).chain(series).collect(),
             }),
+            alignment: None,
             counterfactual: None,
             baseline: None,
             reference: None,

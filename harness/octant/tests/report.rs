@@ -84,6 +84,8 @@ fn calibration(positions: &str, with_g: bool) -> (Calibration, Parameters) {
     }
     let parameters = parameters::score(Some(&truth()), &estimate, &sigma);
     let calibration = Calibration {
+        reference: None,
+        solution: None,
         positions: positions.to_owned(),
         estimator: "39-state Kalman filter (phi)".to_owned(),
         duration_h: 24.0,
@@ -147,6 +149,7 @@ fn data() -> ReportData {
             label: "six positions".to_owned(),
             calibration: Some(six),
             navigation: Some(navigation(g(&truth()) - g(&six_estimate), 2.5)),
+            alignment: None,
             counterfactual: None,
             faults: vec![],
             stream_hash: "6a1f0c55d0f2f7be6c3c8c5d88a64f6d4c8f4bb0c6a5b8d2e1f30b9a5d7c4e21"
@@ -163,6 +166,7 @@ fn data() -> ReportData {
             estimated_g_zz: Some(g(&estimate)),
             baseline_estimated_g_zz: Some(0.0),
         })),
+        alignment: None,
         counterfactual: None,
         pacing: None,
         stream_hash: "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855".to_owned(),

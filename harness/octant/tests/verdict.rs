@@ -42,6 +42,8 @@ fn summary() -> Summary {
         faults: vec![],
         method: "eight".to_owned(),
         calibration: Some(Calibration {
+            reference: None,
+            solution: None,
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -70,6 +72,7 @@ fn summary() -> Summary {
         baseline: None,
         reference: None,
         altered_streams: None,
+        alignment: None,
         counterfactual: None,
         pacing: None,
         stream_hash: "00".to_owned(),

@@ -133,6 +133,8 @@ impl Parts {
             faulted_crc32: None,
         };
         let calibration = |refused: bool| Calibration {
+            reference: None,
+            solution: None,
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -183,6 +185,7 @@ impl Parts {
                 marks: BTreeMap::new(),
                 series_hours: Vec::new(),
             }),
+            alignment: None,
             counterfactual: None,
             baseline: self.baseline.as_ref().map(|(fired, refused)| Baseline {
                 planned: None,
@@ -190,6 +193,7 @@ impl Parts {
                 label: "six".to_owned(),
                 calibration: Some(calibration(*refused)),
                 navigation: None,
+                alignment: None,
                 counterfactual: None,
                 stream_hash: "00".to_owned(),
                 faults: fired.iter().map(fault).collect(),

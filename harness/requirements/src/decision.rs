@@ -134,6 +134,7 @@ fn is_referred(bare: &str) -> bool {
     let name = own.rsplit('.').next().unwrap_or(own);
     match own.split('.').next() {
         Some("navigation") => !own.contains("slope_window") && name != "duration_h",
+        Some("alignment") => matches!(name, "error" | "normalized"),
         Some("calibration") => {
             matches!(name, "error" | "estimate" | "normalized" | "worst_normalized_error")
                 || own.contains(".nees.")

@@ -38,6 +38,7 @@ fn shape(path: &[&str]) -> Shape {
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
     match path {
         [] => table(&[
+            "alignment",
             "calibration",
             "navigation",
             "counterfactual",
@@ -66,7 +67,26 @@ fn shape(path: &[&str]) -> Shape {
         ["pacing", "lateness_us" | "answer_us"] => table(&["p50", "p99", "p999", "max"]),
         ["pacing", "device_clock"] => table(&["offset_us", "bound_us", "skew_ppm", "exchanges"]),
         ["planned" | "done"] => table(&["stops", "calibration_s", "references", "navigation_s"]),
-        ["baseline"] => table(&["calibration", "navigation", "counterfactual", "planned", "done"]),
+        ["alignment"] => table(&["duration_s", "solution"]),
+        ["alignment" | "calibration", "solution"] => table(&[
+            "heading_deg",
+            "pitch_deg",
+            "roll_deg",
+            "heading_arcmin",
+            "pitch_arcmin",
+            "roll_arcmin",
+            "velocity_north_mps",
+            "velocity_east_mps",
+        ]),
+        [
+            "alignment" | "calibration",
+            "solution",
+            "heading_arcmin" | "pitch_arcmin" | "roll_arcmin" | "velocity_north_mps"
+            | "velocity_east_mps",
+        ] => table(&["error", "sigma", "normalized"]),
+        ["baseline"] => {
+            table(&["alignment", "calibration", "navigation", "counterfactual", "planned", "done"])
+        }
         ["baseline", rest @ ..] => shape(rest),
         ["counterfactual"] => table(&[
             "outputs_differ_after_s",
@@ -87,6 +107,7 @@ fn shape(path: &[&str]) -> Shape {
         ]),
         ["calibration"] => table(&[
             "duration_h",
+            "solution",
             "parameters",
             "nis_mean",
             "nees",

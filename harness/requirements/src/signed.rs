@@ -10,7 +10,10 @@ pub fn is_signed(path: &str) -> bool {
     match name {
         // Distances have no sign, and `radial_error_nmi.final` is one.
         "final" | "slope_per_day" => !path.contains("radial"),
-        "error" | "estimate" | "true" | "normalized" | "shift" => path.contains("parameters"),
+        "error" | "estimate" | "true" | "normalized" | "shift" => {
+            path.contains("parameters") || path.contains(".solution.")
+        }
+        "heading_deg" | "pitch_deg" | "roll_deg" => true,
         "latitude_arcmin" | "longitude_arcmin" => path.contains(".marks."),
         "g_zz_deg_per_h_per_g" | "longitude_arcmin_per_day" => path.contains("reference"),
         _ => false,
@@ -55,6 +58,9 @@ mod tests {
             "navigation.heading_error_arcmin.final",
             "navigation.velocity_north_error_mps.slope_per_day",
             "navigation.marks.24h.longitude_arcmin",
+            "alignment.solution.heading_arcmin.error",
+            "calibration.solution.roll_arcmin.normalized",
+            "alignment.solution.heading_deg",
             "calibration.parameters.g_zz.error",
             "calibration.parameters.g_zz.normalized",
             "counterfactual.parameters.g_zz.shift",
@@ -68,6 +74,7 @@ mod tests {
             "navigation.heading_error_arcmin.schuler_amplitude",
             "navigation.marks.24h.longitude_max_arcmin",
             "calibration.parameters.g_zz.sigma",
+            "calibration.solution.heading_arcmin.sigma",
             "calibration.nis_mean",
             "counterfactual.worst_shift_sigma",
             "reference.random_walk.latitude_final_arcmin",

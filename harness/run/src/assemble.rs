@@ -2,7 +2,7 @@
 
 use super::findings::findings;
 use super::method::MethodRun;
-use super::scores_text::navigation_lines;
+use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
@@ -131,12 +131,14 @@ pub fn assemble_with(
         faults: results(&primary.receipts),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
+        alignment: primary.alignment,
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
         baseline: baseline.map(|run| Baseline {
             planned: Some(run.watcher.work().0),
             done: Some(run.watcher.work().1),
             label: run.label,
+            alignment: run.alignment,
             calibration: run.calibration,
             navigation: run.navigation,
             counterfactual: baseline_counterfactual,
@@ -244,10 +246,13 @@ pub fn text(summary: &Summary) -> String {
     for fault in &summary.faults {
         line(format!("  {}", fault.sentence()));
     }
-    let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
-        .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
-    for (label, calibration, navigation) in methods {
+    let primary = (&summary.method, &summary.alignment, &summary.calibration, &summary.navigation);
+    let baseline = summary.baseline.as_ref();
+    let methods = std::iter::once(primary)
+        .chain(baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation)));
+    for (label, alignment, calibration, navigation) in methods {
         line(format!("{label}, seed {}", summary.seed));
+        alignment.iter().map(alignment_line).for_each(&mut line);
         if let Some(calibration) = calibration {
             let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
             let worst = calibration
@@ -260,6 +265,7 @@ pub fn text(summary: &Summary) -> String {
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
             }
+            calibration.solution.iter().filter_map(solution_line).for_each(&mut line);
         }
         if let Some(n) = navigation {
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));

@@ -8,6 +8,7 @@
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 
+mod aligned;
 pub mod assemble;
 pub mod concluded;
 pub mod done;

@@ -3,6 +3,7 @@
 pub use super::error::{MethodError, SetupError, core_problem};
 pub use super::recording::Recording;
 
+use super::aligned::{self, uncertainty_of};
 use super::concluded;
 use super::done::Plan;
 use super::drive::{Ended, Line, RunError, drive_in_time};
@@ -26,7 +27,9 @@ use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::Draws;
 use octant_scenario::{self as scenario, Method, Realtime, Scenario};
 use octant_score::parameters::{nees, score, worst_normalized_error};
-use octant_score::summary::{Calibration, HeightChannel, Navigation};
+use octant_score::summary::{
+    AlignmentResult, Calibration, HeightChannel, Navigation, SolutionScore,
+};
 use octant_score::trace::Trace;
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source, SourceError};
@@ -40,6 +43,8 @@ pub struct MethodRun {
     pub label: String,
     /// End of the loop.
     pub ended: Ended,
+    /// Result of the alignment; `None` if the unit never had an attitude.
+    pub alignment: Option<AlignmentResult>,
     /// Result of the calibration.
     pub calibration: Option<Calibration>,
     /// Result of the navigation.
@@ -389,7 +394,13 @@ fn finish(
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
+        let uncertainty = conclusion.solution.as_ref().map(uncertainty_of);
         Calibration {
+            reference: Some(aligned::calibration_reference(scenario, &plan.estimator)),
+            solution: watcher
+                .calibrated
+                .as_ref()
+                .map(|point| SolutionScore::of(point, uncertainty.as_ref())),
             positions: plan.name.clone(),
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
@@ -419,6 +430,7 @@ fn finish(
     Ok(MethodRun {
         label: label(scenario, method),
         ended,
+        alignment: aligned::alignment(scenario, method, &watcher),
         calibration,
         navigation,
         recorder,

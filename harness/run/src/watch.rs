@@ -11,7 +11,8 @@ use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
 use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Health, Mode, Output};
+use octant_sample::{DeviceTime, Health, Mode, Output, Status};
+use octant_score::alignment::SolutionPoint;
 use octant_score::attitude::CaseAttitude;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::health::HealthMonitor;
@@ -58,6 +59,12 @@ pub struct Watcher {
     done: Done,
     drift: DriftScorer,
     drift_samples: u64,
+    /// Moment of which the solution is to be noted with the next truth.
+    moment: Option<Moment>,
+    /// Solution at the end of the alignment.
+    pub aligned: Option<SolutionPoint>,
+    /// Solution at the end of the calibration.
+    pub calibrated: Option<SolutionPoint>,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<Trace>,
     /// Health and NIS over the run.
@@ -78,6 +85,13 @@ pub struct Watcher {
     pub misbehaved: Option<Misbehaviour>,
     /// First real-time limit that the bench violated: nothing after it counts.
     pub bench_broke: Option<BenchBroke>,
+}
+
+/// End of a part of a run, at which the solution is noted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    Aligned,
+    Calibrated,
 }
 
 /// First violation of a real-time limit by the bench.
@@ -112,6 +126,9 @@ impl Watcher {
             done: Done::towards(plan),
             drift: DriftScorer::new(),
             drift_samples: 0,
+            moment: None,
+            aligned: None,
+            calibrated: None,
             trace: None,
             health: HealthMonitor::new(),
             source_time: None,
@@ -176,7 +193,11 @@ impl Watcher {
         if !altered {
             self.follow.epoch(now_ns, output);
         }
-        self.epoch(output)
+        let due = self.epoch(output);
+        if due && self.moment.is_some() {
+            self.note(sent, output);
+        }
+        due
     }
 
     /// Takes an output that answers no sample, or one that isn't known any more; returns true if
@@ -220,7 +241,45 @@ impl Watcher {
         if output.mode == Mode::Done {
             self.next_score_ns = 0;
         }
+        self.moment = match (self.last_mode, output.mode) {
+            (_, Mode::Calibrating) => Some(Moment::Aligned),
+            (Mode::Calibrating, Mode::Navigating | Mode::Done) => Some(Moment::Calibrated),
+            (_, Mode::Navigating) => Some(Moment::Aligned),
+            _ => None,
+        };
+        if self.moment.is_some() {
+            self.next_score_ns = output.device_time.ns;
+        }
         self.last_mode = output.mode;
+    }
+
+    /// Notes the solution at the end of an alignment or calibration, with the gimbals of its sample.
+    #[cold]
+    fn note(&mut self, sent: &Epoch, output: &Output) {
+        let sample = &sent.sample;
+        let known = self.tells.attitude && !sample.status.contains(Status::GIMBAL_INVALID);
+        let gimbal_rad = [sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()];
+        let attitude = known.then(|| CaseAttitude::of(output.navigation.q_nb, gimbal_rad));
+        let point = Some(SolutionPoint { attitude, ..SolutionPoint::default() });
+        match self.moment {
+            Some(Moment::Aligned) => self.aligned = point,
+            Some(Moment::Calibrated) => self.calibrated = point,
+            None => {}
+        }
+    }
+
+    /// Adds the errors to the noted solution.
+    #[cold]
+    fn note_errors(&mut self, moment: Moment, output: &Output, truth: &Truth) {
+        let attitude_error = self.attitude_error(output, truth);
+        let velocity_error_mps = self.velocity_error(output, truth);
+        let point = match moment {
+            Moment::Aligned => &mut self.aligned,
+            Moment::Calibrated => &mut self.calibrated,
+        };
+        if let Some(point) = point {
+            (point.attitude_error, point.velocity_error_mps) = (attitude_error, velocity_error_mps);
+        }
     }
 
     #[inline(never)]
@@ -287,6 +346,9 @@ impl Watcher {
 
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
+        if let Some(moment) = self.moment.take() {
+            self.note_errors(moment, output, truth);
+        }
         let Some(start_ns) = self.navigation_start_ns else { return };
         let now_ns = output.device_time.ns;
         // A drift is a function of time: stamps that a fault puts before the last scored one are
@@ -341,6 +403,12 @@ impl Watcher {
     #[must_use]
     pub fn work(&self) -> (Work, Work) {
         (self.done.planned(), self.done.work())
+    }
+
+    /// Returns the duration of the alignment, s; `None` as long as the unit aligns.
+    #[must_use]
+    pub fn alignment_s(&self) -> Option<f64> {
+        self.done.alignment_s()
     }
 
     /// Describes the answers that don't follow the unit's input.
