@@ -69,6 +69,7 @@ mod scenario_files;
 mod scenario_schema;
 mod score;
 mod selftest;
+mod solution;
 mod state_core;
 mod system;
 mod system_foreign;

@@ -158,6 +158,7 @@ fn data() -> ReportData {
         reference: Some(reference(&ReferenceInput {
             latitude_rad: LATITUDE,
             height_m: 0.0,
+            heading_rad: 0.0,
             angle_random_walk: ARW,
             velocity_random_walk: VRW,
             calibration_s: Some(86_400.0),

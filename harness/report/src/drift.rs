@@ -63,7 +63,10 @@ pub(super) fn drift(summary: &Summary) -> Markup {
             leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
         (chart("Latitude", 1))
         (chart("Longitude", 2))
-        (scores(&all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>()))
+        (scores(
+            &all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>(),
+            summary.reference.as_ref().and_then(|r| r.random_walk.as_ref()),
+        ))
         (drift_table(summary, &all))
     }
 }

@@ -189,7 +189,16 @@ fn shape(path: &[&str]) -> Shape {
             "latitude_rms_arcmin",
             "longitude_rms_arcmin",
             "radial_rms_nmi",
+            "solution",
         ]),
+        ["reference", "random_walk", "solution"] => table(&[
+            "heading_arcmin",
+            "pitch_arcmin",
+            "roll_arcmin",
+            "velocity_north_mps",
+            "velocity_east_mps",
+        ]),
+        ["reference", "random_walk", "solution", _] => table(&["rms", "final"]),
         _ => Shape::Number,
     }
 }

@@ -9,7 +9,7 @@ pub fn is_signed(path: &str) -> bool {
     let name = parts.next().unwrap_or(path);
     match name {
         // Distances have no sign, and `radial_error_nmi.final` is one.
-        "final" | "slope_per_day" => !path.contains("radial"),
+        "final" | "slope_per_day" => !path.contains("radial") && !path.contains("reference"),
         "error" | "estimate" | "true" | "normalized" | "shift" => {
             path.contains("parameters") || path.contains(".solution.")
         }
@@ -78,6 +78,7 @@ mod tests {
             "calibration.nis_mean",
             "counterfactual.worst_shift_sigma",
             "reference.random_walk.latitude_final_arcmin",
+            "reference.random_walk.solution.heading_arcmin.final",
         ] {
             assert!(!is_signed(magnitude), "{magnitude}");
         }

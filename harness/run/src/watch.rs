@@ -13,7 +13,7 @@ use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output, Status};
 use octant_score::alignment::SolutionPoint;
-use octant_score::attitude::CaseAttitude;
+use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::health::HealthMonitor;
 use octant_score::trace::Trace;
@@ -259,7 +259,7 @@ impl Watcher {
         let sample = &sent.sample;
         let known = self.tells.attitude && !sample.status.contains(Status::GIMBAL_INVALID);
         let gimbal_rad = [sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()];
-        let attitude = known.then(|| CaseAttitude::of(output.navigation.q_nb, gimbal_rad));
+        let attitude = known.then(|| CaseAngles::of(output.navigation.q_nb, gimbal_rad));
         let point = Some(SolutionPoint { attitude, ..SolutionPoint::default() });
         match self.moment {
             Some(Moment::Aligned) => self.aligned = point,
@@ -378,10 +378,10 @@ impl Watcher {
     }
 
     /// Attitude error of the case; `None` where unit or source don't tell an attitude.
-    fn attitude_error(&self, output: &Output, truth: &Truth) -> Option<CaseAttitude> {
+    fn attitude_error(&self, output: &Output, truth: &Truth) -> Option<CaseAngles> {
         let known = self.tells.attitude && truth.q_nb.iter().all(|q| q.is_finite());
         let computed = output.navigation.q_nb;
-        known.then(|| CaseAttitude::error(computed, truth.q_nb, truth.gimbal_rad))
+        known.then(|| CaseAngles::error(computed, truth.q_nb, truth.gimbal_rad))
     }
 
     /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a

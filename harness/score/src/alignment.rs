@@ -1,6 +1,6 @@
 //! Result of an alignment: attitude and velocity at one time, with σ and errors.
 
-use super::attitude::CaseAttitude;
+use super::attitude::CaseAngles;
 use octant_earth::Matrix3;
 use octant_earth::units::{ARCMIN, DEG};
 use serde::{Deserialize, Serialize};
@@ -84,9 +84,9 @@ pub struct SolutionScore {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolutionPoint {
     /// Attitude of the case, computed, with the gimbals turned back by their encoders.
-    pub attitude: Option<CaseAttitude>,
+    pub attitude: Option<CaseAngles>,
     /// Its error.
-    pub attitude_error: Option<CaseAttitude>,
+    pub attitude_error: Option<CaseAngles>,
     /// Error of the velocity over ground, north and east, m/s.
     pub velocity_error_mps: Option<[f64; 2]>,
 }
@@ -103,7 +103,7 @@ pub struct SolutionUncertainty {
 /// σ of heading, pitch and roll, rad, from the covariance of φ in n. To first order
 /// `δheading = −φ_D − tan p·a`, `δpitch = −b`, `δroll = −a/cos p`, where a and b are the parts of φ
 /// along the bow and to starboard of it, both horizontal.
-fn case_sigma(phi: &[[f64; 3]; 3], attitude: &CaseAttitude) -> [f64; 3] {
+fn case_sigma(phi: &[[f64; 3]; 3], attitude: &CaseAngles) -> [f64; 3] {
     let (sin_heading, cos_heading) = libm::sincos(attitude.heading_rad);
     let (sin_pitch, cos_pitch) = libm::sincos(attitude.pitch_rad);
     let (along, across) = ([cos_heading, sin_heading], [-sin_heading, cos_heading]);
@@ -128,11 +128,11 @@ impl SolutionScore {
     /// Scores a solution, with its covariance where there is one.
     #[must_use]
     pub fn of(point: &SolutionPoint, uncertainty: Option<&SolutionUncertainty>) -> Self {
-        let degrees = |of: fn(&CaseAttitude) -> f64| point.attitude.as_ref().map(|a| of(a) / DEG);
+        let degrees = |of: fn(&CaseAngles) -> f64| point.attitude.as_ref().map(|a| of(a) / DEG);
         let sigma = uncertainty
             .zip(point.attitude.as_ref())
             .map(|(u, attitude)| case_sigma(&u.phi, attitude).map(|sigma| sigma / ARCMIN));
-        let error = |of: fn(&CaseAttitude) -> f64| {
+        let error = |of: fn(&CaseAngles) -> f64| {
             point.attitude_error.as_ref().map(|error| of(error) / ARCMIN)
         };
         let angle = |axis: usize, of| PointScore::of(error(of), sigma.map(|sigma| sigma[axis]));
@@ -180,7 +180,7 @@ mod tests {
     fn sigmas_of_the_case_are_those_of_its_errors() {
         // Each column of a square root of the covariance is a φ; its error of the case, found by
         // turning the attitude, adds to the variance.
-        let attitude = CaseAttitude { heading_rad: 2.0, pitch_rad: 0.3, roll_rad: -0.2 };
+        let attitude = CaseAngles { heading_rad: 2.0, pitch_rad: 0.3, roll_rad: -0.2 };
         let root = Matrix3::new(3.0, 0.0, 0.0, 1.0, 2.0, 0.0, -4.0, 0.5, 20.0) * 1e-7;
         let phi = root * root.transpose();
         let found =
@@ -190,7 +190,7 @@ mod tests {
         let mut variance = [0.0; 3];
         for column in root.column_iter() {
             let computed = exp(&-Vector3::new(column[0], column[1], column[2])) * truth;
-            let error = CaseAttitude::error(numbers(&computed), numbers(&truth), [0.0; 2]);
+            let error = CaseAngles::error(numbers(&computed), numbers(&truth), [0.0; 2]);
             let errors = [error.heading_rad, error.pitch_rad, error.roll_rad];
             variance.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error);
         }
@@ -202,8 +202,8 @@ mod tests {
     #[test]
     fn a_score_has_what_is_known() {
         let point = SolutionPoint {
-            attitude: Some(CaseAttitude { heading_rad: 90.0 * DEG, ..CaseAttitude::default() }),
-            attitude_error: Some(CaseAttitude {
+            attitude: Some(CaseAngles { heading_rad: 90.0 * DEG, ..CaseAngles::default() }),
+            attitude_error: Some(CaseAngles {
                 heading_rad: 6.0 * ARCMIN,
                 pitch_rad: ARCMIN,
                 roll_rad: -3.0 * ARCMIN,

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// With a level case at heading 0 the errors are `(−φ_D, −φ_E, −φ_N)` of the misalignment φ in
 /// `c_nb(computed) = (I − [φ×]) c_nb(true)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CaseAttitude {
+pub struct CaseAngles {
     /// Heading, positive clockwise as seen from above.
     pub heading_rad: f64,
     /// Pitch, positive bow up.
@@ -65,7 +65,7 @@ fn case_in_body([azimuth_rad, roll_rad]: [f64; 2]) -> Quaternion<f64> {
     Quaternion::new(cr * ca, -sr * ca, sr * sa, -cr * sa)
 }
 
-impl CaseAttitude {
+impl CaseAngles {
     /// Attitude of the case from that of the body, `q_nb` (w, x, y, z), with gimbal angles (azimuth,
     /// roll), rad. Heading and roll are within ±π, pitch within ±π/2.
     #[must_use]
@@ -117,11 +117,11 @@ mod tests {
                 let c = c_nc(heading, pitch, roll) * c_cb(gimbal[0], gimbal[1]);
                 numbers(&quaternion_from_matrix(&c))
             };
-            let error = CaseAttitude::error(body(computed), body(truth), gimbal);
+            let error = CaseAngles::error(body(computed), body(truth), gimbal);
             near(error.heading_rad, computed[0] - truth[0] + 2.0 * core::f64::consts::PI, 1e-14);
             near(error.pitch_rad, -0.03, 1e-14);
             near(error.roll_rad, 0.03, 1e-14);
-            let attitude = CaseAttitude::of(body(truth), gimbal);
+            let attitude = CaseAngles::of(body(truth), gimbal);
             near(attitude.heading_rad, truth[0], 1e-14);
             near(attitude.pitch_rad, truth[1], 1e-14);
             near(attitude.roll_rad, truth[2], 1e-14);
@@ -134,13 +134,13 @@ mod tests {
         let phi = Vector3::new(0.4 * ARCMIN, -0.7 * ARCMIN, 3.0 * ARCMIN);
         let truth = quaternion_from_matrix(&c_cb(0.4, 2.0));
         let computed = exp(&-phi) * truth;
-        let error = CaseAttitude::error(numbers(&computed), numbers(&truth), [0.4, 2.0]);
+        let error = CaseAngles::error(numbers(&computed), numbers(&truth), [0.4, 2.0]);
         near(error.heading_rad, -phi.z, 1e-3 * ARCMIN);
         near(error.pitch_rad, -phi.y, 4e-3 * ARCMIN);
         near(error.roll_rad, -phi.x, 4e-3 * ARCMIN);
         // At heading 90° the bow points east: pitch is about −x of n, roll about y of n.
         let east = quaternion_from_matrix(&c_nc(90.0 * DEG, 0.0, 0.0));
-        let error = CaseAttitude::error(numbers(&(exp(&-phi) * east)), numbers(&east), [0.0; 2]);
+        let error = CaseAngles::error(numbers(&(exp(&-phi) * east)), numbers(&east), [0.0; 2]);
         near(error.pitch_rad, phi.x, 4e-3 * ARCMIN);
         near(error.roll_rad, -phi.y, 4e-3 * ARCMIN);
     }
@@ -149,7 +149,7 @@ mod tests {
     fn tiny_errors_of_large_angles_keep_their_digits() {
         let truth = quaternion_from_matrix(&c_nc(-3.0, 0.1, 0.2));
         let computed = quaternion_from_matrix(&c_nc(-3.0 + 1e-12, 0.1, 0.2));
-        let error = CaseAttitude::error(numbers(&computed), numbers(&truth), [0.0; 2]);
+        let error = CaseAngles::error(numbers(&computed), numbers(&truth), [0.0; 2]);
         near(error.heading_rad, 1e-12, 2e-15);
     }
 }

@@ -1,7 +1,7 @@
 //! Drift of a navigation solution (position, attitude, velocity): maximum, rms, final value, secular
 //! slope and Schuler oscillation, radial error.
 
-use super::attitude::CaseAttitude;
+use super::attitude::CaseAngles;
 use super::regression::{SecularSlope, Slopes};
 use super::series::Series;
 use super::summary::{ErrorScore, HeightChannel, Mark, Navigation, RadialScore, SlopeWindow};
@@ -22,7 +22,7 @@ pub struct DriftSample {
     /// Longitude error, rad.
     pub longitude_error_rad: f64,
     /// Attitude error of the case; `None` if it isn't known.
-    pub attitude_error: Option<CaseAttitude>,
+    pub attitude_error: Option<CaseAngles>,
     /// Error of the velocity over ground, north and east, m/s; `None` if it isn't known.
     pub velocity_error_mps: Option<[f64; 2]>,
     /// True geodetic latitude, rad.
