@@ -14,7 +14,7 @@ pub use super::change::{Change, Limits, Tested};
 
 use super::change::tested;
 use super::night::{CampaignNight, Night, Program};
-use super::results::CaseRow;
+use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;
 use octant_requirements::Verdict;
 use octant_score::numerics::in_words;
@@ -292,6 +292,11 @@ impl Comparison {
             }));
         };
         for name in names {
+            // A baseline from before attitude and velocity were scored has nothing to compare with.
+            let later = SCORED_LATER.contains(&name.as_str());
+            if later && !pairs.iter().any(|(a, _)| a.measures.contains_key(&name)) {
+                continue;
+            }
             put(name.clone(), &|row| row.measures.get(&name).copied(), 1.0);
         }
         for id in &requirements {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Measures for which less is better, as columns of `cases.parquet`.
-const LESS_IS_BETTER: [&str; 8] = [
+const LESS_IS_BETTER: [&str; 13] = [
     "navigation.latitude_error_arcmin.max",
     "navigation.latitude_error_arcmin.rms",
     "navigation.longitude_error_arcmin.max",
@@ -17,7 +17,21 @@ const LESS_IS_BETTER: [&str; 8] = [
     "navigation.radial_error_nmi.max",
     "navigation.radial_error_nmi.rms",
     "navigation.radial_error_nmi.rate_per_h",
+    "navigation.heading_error_arcmin.rms",
+    "navigation.pitch_error_arcmin.rms",
+    "navigation.roll_error_arcmin.rms",
+    "navigation.velocity_north_error_mps.rms",
+    "navigation.velocity_east_error_mps.rms",
     "calibration.worst_normalized_error",
+];
+
+/// Those of them that older programs don't score.
+pub(crate) const SCORED_LATER: [&str; 5] = [
+    "navigation.heading_error_arcmin.rms",
+    "navigation.pitch_error_arcmin.rms",
+    "navigation.roll_error_arcmin.rms",
+    "navigation.velocity_north_error_mps.rms",
+    "navigation.velocity_east_error_mps.rms",
 ];
 
 /// One case.

@@ -12,6 +12,7 @@ use octant_plant::Plant;
 use octant_plant::config::{AidingKind, Config};
 use octant_sample::{GimbalCommand, Mode};
 use octant_scenario::{Method, Scenario};
+use octant_score::attitude::CaseAngles;
 use octant_source::configure::configurations;
 use octant_statistics::sample::{mean, percentile, rms};
 use std::path::Path;
@@ -39,6 +40,8 @@ struct Run {
     errors: [f64; STATE_COUNT],
     /// Latitude and longitude error, arcmin, and radial error, nmi, at equal times.
     drift: Vec<[f64; 3]>,
+    /// Heading, pitch and roll error, arcmin, and velocity error north and east, m/s, at these times.
+    motion: Vec<[f64; 5]>,
 }
 
 fn attitude(q: [f64; 4]) -> UnitQuaternion<f64> {
@@ -61,7 +64,7 @@ fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut 
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let metres = [earth.meridian_radius_m, earth.transverse_radius_m * earth.cos_latitude];
     let mut command = GimbalCommand::default();
-    let mut run = Run { errors: [f64::NAN; STATE_COUNT], drift: Vec::new() };
+    let mut run = Run { errors: [f64::NAN; STATE_COUNT], drift: Vec::new(), motion: Vec::new() };
     for sample in 1..=scenario.samples().unwrap() {
         let step = plant.step(&command);
         let output = core.step(&step.sample, step.aiding.as_ref());
@@ -94,6 +97,12 @@ fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut 
             let east = output.navigation.longitude_rad - truth.longitude_rad;
             let radial = libm::hypot(north * metres[0], east * metres[1]) / NAUTICAL_MILE_M;
             run.drift.push([north / ARCMIN, east / ARCMIN, radial]);
+            let at = &output.navigation;
+            let case = CaseAngles::error(at.q_nb, truth.q_nb, truth.gimbal_rad);
+            let [heading, pitch, roll] =
+                [case.heading_rad, case.pitch_rad, case.roll_rad].map(|angle| angle / ARCMIN);
+            let [vn, ve] = [0, 1].map(|axis| at.velocity_mps[axis] - truth.velocity_mps[axis]);
+            run.motion.push([heading, pitch, roll, vn, ve]);
         }
     }
     run
@@ -154,9 +163,21 @@ fn assert_same(predicted: &Ensemble, run: &Run, part: f64) {
     }
     let largest = |axis: usize| run.drift.iter().map(|d| d[axis].abs()).fold(0.0, f64::max);
     let largest = [largest(0), largest(1)];
+    let fastest: [f64; 5] = std::array::from_fn(|axis| {
+        run.motion.iter().map(|motion| motion[axis].abs()).fold(0.0, f64::max)
+    });
     for (hour, drift) in run.drift.iter().enumerate() {
         let band =
             predicted.drift.iter().find(|b| (b.hours - hour as f64 - 1.0).abs() < 1e-6).unwrap();
+        let bands = band.solution.unwrap().all();
+        for (axis, (band, found)) in bands.iter().zip(run.motion[hour]).enumerate() {
+            assert!(
+                (band.mean - found).abs() < part * fastest[axis],
+                "attitude or velocity {axis} at {} h: {} predicted, {found} run",
+                hour + 1,
+                band.mean
+            );
+        }
         let means = [band.latitude_arcmin.mean, band.longitude_arcmin.mean];
         println!("{:3} h {means:9.5?} {drift:9.5?}", hour + 1);
         for axis in 0..2 {
@@ -313,6 +334,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     }
     let mut worst = [0.0f64; 6];
     let mut sums = [0.0f64; 6];
+    let mut motion_worst = [0.0f64; 5];
     let hours = drift_hours.clone().count() as f64;
     for hour in drift_hours {
         let band = predicted.drift.iter().find(|b| (b.hours - hour as f64).abs() < 1e-6).unwrap();
@@ -325,6 +347,15 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
             let about: Vec<f64> = values.iter().map(|v| v - band.mean).collect();
             found.push(band.sigma / rms(&about).unwrap());
             found.push((band.p95 - band.p5) / (of(&values, 0.95) - of(&values, 0.05)));
+        }
+        for (axis, band) in band.solution.unwrap().all().into_iter().enumerate() {
+            let about: Vec<f64> =
+                runs.iter().map(|run| run.motion[hour - 1][axis] - band.mean).collect();
+            let ratio = band.sigma / rms(&about).unwrap();
+            motion_worst[axis] = motion_worst[axis].max((ratio - 1.0).abs());
+            if !((ratio - 1.0).abs() <= 0.25) {
+                wrong.push(format!("attitude or velocity {axis} at {hour} h: {ratio:.3}"));
+            }
         }
         let radial = column(2);
         found.push(band.radial_nmi.p50 / of(&radial, 0.5));
@@ -342,6 +373,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     }
     println!("drift (latitude σ, 5-95 %; longitude σ, 5-95 %; radial 50 %, 95 %):");
     println!("  mean {sums:.3?}, largest deviation {worst:.3?}");
+    println!("σ of heading, pitch, roll, velocity: largest deviation {motion_worst:.3?}");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

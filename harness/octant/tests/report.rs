@@ -329,6 +329,9 @@ fn comparison(ratio: f64, scatter: f64, floor: f64) -> Comparison {
                 longitude_24h: Some(x),
                 latitude_72h: Some(0.9 * x),
                 longitude_72h: Some(2.6 * x),
+                heading: Some(4.0 * x),
+                velocity_north_mps: Some(0.1 * x),
+                ..Maxima::default()
             };
             PairedRun {
                 seed: k as u64 + 1,
@@ -349,7 +352,7 @@ fn comparison(ratio: f64, scatter: f64, floor: f64) -> Comparison {
 #[test]
 fn a_comparison_says_in_words_what_it_shows() {
     let holds = comparison(0.35, 0.05, 0.2);
-    assert_eq!(holds.cells.len(), 4);
+    assert_eq!(holds.cells.len(), 6);
     assert!(holds.cells.iter().all(|c| c.claim == Claim::Holds));
     assert!(
         holds.words[0].starts_with(
@@ -385,7 +388,7 @@ fn a_comparison_says_in_words_what_it_shows() {
 fn a_comparison_is_a_table_a_page_and_a_file() {
     let comparison = comparison(0.35, 0.1, 0.2);
     let text = page::table(&comparison);
-    assert_eq!(text.lines().count(), 1 + 4 + 1 + comparison.words.len());
+    assert_eq!(text.lines().count(), 1 + 6 + 1 + comparison.words.len());
     let html = page::render(&comparison, &[("rustc".to_owned(), "1.95.0".to_owned())]);
     check(&html, "compare.html");
     let json = serde_json::to_string(&comparison).unwrap();

@@ -12,8 +12,8 @@ use octant_statistics::sample::Interval;
 pub fn table(comparison: &Comparison) -> String {
     let width = comparison.first.len().max(comparison.second.len()).max(8);
     let mut text = format!(
-        "{:<20}{:>w$}{:>w$}{:>8}{:>13}  90 % interval\n",
-        "rms of maxima, arcmin",
+        "{:<27}{:>w$}{:>w$}{:>8}{:>13}  90 % interval\n",
+        "rms of maxima",
         comparison.first,
         comparison.second,
         "floor",
@@ -22,8 +22,8 @@ pub fn table(comparison: &Comparison) -> String {
     );
     for cell in &comparison.cells {
         text.push_str(&format!(
-            "{:<21}{:>w$.3}{:>w2$.3}{:>8}{:>11} %  {}\n",
-            cell.measure.name(),
+            "{:<27}{:>w$.3}{:>w2$.3}{:>8}{:>11} %  {}\n",
+            format!("{}, {}", cell.measure.name(), cell.measure.unit()),
             cell.first,
             cell.second,
             cell.floor.map_or_else(|| "–".to_owned(), |f| format!("{f:.3}")),
@@ -113,7 +113,7 @@ fn cells(comparison: &Comparison) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "Largest error, arcmin" }
+                th { "Largest error" }
                 th.n { span.baseline-text { (comparison.first) } }
                 th.n { span.primary-text { (comparison.second) } }
                 th.n { "Floor" } th.n { "Improvement" } th.n { "90 % interval" }
@@ -125,7 +125,7 @@ fn cells(comparison: &Comparison) -> Markup {
             } }
             tbody { @for cell in &comparison.cells {
                 tr {
-                    td { (capital(cell.measure.name())) }
+                    td { (capital(cell.measure.name())) ", " (cell.measure.unit()) }
                     td.n { (number::fixed(cell.first, 3)) }
                     td.n { (number::fixed(cell.second, 3)) }
                     td.n { (number::optional(cell.floor, 3)) }
@@ -166,7 +166,7 @@ fn pairs(comparison: &Comparison, cell: &Cell) -> Markup {
     let series = |f: &dyn Fn(&(f64, f64)) -> f64| {
         values.iter().enumerate().map(|(i, v)| [1.0 + i as f64, f(v)]).collect::<Vec<_>>()
     };
-    let title = format!("Largest error, {}, arcmin", cell.measure.name());
+    let title = format!("Largest error, {}, {}", cell.measure.name(), cell.measure.unit());
     let mut chart = Chart::new(&title, "pairs, in the order of the first method", &title);
     chart.hours = false;
     chart.paired = true;
@@ -193,7 +193,7 @@ fn runs(comparison: &Comparison) -> Markup {
     html! {
         table {
             thead { tr { th { "Seed" } @for cell in &comparison.cells {
-                th.n { (cell.measure.name()) " " span.baseline-text { (comparison.first) } }
+                th.n { (cell.measure.name()) ", " (cell.measure.unit()) " " span.baseline-text { (comparison.first) } }
                 th.n { span.primary-text { (comparison.second) } }
             } } }
             tbody { @for run in &comparison.runs {

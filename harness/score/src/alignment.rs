@@ -2,6 +2,7 @@
 
 use super::attitude::CaseAngles;
 use octant_earth::Matrix3;
+use octant_earth::frames::case_of_phi;
 use octant_earth::units::{ARCMIN, DEG};
 use serde::{Deserialize, Serialize};
 
@@ -100,25 +101,9 @@ pub struct SolutionUncertainty {
     pub velocity_mps: [f64; 2],
 }
 
-/// σ of heading, pitch and roll, rad, from the covariance of φ in n. To first order
-/// `δheading = −φ_D − tan p·a`, `δpitch = −b`, `δroll = −a/cos p`, where a and b are the parts of φ
-/// along the bow and to starboard of it, both horizontal.
+/// σ of heading, pitch and roll, rad, from the covariance of φ in n.
 fn case_sigma(phi: &[[f64; 3]; 3], attitude: &CaseAngles) -> [f64; 3] {
-    let (sin_heading, cos_heading) = libm::sincos(attitude.heading_rad);
-    let (sin_pitch, cos_pitch) = libm::sincos(attitude.pitch_rad);
-    let (along, across) = ([cos_heading, sin_heading], [-sin_heading, cos_heading]);
-    let tan_pitch = sin_pitch / cos_pitch;
-    let to_case = Matrix3::new(
-        -tan_pitch * along[0],
-        -tan_pitch * along[1],
-        -1.0,
-        -across[0],
-        -across[1],
-        0.0,
-        -along[0] / cos_pitch,
-        -along[1] / cos_pitch,
-        0.0,
-    );
+    let to_case = case_of_phi(attitude.heading_rad, attitude.pitch_rad);
     let phi = Matrix3::from_fn(|i, j| phi[i][j]);
     let case = to_case * phi * to_case.transpose();
     core::array::from_fn(|i| libm::sqrt(case[(i, i)].max(0.0)))

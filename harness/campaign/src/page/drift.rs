@@ -46,6 +46,7 @@ pub(super) fn table(report: &Report<'_>) -> Markup {
                 p.hint { "Rows of a whole scenario have no interval: the same instruments are in all of its combinations." }
             }
             (marks(report))
+            (solution(report))
         }
     }
 }
@@ -105,6 +106,25 @@ fn marks(report: &Report<'_>) -> Markup {
             tbody { @for (combination, figures) in all() { @for (mark, position) in &figures.at_marks { tr {
                 td { (combination.name()) } td.n { (mark) }
                 td.n { (with_bounds(&position.cep50)) } td.n { (with_bounds(&position.r95)) }
+            } } } }
+        }
+    }
+}
+
+/// Renders the largest errors of attitude and velocity.
+fn solution(report: &Report<'_>) -> Markup {
+    let all = || report.combinations.iter().zip(&report.statistics.combinations);
+    if all().all(|(_, figures)| figures.solution.is_empty()) {
+        return html! {};
+    }
+    html! {
+        h3 { "Attitude and velocity" }
+        p.hint { "Largest error of each navigation: heading, pitch and roll of the case, velocity to the north and east." }
+        table {
+            thead { tr { th { "Combination" } th { "Largest error" } th.n { "50 %" } th.n { "95 %" } } }
+            tbody { @for (combination, figures) in all() { @for (name, spread) in &figures.solution { tr {
+                td { (combination.name()) } td { (name) }
+                td.n { (with_bounds(&spread.p50)) } td.n { (with_bounds(&spread.p95)) }
             } } } }
         }
     }
