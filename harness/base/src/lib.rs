@@ -3,6 +3,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`names`] | the known name that is nearest to one that isn't known |
+//! | [`display`] | units in which errors are shown |
 //! | [`number`] | numbers as people read them |
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
@@ -12,6 +13,7 @@
 
 pub mod child;
 pub mod control;
+pub mod display;
 pub mod hash;
 pub mod interrupt;
 pub mod names;

@@ -249,7 +249,7 @@ fn write_results(
     let xml = junit(summary)
         .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
     write(&folder.join("junit.xml"), xml)?;
-    let mut human = text(summary);
+    let mut human = text(summary, &run.report.units);
     if run.report.truth.is_none() {
         human += &parameter_text(summary);
     }

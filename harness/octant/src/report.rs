@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
+use octant_base::display::UnitChoice;
 use octant_campaign::keep;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
@@ -39,6 +40,10 @@ pub(super) struct Arguments {
     /// existing entries and the run's own files don't change.
     #[arg(long, value_name = "FILE")]
     dispositions: Option<PathBuf>,
+    /// Units of errors in the report, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -86,6 +91,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         gimbals: watcher.gimbals,
         provenance: provenance(&manifest),
         dispositions,
+        units: scenario.display.with(arguments.units.unwrap_or_default()),
         summary,
     };
     let html = octant_report::run::render(&data);

@@ -1,6 +1,7 @@
 //! Pages: complete, well formed, offline. The rendered pages are kept in cargo's directory for test
 //! files, for inspection.
 
+use octant_base::display::DisplayUnits;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::{
@@ -188,6 +189,7 @@ fn data() -> ReportData {
     judge(&mut summary, &requirements, &[]).unwrap();
     let fact = |a: &str, b: &str| (a.to_owned(), b.to_owned());
     ReportData {
+        units: DisplayUnits::default(),
         summary,
         facts: vec![
             fact("Site", "30.5° N 114.3° E, 0 m"),
@@ -387,9 +389,13 @@ fn a_comparison_says_in_words_what_it_shows() {
 #[test]
 fn a_comparison_is_a_table_a_page_and_a_file() {
     let comparison = comparison(0.35, 0.1, 0.2);
-    let text = page::table(&comparison);
+    let text = page::table(&comparison, &DisplayUnits::default());
     assert_eq!(text.lines().count(), 1 + 6 + 1 + comparison.words.len());
-    let html = page::render(&comparison, &[("rustc".to_owned(), "1.95.0".to_owned())]);
+    let html = page::render(
+        &comparison,
+        &[("rustc".to_owned(), "1.95.0".to_owned())],
+        &DisplayUnits::default(),
+    );
     check(&html, "compare.html");
     let json = serde_json::to_string(&comparison).unwrap();
     assert_eq!(serde_json::from_str::<Comparison>(&json).unwrap(), comparison);

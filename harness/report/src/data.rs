@@ -1,5 +1,6 @@
 //! Content of the report of one run.
 
+use octant_base::display::DisplayUnits;
 use octant_evidence::disposition::Dispositions;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -25,6 +26,8 @@ pub struct ReportData {
     pub events: Vec<HealthEvent>,
     /// Dispositions of the discrepancies.
     pub dispositions: Dispositions,
+    /// Units of errors.
+    pub units: DisplayUnits,
     /// Provenance of the numbers.
     pub provenance: Provenance,
 }

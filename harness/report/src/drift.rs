@@ -3,6 +3,7 @@
 use super::chart::{Band, Chart, Line, Role};
 use super::scores::scores;
 use maud::{Markup, html};
+use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_score::reference::{Reference, VerticalDrift};
 use octant_score::summary::{Navigation, Summary};
@@ -21,19 +22,21 @@ fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {
     all
 }
 
-pub(super) fn drift(summary: &Summary) -> Markup {
+pub(super) fn drift(summary: &Summary, units: &DisplayUnits) -> Markup {
     let all = navigations(summary);
     if all.is_empty() {
         return html! {};
     }
     let chart = |name: &str, column: usize| {
         let title = format!("{name} error");
-        let mut chart = Chart::new(&title, "hours of navigation", &format!("{title}, arcmin"));
+        let unit = if column == 1 { units.latitude() } else { units.longitude() };
+        let axis = format!("{title}, {}", unit.name);
+        let mut chart = Chart::new(&title, "hours of navigation", &axis);
         if let Some(r) = &summary.reference {
             if let Some(floor) = &r.random_walk {
                 let points = floor.sigma.iter().map(|p| {
                     let s = if column == 1 { p.latitude_arcmin } else { p.longitude_arcmin };
-                    [p.hours, -s, s]
+                    [p.hours, -unit.of(s), unit.of(s)]
                 });
                 chart.bands.push(Band {
                     label: "±1σ of random walk alone".to_owned(),
@@ -52,7 +55,7 @@ pub(super) fn drift(summary: &Summary) -> Markup {
             chart.lines.push(Line {
                 label: (*label).to_owned(),
                 role: *role,
-                points: n.series_hours.iter().map(|p| [p[0], p[column]]).collect(),
+                points: n.series_hours.iter().map(|p| [p[0], unit.of(p[column])]).collect(),
             });
         }
         chart.render()
@@ -66,77 +69,117 @@ pub(super) fn drift(summary: &Summary) -> Markup {
         (scores(
             &all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>(),
             summary.reference.as_ref().and_then(|r| r.random_walk.as_ref()),
+            units,
         ))
-        (drift_table(summary, &all))
+        (drift_table(summary, &all, units))
     }
 }
 
 /// One row of the drift table: quantity, unit, value of each method, reference, description of the
 /// reference.
 struct DriftRow<'a> {
-    name: &'a str,
+    name: String,
     values: Vec<Option<f64>>,
     reference: Option<f64>,
     about: &'a str,
 }
 
-fn drift_table(summary: &Summary, all: &[(&str, Role, &Navigation)]) -> Markup {
+fn drift_table(
+    summary: &Summary,
+    all: &[(&str, Role, &Navigation)],
+    units: &DisplayUnits,
+) -> Markup {
     let reference = summary.reference.as_ref();
     let floor = reference.and_then(|r| r.random_walk.as_ref());
     let walk = "random walk alone, expected";
-    let row = |name, value: &dyn Fn(&Navigation) -> Option<f64>, reference, about| DriftRow {
-        name,
-        values: all.iter().map(|(_, _, n)| value(n)).collect(),
-        reference,
+    let (latitude, longitude, radial) = (units.latitude(), units.longitude(), units.radial());
+    let row = |name: &str,
+               unit: ShownUnit,
+               per: &str,
+               value: &dyn Fn(&Navigation) -> Option<f64>,
+               reference: Option<f64>,
+               about| DriftRow {
+        name: format!("{name}, {}{per}", unit.name),
+        values: all.iter().map(|(_, _, n)| value(n).map(|v| unit.of(v))).collect(),
+        reference: reference.map(|v| unit.of(v)),
         about,
     };
+    let last = "1σ of random walk alone";
     let rows = [
-        row("Latitude error, largest, arcmin", &|n| Some(n.latitude_error_arcmin.max), None, ""),
         row(
-            "Latitude error, rms, arcmin",
+            "Latitude error, largest",
+            latitude,
+            "",
+            &|n| Some(n.latitude_error_arcmin.max),
+            None,
+            "",
+        ),
+        row(
+            "Latitude error, rms",
+            latitude,
+            "",
             &|n| Some(n.latitude_error_arcmin.rms),
             floor.map(|f| f.latitude_rms_arcmin),
             walk,
         ),
         row(
-            "Latitude error, final, arcmin",
+            "Latitude error, final",
+            latitude,
+            "",
             &|n| Some(n.latitude_error_arcmin.r#final),
             floor.map(|f| f.latitude_final_arcmin),
-            "1σ of random walk alone",
+            last,
         ),
         row(
-            "Latitude slope, arcmin/day",
+            "Latitude slope",
+            latitude,
+            "/day",
             &|n| n.latitude_error_arcmin.slope_per_day,
             Some(0.0),
             "no constant drift moves latitude for long",
         ),
-        row("Longitude error, largest, arcmin", &|n| Some(n.longitude_error_arcmin.max), None, ""),
         row(
-            "Longitude error, rms, arcmin",
+            "Longitude error, largest",
+            longitude,
+            "",
+            &|n| Some(n.longitude_error_arcmin.max),
+            None,
+            "",
+        ),
+        row(
+            "Longitude error, rms",
+            longitude,
+            "",
             &|n| Some(n.longitude_error_arcmin.rms),
             floor.map(|f| f.longitude_rms_arcmin),
             walk,
         ),
         row(
-            "Longitude error, final, arcmin",
+            "Longitude error, final",
+            longitude,
+            "",
             &|n| Some(n.longitude_error_arcmin.r#final),
             floor.map(|f| f.longitude_final_arcmin),
-            "1σ of random walk alone",
+            last,
         ),
         row(
-            "Longitude slope, arcmin/day",
+            "Longitude slope",
+            longitude,
+            "/day",
             &|n| n.longitude_error_arcmin.slope_per_day,
             reference.and_then(|r| r.residual_g_zz).map(|d| d.longitude_arcmin_per_day),
             "from the error of the estimated g_zz",
         ),
-        row("Radial error, largest, nmi", &|n| Some(n.radial_error_nmi.max), None, ""),
+        row("Radial error, largest", radial, "", &|n| Some(n.radial_error_nmi.max), None, ""),
         row(
-            "Radial error, time-RMS, nmi",
+            "Radial error, time-RMS",
+            radial,
+            "",
             &|n| Some(n.radial_error_nmi.rms),
             floor.map(|f| f.radial_rms_nmi),
             walk,
         ),
-        row("Radial error rate, nmi/h", &|n| Some(n.radial_error_nmi.rate_per_h), None, ""),
+        row("Radial error rate", radial, "/h", &|n| Some(n.radial_error_nmi.rate_per_h), None, ""),
     ];
     html! {
         h3 { "Drift scores beside what physics says" }

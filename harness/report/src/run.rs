@@ -8,7 +8,9 @@ use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::pacing::pacing;
 use super::page::{badge, page};
+use super::scores::alignment;
 use maud::{Markup, html};
+use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_evidence::discrepancy;
 use octant_requirements::Verdict;
@@ -21,12 +23,13 @@ pub fn render(data: &ReportData) -> String {
     let summary = &data.summary;
     let body = html! {
         (header(data))
-        (figures(summary))
+        (figures(summary, &data.units))
         (requirements(summary))
         (planned_and_done(summary))
         (faults(summary))
         (counterfactual(summary))
-        (drift(summary))
+        (drift(summary, &data.units))
+        (alignment(summary, &data.units))
         (calibration(data))
         (gimbals(data))
         (events(data))
@@ -45,7 +48,7 @@ fn header(data: &ReportData) -> Markup {
                 div {
                     div.eyebrow { "Self-calibration run" }
                     h1 { (summary.scenario) }
-                    p.lead { (what_was_done(summary)) }
+                    p.lead { (what_was_done(summary, &data.units)) }
                 }
                 (badge(summary.verdict))
             }
@@ -80,7 +83,12 @@ fn discrepancies(data: &ReportData) -> Markup {
 
 /// Describes the run and its result in two sentences.
 #[must_use]
-pub fn what_was_done(summary: &Summary) -> String {
+pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
+    let in_unit = |value: f64, unit: ShownUnit| {
+        let value = number::significant(unit.of(value), 3);
+        if unit.name == "arcmin" { format!("{value}′") } else { format!("{value} {}", unit.name) }
+    };
+    let (latitude, longitude) = (units.latitude(), units.longitude());
     let first = match (&summary.calibration, &summary.navigation) {
         (Some(c), Some(n)) => format!(
             "The instrument was calibrated for {} h through the {} positions and then navigated \
@@ -105,15 +113,15 @@ pub fn what_was_done(summary: &Summary) -> String {
     };
     let second = match (&summary.navigation, &summary.calibration) {
         (Some(n), _) => format!(
-            " Its largest errors were {}′ in latitude and {}′ in longitude{}.",
-            number::significant(n.latitude_error_arcmin.max, 3),
-            number::significant(n.longitude_error_arcmin.max, 3),
+            " Its largest errors were {} in latitude and {} in longitude{}.",
+            in_unit(n.latitude_error_arcmin.max, latitude),
+            in_unit(n.longitude_error_arcmin.max, longitude),
             summary.baseline.as_ref().and_then(|b| b.navigation.as_ref().map(|m| (b, m))).map_or(
                 String::new(),
                 |(b, m)| format!(
-                    ", against {}′ and {}′ for {} on the same instrument with the same noise",
-                    number::significant(m.latitude_error_arcmin.max, 3),
-                    number::significant(m.longitude_error_arcmin.max, 3),
+                    ", against {} and {} for {} on the same instrument with the same noise",
+                    in_unit(m.latitude_error_arcmin.max, latitude),
+                    in_unit(m.longitude_error_arcmin.max, longitude),
                     b.label
                 )
             )
@@ -134,7 +142,7 @@ const fn height(channel: HeightChannel) -> &'static str {
     }
 }
 
-fn figures(summary: &Summary) -> Markup {
+fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
     let baseline = summary.baseline.as_ref();
     let label = baseline.map_or("", |b| b.label.as_str());
     let other_navigation = baseline.and_then(|b| b.navigation.as_ref());
@@ -153,12 +161,19 @@ fn figures(summary: &Summary) -> Markup {
     html! {
         div.figures {
             @if let Some(n) = &summary.navigation {
-                (figure("Latitude error, largest", "arcmin", n.latitude_error_arcmin.max, 3,
-                    other_navigation.map(|o| o.latitude_error_arcmin.max)))
-                (figure("Longitude error, largest", "arcmin", n.longitude_error_arcmin.max, 3,
-                    other_navigation.map(|o| o.longitude_error_arcmin.max)))
-                (figure("Radial error rate", "nmi/h", n.radial_error_nmi.rate_per_h, 2,
-                    other_navigation.map(|o| o.radial_error_nmi.rate_per_h)))
+                @let (latitude, longitude, radial) = (units.latitude(), units.longitude(), units.radial());
+                @let rate = format!("{}/h", radial.name);
+                (figure("Latitude error, largest", latitude.name, latitude.of(n.latitude_error_arcmin.max), 3,
+                    other_navigation.map(|o| latitude.of(o.latitude_error_arcmin.max))))
+                (figure("Longitude error, largest", longitude.name, longitude.of(n.longitude_error_arcmin.max), 3,
+                    other_navigation.map(|o| longitude.of(o.longitude_error_arcmin.max))))
+                (figure("Radial error rate", &rate, radial.of(n.radial_error_nmi.rate_per_h), 2,
+                    other_navigation.map(|o| radial.of(o.radial_error_nmi.rate_per_h))))
+                @if let Some(heading) = n.heading_error_arcmin {
+                    @let unit = units.attitude();
+                    (figure("Heading error, largest", unit.name, unit.of(heading.max), 3,
+                        other_navigation.and_then(|o| Some(unit.of(o.heading_error_arcmin?.max)))))
+                }
             }
             @if let Some(c) = &summary.calibration {
                 @if let Some(nis) = c.nis_mean {

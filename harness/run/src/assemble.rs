@@ -4,6 +4,7 @@ use super::findings::findings;
 use super::method::MethodRun;
 use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
+use octant_base::display::DisplayUnits;
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
@@ -164,6 +165,7 @@ pub fn assemble_with(
     let report = ReportData {
         summary: summary.clone(),
         facts: facts(scenario),
+        units: scenario.display,
         truth: primary.truth,
         events: primary.watcher.events(),
         convergence: primary.watcher.convergence,
@@ -233,7 +235,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
 
 /// Renders the text for the terminal at the end of a run.
 #[must_use]
-pub fn text(summary: &Summary) -> String {
+pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
     use std::fmt::Write as _;
     let mut out = String::new();
     let mut line = |text: String| {
@@ -256,7 +258,7 @@ pub fn text(summary: &Summary) -> String {
         .chain(baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation)));
     for (label, alignment, calibration, navigation) in methods {
         line(format!("{label}, seed {}", summary.seed));
-        alignment.iter().map(alignment_line).for_each(&mut line);
+        alignment.iter().map(|alignment| alignment_line(alignment, units)).for_each(&mut line);
         if let Some(calibration) = calibration {
             let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
             let worst = calibration
@@ -269,11 +271,12 @@ pub fn text(summary: &Summary) -> String {
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
             }
-            calibration.solution.iter().filter_map(solution_line).for_each(&mut line);
+            let solution = calibration.solution.iter();
+            solution.filter_map(|solution| solution_line(solution, units)).for_each(&mut line);
         }
         if let Some(n) = navigation {
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
-            navigation_lines(n).into_iter().for_each(&mut line);
+            navigation_lines(n, units).into_iter().for_each(&mut line);
         }
     }
     let differences = std::iter::once((&summary.method, &summary.counterfactual))

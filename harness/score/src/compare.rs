@@ -136,12 +136,17 @@ impl Measure {
         }
     }
 
-    /// Unit of its values.
+    /// Name of the error, as in [`Navigation::errors`].
     #[must_use]
-    pub const fn unit(self) -> &'static str {
+    pub const fn error(self) -> &'static str {
         match self {
-            Self::VelocityNorth | Self::VelocityEast => "m/s",
-            _ => "arcmin",
+            Self::Latitude24h | Self::Latitude72h => "latitude",
+            Self::Longitude24h | Self::Longitude72h => "longitude",
+            Self::Heading => "heading",
+            Self::Pitch => "pitch",
+            Self::Roll => "roll",
+            Self::VelocityNorth => "north",
+            Self::VelocityEast => "east",
         }
     }
 

@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::procedure::{Alignment, Calibration};
 use super::source::Source;
 use crate::document::{Node, Table, Value};
+use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
 use octant_faults::station::Spec;
@@ -68,6 +69,8 @@ pub struct Scenario {
     pub endpoint: Endpoint,
     /// Pacing by the clock.
     pub realtime: Realtime,
+    /// Units of errors in report and terminal, at the scenario's site.
+    pub display: DisplayUnits,
     /// Name of the scenario's file, for messages.
     pub file: String,
     /// Folder of the scenario, from which relative file names start.
