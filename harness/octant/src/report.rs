@@ -5,6 +5,7 @@ use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
 use octant_base::display::UnitChoice;
+use octant_calibration::table::CalibrationTable;
 use octant_campaign::keep;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
@@ -14,18 +15,23 @@ use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
-use octant_report::{Provenance, ReportData};
+use octant_report::{Provenance, ReportData, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_run::done::Plan;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, NAMES};
+use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
 use octant_scenario::Scenario;
 use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_source::Epoch;
 use std::path::{Path, PathBuf};
+
+/// Recording of the baseline, in the folder of a run.
+const BASELINE: &str = "baseline.mcap";
+/// Calibration table, in the folder of a run.
+const TABLE: &str = "calibration.octcal";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -82,10 +88,24 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Some(path) => disposed(&summary, path, &arguments.run)?,
     };
     let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let baseline = arguments.run.join(BASELINE);
+    let baseline_solution = if baseline.exists() {
+        manifest.check_file(&arguments.run, BASELINE).map_err(failed)?;
+        watch(&baseline, &scenario)?.0.solution
+    } else {
+        SolutionSeries::default()
+    };
     let data = ReportData {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
         events: watcher.events(),
+        navigation_start_h: watcher.navigation_start_h(),
+        solution: watcher.solution,
+        baseline_solution,
+        latitude_rad: Some(scenario.site.latitude_rad),
+        sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
+        covariance: covariance(&manifest, &arguments.run)?,
+        requirement_texts: octant_run::assemble::requirement_texts(&scenario),
         convergence: watcher.convergence,
         nis: watcher.nis,
         gimbals: watcher.gimbals,
@@ -109,6 +129,21 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     write(&arguments.out, html)?;
     print(&format!("{}\n", arguments.out.display()))?;
     Ok(Verdict::Pass)
+}
+
+/// Reads the covariance of the run's calibration table; `None` for a run without one.
+fn covariance(
+    manifest: &Manifest,
+    run: &Path,
+) -> Result<Option<Box<[[f64; PARAMETER_COUNT]; PARAMETER_COUNT]>>, Failure> {
+    if !run.join(TABLE).exists() {
+        return Ok(None);
+    }
+    let bytes = manifest.read_file(run, TABLE).map_err(|error| Failure::input(error).failed())?;
+    let table = CalibrationTable::from_bytes(&bytes).map_err(|error| {
+        Failure::input(format!("failed to read {}: {error}", run.join(TABLE).display()))
+    })?;
+    Ok(Some(Box::new(table.covariance)))
 }
 
 /// Reads the dispositions of a run's discrepancies, and adds an entry for each that had none.

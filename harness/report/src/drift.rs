@@ -1,7 +1,9 @@
 //! Navigation of a run: errors over time, scores beside their analytic references.
 
 use super::chart::{Band, Chart, Line, Role};
+use super::data::ReportData;
 use super::scores::scores;
+use super::solution;
 use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
@@ -22,7 +24,8 @@ fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {
     all
 }
 
-pub(super) fn drift(summary: &Summary, units: &DisplayUnits) -> Markup {
+pub(super) fn drift(data: &ReportData) -> Markup {
+    let (summary, units) = (&data.summary, &data.units);
     let all = navigations(summary);
     if all.is_empty() {
         return html! {};
@@ -32,6 +35,7 @@ pub(super) fn drift(summary: &Summary, units: &DisplayUnits) -> Markup {
         let unit = if column == 1 { units.latitude() } else { units.longitude() };
         let axis = format!("{title}, {}", unit.name);
         let mut chart = Chart::new(&title, "hours of navigation", &axis);
+        chart.run_offset_h = data.navigation_start_h;
         if let Some(r) = &summary.reference {
             if let Some(floor) = &r.random_walk {
                 let points = floor.sigma.iter().map(|p| {
@@ -61,11 +65,15 @@ pub(super) fn drift(summary: &Summary, units: &DisplayUnits) -> Markup {
         chart.render()
     };
     html! {
-        h2 { "Navigation" }
         p.hint { "Errors are navigation minus truth. The band is what the noise of the sensors would \
             leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
-        (chart("Latitude", 1))
-        (chart("Longitude", 2))
+        h3 { "Position" }
+        div.plots {
+            (chart("Latitude", 1))
+            (chart("Longitude", 2))
+        }
+        (solution::errors(data))
+        (solution::track(data))
         (scores(
             &all.iter().map(|(label, _, n)| (*label, *n)).collect::<Vec<_>>(),
             summary.reference.as_ref().and_then(|r| r.random_walk.as_ref()),

@@ -3,11 +3,13 @@
 pub use super::data::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};
 
 use super::calibration::calibration;
-use super::chart::{Chart, Line, Role};
 use super::counterfactual::counterfactual;
 use super::drift::drift;
+use super::gimbals::gimbals;
+use super::marks::marks;
 use super::pacing::pacing;
-use super::page::{badge, page};
+use super::page::{PageSection, badge, page, sections};
+use super::requirements::requirements;
 use super::scores::alignment;
 use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
@@ -21,21 +23,28 @@ use octant_score::work::duration;
 #[must_use]
 pub fn render(data: &ReportData) -> String {
     let summary = &data.summary;
+    let all = [
+        PageSection::new(
+            "requirements",
+            "Requirements",
+            html! { (requirements(data)) (planned_and_done(summary)) },
+        ),
+        PageSection::new("faults", "Faults", faults(summary)),
+        PageSection::new("effects", "What the faults did", counterfactual(data)),
+        PageSection::new("navigation", "Navigation", drift(data)),
+        PageSection::new("alignment", "Alignment", alignment(summary, &data.units)),
+        PageSection::new("calibration", "Calibrated parameters", calibration(data)),
+        PageSection::new("gimbals", "Gimbals", gimbals(data)),
+        PageSection::new("health", "Health", events(data)),
+        PageSection::new("pacing", "Against the clock", pacing(summary)),
+        PageSection::new("discrepancies", "Discrepancies", discrepancies(data)),
+        PageSection::new("provenance", "Provenance", provenance(data)),
+    ];
     let body = html! {
         (header(data))
         (figures(summary, &data.units))
-        (requirements(summary))
-        (planned_and_done(summary))
-        (faults(summary))
-        (counterfactual(summary))
-        (drift(summary, &data.units))
-        (alignment(summary, &data.units))
-        (calibration(data))
-        (gimbals(data))
-        (events(data))
-        (pacing(summary))
-        (discrepancies(data))
-        (provenance(data))
+        (sections(&all))
+        (marks(data))
     };
     page(&format!("{}: {}", summary.scenario, summary.verdict.name()), &body)
 }
@@ -76,7 +85,6 @@ fn discrepancies(data: &ReportData) -> Markup {
     let hint = "What is said of them stands in a file of its own, beside the run: octant report RUN \
         --dispositions FILE makes it, people fill it in. It changes no verdict.";
     html! {
-        h2 { "Discrepancies" }
         (super::discrepancies::table(&all, &data.dispositions, hint, &|_| html! {}))
     }
 }
@@ -219,39 +227,6 @@ fn planned_and_done(summary: &Summary) -> Markup {
     }
 }
 
-fn requirements(summary: &Summary) -> Markup {
-    html! {
-        h2 { "Requirements" }
-        @if let Some(decided) = &summary.decision {
-            p.hint { (decided.text) "." }
-        }
-        @if summary.requirements.is_empty() {
-            p.empty { "No requirement was checked: the run shows what happened, and asks nothing of it." }
-        } @else {
-            table {
-                thead { tr {
-                    th { "Requirement" } th { "Measure" } th.n { "Limit" } th.n { "Value" }
-                    th.n { "Margin" } th.n { "Verdict" }
-                } }
-                tbody {
-                    @for r in &summary.requirements {
-                        tr {
-                            td { strong { (r.id) } }
-                            td { span.mono { (r.measure) }
-                                @if let Some(reason) = &r.reason { div.reason { (reason) } } }
-                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
-                                @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) } }
-                            td.n { (r.value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 4))) }
-                            td.n { (r.margin.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3))) }
-                            td.n { (badge(r.verdict)) }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// Renders the receipts of the faults; empty if none was injected.
 fn faults(summary: &Summary) -> Markup {
     if summary.faults.is_empty() {
@@ -261,7 +236,6 @@ fn faults(summary: &Summary) -> Markup {
     let sum = |sum: &Option<String>| sum.clone().unwrap_or_else(|| "–".to_owned());
     let verdict = |fired: bool| if fired { Verdict::Pass } else { Verdict::Inconclusive };
     html! {
-        h2 { "Faults" }
         p.hint { "What each fault altered, found by comparing samples before and after it. The \
             checksums (CRC-32) are over the altered samples, as they were and as they became." }
         table {
@@ -289,7 +263,8 @@ fn faults(summary: &Summary) -> Markup {
     }
 }
 
-fn sign(sign: &str) -> &str {
+/// Sign of a comparison as it is printed.
+pub(super) fn sign(sign: &str) -> &str {
     match sign {
         "<=" => "≤",
         ">=" => "≥",
@@ -297,48 +272,9 @@ fn sign(sign: &str) -> &str {
     }
 }
 
-fn gimbals(data: &ReportData) -> Markup {
-    if data.gimbals.len() < 2 {
-        return html! {};
-    }
-    let mut chart = Chart::new("Gimbal angles", "hours of the run", "Gimbal angles, deg");
-    chart.height = 200.0;
-    let angle = |f: &dyn Fn(&GimbalPoint) -> f64| {
-        data.gimbals.iter().map(|p| [p.hours, f(p)]).collect::<Vec<_>>()
-    };
-    chart.y_step = {
-        let all = data.gimbals.iter().flat_map(|p| [p.azimuth_deg, p.roll_deg]);
-        let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
-        Some(if high - low > 500.0 { 180.0 } else { 90.0 })
-    };
-    chart.lines.push(Line {
-        label: "azimuth (inner)".to_owned(),
-        role: Role::Primary,
-        points: angle(&|p| p.azimuth_deg),
-    });
-    chart.lines.push(Line {
-        label: "roll (outer)".to_owned(),
-        role: Role::Second,
-        points: angle(&|p| p.roll_deg),
-    });
-    let steps = || data.gimbals.windows(2);
-    let moves = steps().filter(|w| !w[0].moving && w[1].moving).count();
-    let moving_h: f64 = steps().filter(|w| w[1].moving).map(|w| w[1].hours - w[0].hours).sum();
-    let still =
-        1.0 - moving_h / (data.gimbals[data.gimbals.len() - 1].hours - data.gimbals[0].hours);
-    html! {
-        h2 { "Gimbals" }
-        p.hint { (moves) " moves; the gimbals stood still "
-            (number::fixed(100.0 * still, 1))
-            " % of the time shown." }
-        (chart.render())
-    }
-}
-
 fn events(data: &ReportData) -> Markup {
     const SHOWN: usize = 40;
     html! {
-        h2 { "Health" }
         @if data.events.is_empty() {
             p { "The core reported nothing: no rejected measurement, no recovery, no gap, no stuck sensor." }
         } @else {
@@ -364,7 +300,6 @@ fn events(data: &ReportData) -> Markup {
 fn provenance(data: &ReportData) -> Markup {
     let summary = &data.summary;
     html! {
-        h2 { "Provenance" }
         table {
             tbody {
                 tr { td { "octant" } td.mono { (summary.octant) } }

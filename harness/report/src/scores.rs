@@ -102,7 +102,6 @@ pub(super) fn alignment(summary: &Summary, units: &DisplayUnits) -> Markup {
     }
     let degrees = |value: Option<f64>| number::optional(value, 3);
     html! {
-        h2 { "Alignment" }
         p.hint { "Attitude of the case by the encoders of the gimbals, with error and σ at the end of each phase. The σ \
             is that of the filter: its prior after an alignment, its covariance after a calibration." }
         table {

@@ -9,7 +9,7 @@ use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
-use octant_report::{Provenance, ReportData};
+use octant_report::{Provenance, ReportData, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_requirements::decision::{Against, Rule};
 use octant_requirements::equipment::Day;
@@ -120,6 +120,8 @@ pub fn assemble_with(
     };
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
+    let baseline_solution =
+        baseline.as_ref().map_or_else(SolutionSeries::default, |run| run.watcher.solution.clone());
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -163,6 +165,13 @@ pub fn assemble_with(
         scenario.decision.uncertainty(measure, &against)
     })?;
     let report = ReportData {
+        solution: primary.watcher.solution.clone(),
+        baseline_solution,
+        navigation_start_h: primary.watcher.navigation_start_h(),
+        latitude_rad: Some(scenario.site.latitude_rad),
+        sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
+        covariance: primary.table.as_ref().map(|table| Box::new(table.covariance)),
+        requirement_texts: requirement_texts(scenario),
         summary: summary.clone(),
         facts: facts(scenario),
         units: scenario.display,
@@ -175,6 +184,12 @@ pub fn assemble_with(
         provenance: Provenance::default(),
     };
     Ok(Run { summary, report })
+}
+
+/// Lists the texts of a scenario's requirements by their ids.
+#[must_use]
+pub fn requirement_texts(scenario: &Scenario) -> BTreeMap<String, String> {
+    scenario.requirements.iter().map(|r| (r.check.id.clone(), r.text.clone())).collect()
 }
 
 /// Lists the setting of a run for the head of the report.

@@ -6,10 +6,11 @@
 
 use super::done::{Done, Plan};
 use super::follow::Follow;
+use octant_earth::units::ARCMIN;
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
-use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
+use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, SolutionSeries};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output, Status};
 use octant_score::alignment::SolutionPoint;
@@ -75,6 +76,8 @@ pub struct Watcher {
     pub convergence: Vec<ParameterPoint>,
     /// NIS of the measurements.
     pub nis: Vec<NisPoint>,
+    /// Errors of attitude and velocity over the last navigation.
+    pub solution: SolutionSeries,
     /// Gimbal angles.
     pub gimbals: Vec<GimbalPoint>,
     /// Parameters as last reported.
@@ -134,6 +137,7 @@ impl Watcher {
             source_time: None,
             convergence: Vec::new(),
             nis: Vec::new(),
+            solution: SolutionSeries::default(),
             gimbals: Vec::new(),
             last_parameters: None,
             last_mode: Mode::default(),
@@ -233,6 +237,7 @@ impl Watcher {
         if output.mode == Mode::Navigating {
             // A restarted core navigates anew: the last navigation is the one that is scored.
             (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
+            self.solution = SolutionSeries::default();
             self.trace.iter_mut().for_each(Trace::navigation_begins);
             self.navigation_start_ns = Some(output.device_time.ns);
             self.scored_ns = None;
@@ -374,6 +379,7 @@ impl Watcher {
             let (north, east) = (sample.latitude_error_rad, sample.longitude_error_rad);
             trace.drift(sample.t_s, north, east);
         }
+        self.solution.push(sample.t_s / 3600.0, errors(&sample));
         self.drift.push(&sample);
     }
 
@@ -397,6 +403,12 @@ impl Watcher {
     #[must_use]
     pub fn drift(&self) -> Option<&DriftScorer> {
         (self.drift_samples >= 2).then_some(&self.drift)
+    }
+
+    /// Returns the time at which the last navigation began, h; `None` without one.
+    #[must_use]
+    pub fn navigation_start_h(&self) -> Option<f64> {
+        self.navigation_start_ns.map(|ns| ns as f64 / 3.6e12)
     }
 
     /// Returns the planned and the completed work.
@@ -444,4 +456,12 @@ impl Watcher {
 
 fn hours(output: &Output) -> f64 {
     output.device_time.seconds() / 3600.0
+}
+
+/// Errors of attitude, arcmin, and velocity, m/s, in the order of [`SolutionSeries::push`].
+fn errors(sample: &DriftSample) -> [f64; 5] {
+    let attitude = sample.attitude_error;
+    let arcmin = |of: fn(&CaseAngles) -> f64| attitude.as_ref().map_or(f64::NAN, of) / ARCMIN;
+    let [north, east] = sample.velocity_error_mps.unwrap_or([f64::NAN; 2]);
+    [arcmin(|a| a.heading_rad), arcmin(|a| a.pitch_rad), arcmin(|a| a.roll_rad), north, east]
 }
