@@ -41,7 +41,7 @@ fn row(data: &ReportData, r: &RequirementResult) -> Markup {
         unit => unit,
     };
     html! {
-        tr id=(r.id) {
+        tr id={ "req-" (r.id) } {
             td.verdict { (badge(r.verdict)) }
             td.text {
                 strong { (r.id) }

@@ -108,7 +108,7 @@ pub(super) fn track(data: &ReportData) -> Markup {
                     path class={ "line " (role) } d=(path(points, &x, &y)) {}
                     @for p in hourly(points) { circle class={ "dot " (role) } cx=(x(p[1])) cy=(y(p[2])) r="2.2" {} }
                 }
-                circle.start cx=(x(0.0)) cy=(y(0.0)) r="5" {}
+                circle.origin cx=(x(0.0)) cy=(y(0.0)) r="5" {}
             }
         }
     }

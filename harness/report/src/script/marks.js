@@ -42,7 +42,7 @@ function drawMarks(plot) {
     if (to > from + 1) parts.push(element("rect", { class: "fault", x: from, y: plot.top, width: to - from, height: plot.bottom - plot.top }));
     titled(element("path", { class: "fault", d: `M${from} ${plot.top}V${plot.bottom}` }), label);
     if (from > last + 90) {
-      parts.push(element("text", { class: "note start fault", x: from + 4, y: plot.top + 9 }, label));
+      parts.push(element("text", { class: "note start fault", x: from + 4, y: plot.top + (plot.data.bracket ? 24 : 9) }, label));
       last = from;
     }
   }

@@ -34,13 +34,14 @@ function startBar() {
   const rows = KEYS.map(([keys, text]) => made("tr", "", made("td", "", made("kbd", "", keys)), made("td", "", text)));
   const help = made("dialog", "help", made("h3", "", "Keys and pointer"), made("table", "", made("tbody", "", ...rows)));
   help.addEventListener("click", () => help.close());
-  const all = button("reset", "Show everything", "0", reset);
+  const all = button("reset", "Show everything", "Key: 0", reset);
   all.disabled = true;
   const bar = made("div", "bar", made("span", "switches", ...markSwitches(redrawAll)), made("span", "range"), all,
     button("keys", "?", "Keys", () => help.showModal()));
   bar.setAttribute("role", "toolbar");
   bar.setAttribute("aria-label", "Plots");
-  const first = linked.plots[0].root.closest("section") ?? linked.plots[0].root;
+  let first = linked.plots[0].root;
+  while (first.parentElement.tagName !== "MAIN") first = first.parentElement;
   first.before(bar);
   document.body.append(help);
 }

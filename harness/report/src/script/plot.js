@@ -62,7 +62,7 @@ class Plot {
     const caption = this.root.querySelector(".caption");
     this.values = this.data.lines.map((line, i) => {
       const value = document.createElement("output");
-      value.className = "value";
+      value.className = "readout";
       // The legend names the lines from the last to the first.
       (keys[this.data.lines.length - 1 - i] ?? caption).append(value);
       return value;
