@@ -5,8 +5,8 @@ use octant_base::display::DisplayUnits;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData, compare as page,
-    run,
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData, SolutionSeries,
+    compare as page, run,
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison as Sign, Verdict};
@@ -21,6 +21,7 @@ use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
     Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
 };
+use std::collections::BTreeMap;
 
 const LATITUDE: f64 = 30.5 * DEG;
 const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;
@@ -189,6 +190,13 @@ fn data() -> ReportData {
     judge(&mut summary, &requirements, &[]).unwrap();
     let fact = |a: &str, b: &str| (a.to_owned(), b.to_owned());
     ReportData {
+        solution: SolutionSeries::default(),
+        baseline_solution: SolutionSeries::default(),
+        navigation_start_h: Some(24.0),
+        latitude_rad: Some(LATITUDE),
+        sample_period_s: Some(0.005),
+        covariance: None,
+        requirement_texts: BTreeMap::new(),
         units: DisplayUnits::default(),
         summary,
         facts: vec![
@@ -270,8 +278,12 @@ fn check(html: &str, file: &str) {
     let document = roxmltree::Document::parse(&xml).unwrap();
     for node in document.descendants().filter(roxmltree::Node::is_element) {
         for attribute in node.attributes() {
+            // Links within the page load nothing.
+            let inside = attribute.name() == "href" && attribute.value().starts_with('#');
             assert!(
-                !["src", "href", "srcset", "action", "data", "poster"].contains(&attribute.name()),
+                inside
+                    || !["src", "href", "srcset", "action", "data", "poster"]
+                        .contains(&attribute.name()),
                 "{} loads {}",
                 node.tag_name().name(),
                 attribute.value()
@@ -300,7 +312,7 @@ fn the_report_holds_every_parameter_and_loads_nothing() {
         assert!(html.contains(text), "{text} is not in the report");
     }
     assert!(html.contains("&lt;deg/h/g&gt; &amp; 24 h"), "a name is not escaped");
-    assert!(html.len() < 600_000, "{} bytes", html.len());
+    assert!(html.len() < 3_000_000, "{} bytes", html.len());
     assert_eq!(html, run::render(&data));
 }
 

@@ -1,6 +1,6 @@
 //! Errors of attitude and velocity over the navigation, and the track of the position error.
 
-use super::chart::{Chart, Line, Role, nice_ticks, round};
+use super::chart::{Chart, Line, Role, nice_ticks, round, span};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
@@ -77,33 +77,43 @@ pub(super) fn track(data: &ReportData) -> Markup {
     if let Some(n) = &data.summary.navigation {
         tracks.push(("primary", of(&n.series_hours)));
     }
-    let largest = tracks
-        .iter()
-        .flat_map(|(_, points)| points.iter().flat_map(|p| [p[1].abs(), p[2].abs()]))
-        .filter(|value| value.is_finite())
-        .fold(0.0, f64::max);
+    // The origin belongs to the track.
+    let extent = |column: usize| -> [f64; 2] {
+        let values = tracks.iter().flat_map(|(_, points)| points.iter().map(move |p| p[column]));
+        span(values.filter(|value| value.is_finite()).chain([0.0])).unwrap_or_default()
+    };
+    let (east, north) = (extent(1), extent(2));
+    let largest = (east[1] - east[0]).max(north[1] - north[0]);
     if largest <= 0.0 {
         return html! {};
     }
-    let reach = 1.08 * largest;
+    let reach = 0.54 * largest;
+    let around = |range: [f64; 2]| {
+        let middle = 0.5 * (range[0] + range[1]);
+        [middle - reach, middle + reach]
+    };
+    let (east, north) = (around(east), around(north));
     let scale = (EDGE - 2.0 * MARGIN) / (2.0 * reach);
-    let x = |east: f64| round(EDGE / 2.0 + east * scale);
-    let y = |north: f64| round(EDGE / 2.0 - north * scale);
-    let ticks = nice_ticks([-reach, reach], 4, None);
-    let decimals = ticks.get(1).map_or(0, |second| number::decimals_for(second - ticks[0], 1));
+    let x = |value: f64| round(MARGIN + (value - east[0]) * scale);
+    let y = |value: f64| round(EDGE - MARGIN - (value - north[0]) * scale);
+    let step = nice_ticks(east, 4, None);
+    let step = step.get(1).map(|second| second - step[0]);
+    let decimals = step.map_or(0, |step| number::decimals_for(step, 1));
     html! {
         h3 { "Ground track of the position error" }
         p.hint { "Computed minus true position on the ground. Dots are whole hours; the ring is where it began." }
         div.track {
             svg viewBox={ "0 0 " (EDGE) " " (EDGE) } role="img" aria-label="Ground track of the position error" {
-                @for tick in &ticks {
-                    path class=(if *tick == 0.0 { "grid zero" } else { "grid" }) d={ "M" (x(-reach)) " " (y(*tick)) "H" (x(reach)) } {}
-                    path class=(if *tick == 0.0 { "grid zero" } else { "grid" }) d={ "M" (x(*tick)) " " (y(-reach)) "V" (y(reach)) } {}
-                    text class="tick y" x=(x(-reach) - 6.0) y=(y(*tick) + 3.8) { (number::fixed(*tick, decimals)) }
-                    text class="tick x" x=(x(*tick)) y=(y(-reach) + 17.0) { (number::fixed(*tick, decimals)) }
+                @for tick in nice_ticks(north, 4, step) {
+                    path class=(if tick == 0.0 { "grid zero" } else { "grid" }) d={ "M" (MARGIN) " " (y(tick)) "H" (EDGE - MARGIN) } {}
+                    text class="tick y" x=(MARGIN - 6.0) y=(y(tick) + 3.8) { (number::fixed(tick, decimals)) }
                 }
-                text class="tick xlabel" x=(x(reach)) y=(EDGE - 6.0) { "east, nmi" }
-                text class="note start" x=(x(-reach)) y="26" { "north, nmi" }
+                @for tick in nice_ticks(east, 4, step) {
+                    path class=(if tick == 0.0 { "grid zero" } else { "grid" }) d={ "M" (x(tick)) " " (MARGIN) "V" (EDGE - MARGIN) } {}
+                    text class="tick x" x=(x(tick)) y=(EDGE - MARGIN + 17.0) { (number::fixed(tick, decimals)) }
+                }
+                text class="tick xlabel" x=(EDGE - MARGIN) y=(EDGE - 6.0) { "east, nmi" }
+                text class="note start" x=(MARGIN) y="26" { "north, nmi" }
                 @for (role, points) in &tracks {
                     path class={ "line " (role) } d=(path(points, &x, &y)) {}
                     @for p in hourly(points) { circle class={ "dot " (role) } cx=(x(p[1])) cy=(y(p[2])) r="2.2" {} }

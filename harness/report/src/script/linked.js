@@ -186,7 +186,7 @@ function startPlots() {
       }
     }
     redraw();
-  }, { rootMargin: "200px" });
+  }, { rootMargin: "80px" });
   const sized = new ResizeObserver((entries) => {
     for (const { target } of entries) {
       const plot = linked.plots.find((one) => one.root === target);

@@ -166,7 +166,7 @@ class Plot {
     }
     const longest = Math.max(0, ...yTicks.map(([, text]) => text.length));
     this.left = Math.max(this.width < 420 ? 38 : 52, 6.8 * longest + 12);
-    const count = Math.max(2, (this.right - this.left) / 78);
+    const count = Math.max(2, (this.right - this.left) / 64);
     const { ticks, step } = data.hours ? hourTicks(this.x, count) : niceTicks(this.x, count);
     const xText = (tick) => (data.hours ? hourText(tick, step) : tickText(tick, step));
     const parts = [];
@@ -210,7 +210,7 @@ class Plot {
 
   path({ x, y }) {
     const [from, to] = this.stretch(x);
-    const level = y.level(from, to, 2 * this.width), { low, high } = y.levels[level];
+    const level = y.level(from, to, this.width), { low, high } = y.levels[level];
     let d = "", down = false;
     const point = (at, value) => {
       d += `${down ? "L" : "M"}${at} ${px(this.yPx(value))}`;
