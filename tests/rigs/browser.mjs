@@ -286,6 +286,15 @@ await visit("campaign", `${campaign}/report.html`, async (page) => {
   await page.keyboard.press("Space");
   check("campaign: the space bar unfolds", await folded.evaluate((one) => one.open));
   await page.keyboard.press("Space");
+  // The list of cases is filtered by words.
+  await page.$$eval("details", (all) => all.forEach((one) => { one.open = true; }));
+  const rows = page.locator("table.filtered tbody tr:visible");
+  const total = await rows.count();
+  await page.locator("input.filter").first().fill("no such case");
+  check("campaign: a filter hides the other cases", total > 1 && (await rows.count()) === 0, total);
+  await page.locator("input.filter").first().fill("");
+  check("campaign: and shows them again", (await rows.count()) === total, await rows.count());
+  await page.$$eval("details", (all) => all.forEach((one) => { one.open = false; }));
   await page.evaluate(() => window.scrollTo(0, 0));
 });
 

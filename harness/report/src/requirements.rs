@@ -5,14 +5,13 @@ use super::page::badge;
 use super::units::unit;
 use maud::{Markup, html};
 use octant_base::number;
-use octant_requirements::Verdict;
 use octant_score::verdict::RequirementResult;
 
 /// Renders the requirements, the worst first.
 pub(super) fn requirements(data: &ReportData) -> Markup {
     let summary = &data.summary;
     let mut worst_first: Vec<&RequirementResult> = summary.requirements.iter().collect();
-    worst_first.sort_by_key(|r| rank(r.verdict));
+    worst_first.sort_by_key(|r| std::cmp::Reverse(r.verdict));
     html! {
         @if let Some(decided) = &summary.decision {
             p.hint { (decided.text) "." }
@@ -57,16 +56,5 @@ fn row(data: &ReportData, r: &RequirementResult) -> Markup {
             td.n data-label="Margin" { (significant(r.margin, 3)) }
             td.unit data-label="Unit" { (unit) }
         }
-    }
-}
-
-/// Order of verdicts from the worst on.
-const fn rank(verdict: Verdict) -> u8 {
-    match verdict {
-        Verdict::Error => 0,
-        Verdict::Fail => 1,
-        Verdict::Inconclusive => 2,
-        Verdict::None => 3,
-        Verdict::Pass => 4,
     }
 }

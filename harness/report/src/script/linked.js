@@ -14,7 +14,10 @@ function redraw() {
   requestAnimationFrame(() => {
     linked.pending = false;
     const start = performance.now();
-    for (const plot of linked.plots) if (plot.dirty && plot.seen) plot.draw();
+    // All widths are read before anything is written: one layout for all plots.
+    const due = linked.plots.filter((plot) => plot.dirty && plot.seen);
+    for (const plot of due) plot.measured = plot.root.clientWidth;
+    for (const plot of due) plot.draw();
     linked.drawMs = performance.now() - start;
     document.documentElement.dataset.drawMs = linked.drawMs.toFixed(1);
   });
@@ -204,6 +207,7 @@ function startPlots() {
   }
   // Print shows everything, as wide as paper.
   addEventListener("beforeprint", () => {
+    for (const plot of linked.plots) plot.measured = plot.root.clientWidth;
     for (const plot of linked.plots) {
       plot.before = plot.view;
       plot.view = null;

@@ -83,6 +83,28 @@ function stackTables() {
   }
 }
 
+// A field above a long table that shows the rows which have all of its words.
+function startFilters() {
+  for (const table of document.querySelectorAll("table.filtered")) {
+    const rows = Array.from(table.tBodies[0].rows, (row) => ({ row, text: row.textContent.toLowerCase() }));
+    const field = made("input", "filter");
+    field.type = "search";
+    field.placeholder = "Filter: words of a case, a factor, a verdict";
+    field.setAttribute("aria-label", "Filter of the rows");
+    const count = made("output", "soft");
+    field.addEventListener("input", () => {
+      const words = field.value.toLowerCase().split(/\s+/).filter((word) => word !== "");
+      let shown = 0;
+      for (const { row, text } of rows) {
+        row.hidden = !words.every((word) => text.includes(word));
+        shown += row.hidden ? 0 : 1;
+      }
+      count.textContent = words.length > 0 ? ` ${shown} of ${rows.length}` : "";
+    });
+    (table.closest(".wide") ?? table).before(field, count);
+  }
+}
+
 function startKeys(headings) {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.("input:not([type=checkbox]), textarea, select")) return;
@@ -109,6 +131,7 @@ function startKeys(headings) {
 
 startPlots();
 startBar();
+startFilters();
 startKeys(startContents());
 stackTables();
 addEventListener("resize", stackTables);

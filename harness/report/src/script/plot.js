@@ -18,7 +18,8 @@ class Plot {
     this.block = block;
     this.svg = root.querySelector("svg[role=img]");
     this.view = null; // Range of x that is looked at; null: all of it.
-    this.width = 0;
+    this.width = 0; // Width of the drawing; `measured` is that of the page.
+    this.measured = 0;
     this.dirty = true;
     this.seen = false;
   }
@@ -134,7 +135,7 @@ class Plot {
   draw() {
     this.load();
     this.dirty = false;
-    const width = this.root.clientWidth || 960;
+    const width = this.measured || 960;
     const height = Math.max(150, Math.min(this.data.height, 0.62 * width + 60));
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     [this.width, this.height, this.x] = [width, height, this.range()];
