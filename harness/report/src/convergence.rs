@@ -22,7 +22,7 @@ pub(super) fn convergence(data: &ReportData) -> Markup {
             h3 { "Error of every parameter" }
             p.hint { "Estimate minus true value, with ±σ of the filter as the band. Each scale is that of the \
                 second half of the calibration." }
-            @for group in Group::ALL { (errors(data, truth, group)) }
+            div.multiples.small { @for group in Group::ALL { (errors(data, truth, group)) } }
         }
     }
 }
@@ -75,9 +75,7 @@ fn errors(data: &ReportData, truth: &Parameters, group: Group) -> Markup {
     let estimated = |i: &usize| data.convergence.iter().any(|p| p.sigma[*i] > 0.0);
     let indices: Vec<usize> = group.range().filter(estimated).collect();
     html! {
-        @if !indices.is_empty() {
-            div.multiples.small { @for i in indices { (parameter(data, truth, group, i)) } }
-        }
+        @for i in indices { (parameter(data, truth, group, i)) }
     }
 }
 

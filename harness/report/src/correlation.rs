@@ -9,7 +9,7 @@ use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 /// Side of a cell, px.
 const CELL: f64 = 14.0;
 /// Space for the names, px.
-const NAMES_PX: f64 = 92.0;
+const NAMES_PX: f64 = 130.0;
 /// Correlations below aren't drawn.
 const LEAST: f64 = 0.02;
 /// Number of pairs listed.

@@ -124,10 +124,12 @@ class Plot {
     if (!(high >= low)) [low, high] = data.log ? [0.1, 1] : [-1, 1];
     if (data.log) {
       const decade = (y, round) => 10 ** round(Math.log10(y));
+      if (data.range && !this.isZoomed()) [low, high] = data.range;
       return this.isZoomed() ? [low / 1.3, high * 1.3] : [decade(low * 1.0000001, Math.floor), decade(high * 0.9999999, Math.ceil)];
     }
-    // A range that the page sets holds for the whole; its lower end stays.
-    if (data.range) return this.isZoomed() ? [data.range[0], Math.max(high * 1.1, low + 1e-12)] : data.range;
+    // A range that the page sets holds for the whole; zero stays the lower end.
+    if (data.range && !this.isZoomed()) return data.range;
+    if (data.range && data.range[0] === 0) return [0, Math.max(high * 1.1, 1e-12)];
     const room = high > low ? 0.04 * (high - low) : Math.abs(high) || 1;
     return [low - room, high + (data.bracket && !this.isZoomed() ? 3.5 : 1) * room];
   }
