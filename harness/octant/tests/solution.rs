@@ -1,9 +1,11 @@
 //! Scores of attitude and velocity compared with closed forms and golden numbers.
 
 use octant_base::control::Control;
+use octant_base::display::UnitChoice;
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_earth::units::{ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
-use octant_run::assemble::assemble;
+use octant_observe::ensemble::ensemble;
+use octant_run::assemble::{assemble, text as text_of};
 use octant_run::{Recording, run_method};
 use octant_scenario::{Method, Scenario};
 use octant_score::attitude::CaseAngles;
@@ -112,13 +114,12 @@ fn a_run_with_one_sensor_error_turns_and_moves_as_the_golden_one() {
                          velocity_error = [\"0 m/s\", \"0 m/s\", \"0 m/s\"]";
     let gyro = |axes: [&str; 3]| {
         format!(
-            "gyro_bias = [\"{} deg/h\", \"{} deg/h\", \"{} deg/h\"]\naccel_bias = {{ normal = \"0 ug\" }}",
+            "gyro_bias = {{ constant = [\"{} deg/h\", \"{} deg/h\", \"{} deg/h\"] }}\naccel_bias = {{ normal = \"0 ug\" }}",
             axes[0], axes[1], axes[2]
         )
     };
     let none = gyro(["0", "0", "0"]);
-    let accel =
-        "gyro_bias = { normal = \"0 deg/h\" }\naccel_bias = [\"10 ug\", \"0 ug\", \"0 ug\"]";
+    let accel = "gyro_bias = { normal = \"0 deg/h\" }\naccel_bias = { constant = [\"10 ug\", \"0 ug\", \"0 ug\"] }";
     let turned = EXACT.replacen("\"0 arcsec\"]", "\"360 arcsec\"]", 1);
     for (name, errors, alignment) in [
         ("gyro_error_north", gyro(["0.01", "0", "0"]), EXACT),
@@ -134,9 +135,12 @@ fn a_run_with_one_sensor_error_turns_and_moves_as_the_golden_one() {
             let [_, phi_n, phi_e, phi_d, north, east] = *row;
             let expected = [-phi_d, -phi_e, -phi_n, north, east];
             let found = finals(&run(&errors, alignment, hours));
-            // Terms of second order, and the counts, are below a thousandth of the largest error.
-            let angles = [phi_n, phi_e, phi_d].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            let speeds = north.abs().max(east.abs());
+            // Terms of second order, and the counts, are below a thousandth of the largest error so far.
+            let largest = |columns: std::ops::Range<usize>| {
+                let so_far = growth.rows.iter().filter(|row| row[0] <= f64::from(hours));
+                so_far.flat_map(|row| &row[columns.clone()]).fold(0.0f64, |m, x| m.max(x.abs()))
+            };
+            let (angles, speeds) = (largest(1..4), largest(4..6));
             for (i, scale) in [angles, angles, angles, speeds, speeds].into_iter().enumerate() {
                 let (found, expected) = (found[i], expected[i]);
                 assert!(
@@ -160,12 +164,13 @@ fn an_alignment_has_its_attitude_errors_and_sigma() {
     assert_near(heading_arcmin.error.unwrap(), -6.0, 1e-3);
     assert_near(pitch_arcmin.error.unwrap(), 2.0, 1e-2);
     assert_near(roll_arcmin.error.unwrap(), -1.0, 1e-2);
-    assert_near(alignment.solution.heading_deg.unwrap(), -0.1, 1e-4);
+    // The encoders add their error, of 18″.
+    assert_near(alignment.solution.heading_deg.unwrap(), -0.1, 0.01);
     assert_near(alignment.solution.velocity_north_mps.error.unwrap(), 0.02, 1e-4);
     // Without a filter there is no covariance.
     assert_eq!(heading_arcmin.sigma, None);
     // By gravity and Earth rate, the error of an east gyro of 0.01 °/h is ε/(Ω cos L) of φ down.
-    let east = "gyro_bias = [\"0 deg/h\", \"0.01 deg/h\", \"0 deg/h\"]\naccel_bias = { normal = \"0 ug\" }";
+    let east = "gyro_bias = { constant = [\"0 deg/h\", \"0.01 deg/h\", \"0 deg/h\"] }\naccel_bias = { normal = \"0 ug\" }";
     let coarse = run(east, "method = \"coarse\"\nduration = \"300 s\"", 1).alignment.unwrap();
     assert_eq!(coarse.reference, AlignmentReference::Static);
     assert_near(coarse.duration_s, 300.0, 0.011);
@@ -270,4 +275,82 @@ fn the_floor_of_attitude_and_velocity_is_that_of_noise_alone() {
         assert!(value.rms < value.r#final);
     }
     assert_near(solution.heading_arcmin.r#final, noise * 600f64.sqrt() / ARCMIN, 0.05 * tilt);
+}
+
+#[test]
+fn a_calibration_ends_with_an_attitude_and_its_sigma() {
+    let text = "schema = 1\n[imu]\nrate = \"20 Hz\"\n[motion]\nkind = \"static\"\nheading = \"40 deg\"\n\
+                [procedure.calibration]\npositions = \"six\"\nduration = \"1 h\"\n";
+    let scenario = Scenario::parse(text, "text", Path::new(""), &[]).unwrap();
+    let control = Control::default();
+    let run = run_method(&scenario, Method::Primary, 1, Recording::None, &control).unwrap();
+    let calibration = run.calibration.unwrap();
+    assert_eq!(calibration.refused, None);
+    assert_eq!(calibration.reference, Some(AlignmentReference::Static));
+    let solution = calibration.solution.unwrap();
+    // The σ that is predicted without a run; about the heading it is φ down.
+    let predicted = ensemble(&scenario, Method::Primary).unwrap();
+    let believed = |name: &str| {
+        let state = predicted.states.iter().find(|state| state.name == name).unwrap();
+        state.believed.unwrap()
+    };
+    let heading = solution.heading_arcmin.sigma.unwrap();
+    assert_near(heading, believed("phi_down") / 60.0, 0.02 * heading);
+    let tilts = [believed("phi_north"), believed("phi_east")].map(|sigma| sigma / 60.0);
+    let (s, c) = (40.0 * DEG).sin_cos();
+    let roll = (c * tilts[0]).hypot(s * tilts[1]);
+    // Without the correlation of the tilts, which is small.
+    assert_near(solution.roll_arcmin.sigma.unwrap(), roll, 0.1 * roll);
+    let north = solution.velocity_north_mps.sigma.unwrap();
+    assert_near(north, believed("velocity_north"), 0.02 * north);
+    for (name, _, point) in solution.points() {
+        let normalized = point.normalized.unwrap();
+        assert!(normalized.abs() < 5.0, "{name}: {normalized} σ");
+        assert_near(point.error.unwrap() / point.sigma.unwrap(), normalized, 1e-12);
+    }
+    assert_near(solution.heading_deg.unwrap(), 40.0, 0.1);
+    // The filter took over from the alignment with its prior: 360″ about down.
+    let alignment = run.alignment.unwrap();
+    assert_near(alignment.solution.heading_arcmin.sigma.unwrap(), 6.0, 1e-6);
+}
+
+#[test]
+fn report_and_terminal_obey_the_units_and_the_summary_keeps_its_own() {
+    let text = |display: &str| {
+        format!(
+            "schema = 1\n[imu]\nrate = \"20 Hz\"\n{display}\
+             [procedure.navigation]\nduration = \"2 h\"\nrotation = \"none\"\n"
+        )
+    };
+    let run = |display: &str, settings: &[String]| {
+        let scenario = Scenario::parse(&text(display), "text", Path::new(""), settings).unwrap();
+        let control = Control::default();
+        let run = run_method(&scenario, Method::Primary, 1, Recording::None, &control).unwrap();
+        assemble(&scenario, 1, run, None).unwrap()
+    };
+    let plain = run("", &[]);
+    let other = run("[display]\nposition = \"m\"\nattitude = \"deg\"\nvelocity = \"kn\"\n", &[]);
+    let chosen: UnitChoice = "m,deg,kn".parse().unwrap();
+    let set = run("", &chosen.settings());
+    assert_eq!(plain.summary.to_json().unwrap(), other.summary.to_json().unwrap());
+    assert_eq!(other.report.units, set.report.units);
+    let terminal = [&plain, &other].map(|run| text_of(&run.summary, &run.report.units));
+    assert!(
+        terminal[0].contains(" arcmin/day") && terminal[0].contains(" m/s\n"),
+        "{}",
+        terminal[0]
+    );
+    for unit in [" m, ", " m/day", " m/h", " deg\n", " kn\n"] {
+        assert!(terminal[1].contains(unit), "{unit}: {}", terminal[1]);
+    }
+    // 0.05 arcmin a metre and more: the number is the score's in the other unit.
+    let n = plain.summary.navigation.as_ref().unwrap();
+    let arcmin_m = Ellipsoid::at(LATITUDE, 0.0).meridian_radius_m * ARCMIN;
+    let metres = format!("latitude  max {:.1}, rms", n.latitude_error_arcmin.max * arcmin_m);
+    assert!(terminal[1].contains(&metres), "{metres}: {}", terminal[1]);
+    let knots = n.velocity_north_error_mps.unwrap().max * 3600.0 / 1852.0;
+    assert!(terminal[1].contains(&format!("north max {knots:.3}")), "{}", terminal[1]);
+    let page = octant_report::run::render(&other.report);
+    assert!(page.contains("Latitude error, largest, m<") && page.contains(">kn<"));
+    assert!(!page.contains("arcmin"), "a score in arcmin is left");
 }

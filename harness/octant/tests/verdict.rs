@@ -165,7 +165,7 @@ fn a_measure_that_is_not_there_is_inconclusive_and_says_what_is() {
     for (path, reason) in [
         (
             "navigation.latitude_error_arcmin.maximum",
-            "navigation.latitude_error_arcmin has no `maximum`; it has final, max, rms, slope_per_day",
+            "navigation.latitude_error_arcmin has no `maximum`; it has final, max, rms, schuler_amplitude, slope_per_day",
         ),
         (
             "navigation.latitude_error_arcmin.slope_per_day",

@@ -216,18 +216,19 @@ fn drift_table(
                 ", over " (window.periods) " " (window.of) " (" (number::fixed(window.hours, 2)) " h). "
                 "Rate: regression of radial error on time through the origin." }
         }
-        @if let Some(r) = reference { (closed_forms(r)) }
+        @if let Some(r) = reference { (closed_forms(r, units)) }
     }
 }
 
-fn closed_forms(r: &Reference) -> Markup {
+fn closed_forms(r: &Reference, units: &DisplayUnits) -> Markup {
+    let (latitude, longitude) = (units.latitude(), units.longitude());
     let drift = |label: &str, d: Option<VerticalDrift>| {
         html! { @if let Some(d) = d {
             tr {
                 td { (label) }
                 td.n { (number::significant(d.g_zz_deg_per_h_per_g, 3)) }
-                td.n { (number::fixed(d.longitude_arcmin_per_day, 3)) }
-                td.n { (number::fixed(d.latitude_bound_arcmin, 3)) }
+                td.n { (number::fixed(longitude.of(d.longitude_arcmin_per_day), 3)) }
+                td.n { (number::fixed(latitude.of(d.latitude_bound_arcmin), 3)) }
             }
         } }
     };
@@ -235,7 +236,7 @@ fn closed_forms(r: &Reference) -> Markup {
         table {
             thead { tr {
                 th { "What a vertical drift from g_zz does at this site" } th.n { "g_zz, deg/h/g" }
-                th.n { "longitude, arcmin/day" } th.n { "latitude at most, arcmin" }
+                th.n { "longitude, " (longitude.name) "/day" } th.n { "latitude at most, " (latitude.name) }
             } }
             tbody {
                 (drift("5e-4 deg/h/g, not compensated", Some(r.table_g_zz)))

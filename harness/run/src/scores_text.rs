@@ -8,7 +8,7 @@ use octant_score::summary::{AlignmentResult, ErrorScore, Navigation, PointScore,
 #[must_use]
 pub fn alignment_line(alignment: &AlignmentResult, units: &DisplayUnits) -> String {
     let AlignmentResult { reference, duration_s, solution } = alignment;
-    let degrees = |value: Option<f64>| value.map_or("-".to_owned(), |v| number::fixed(v, 3));
+    let degrees = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
     let scores =
         attitude_scores(solution, units).map_or(String::new(), |scores| format!("; {scores}"));
     format!(
