@@ -77,6 +77,7 @@ impl Arguments {
     fn request(&self) -> Request {
         Request {
             scenario: self.scenario.scenario.clone(),
+            text: None,
             set: self.scenario.set.clone(),
             out: self.out.clone(),
             force: self.force,
@@ -91,6 +92,7 @@ impl Arguments {
             no_twin: self.no_twin,
             live: self.live.clone(),
             json: self.json,
+            call: None,
         }
     }
 }

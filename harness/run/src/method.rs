@@ -156,12 +156,7 @@ pub fn run_as_far_as_it_goes(
         trouble,
         ..recorder_options(scenario, seed, &draws, method, true_parameters)
     };
-    let mut recorder = match recording {
-        Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash => Recorder::hash_only(&options),
-        Recording::HashAlone => Recorder::stream_hash_only(&options),
-        Recording::None => Recorder::none(),
-    };
+    let mut recorder = recording.start(&options).map_err(SetupError::Recorder)?;
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
     let plan = Plan::of(scenario, method, &core, tells, recorded);
@@ -205,7 +200,7 @@ pub fn run_as_far_as_it_goes(
 }
 
 /// State at the end of a loop.
-struct Closed {
+pub(super) struct Closed {
     ended: Ended,
     broken: Option<RunError>,
     /// Answer to the end of the source.
@@ -236,6 +231,17 @@ fn to_the_end<S: Source, E: Endpoint>(
             (driven, Some(kept))
         }
     };
+    close((driven, kept), source, endpoint, (recorder, watcher), control)
+}
+
+/// Ends source and endpoint after the loop, and asks the core for its conclusion.
+pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
+    (driven, kept): (Result<Ended, RunError>, Option<Kept>),
+    source: &mut S,
+    endpoint: &mut E,
+    (recorder, watcher): (&mut Recorder, &mut Watcher),
+    control: &Control,
+) -> Result<Closed, RunError> {
     // Moving equipment is stopped first.
     let broken = driven.as_ref().err().map(ToString::to_string);
     let (bench, stopped) = source.conclude(broken.as_deref());
@@ -293,7 +299,7 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
 /// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
 /// initial parameters, and a real instrument's errors can be large: the samples are passed
 /// repeatedly until the parameters settle, and the recorded run is one more pass.
-fn settle(
+pub(super) fn settle(
     scenario: &Scenario,
     plant: &octant_plant::config::Config,
     core: &mut core::Config,
@@ -323,7 +329,7 @@ fn settle(
 }
 
 /// Returns the recorder's options of a method, from the scenario.
-fn recorder_options(
+pub(super) fn recorder_options(
     scenario: &Scenario,
     seed: u64,
     draws: &Draws,
@@ -354,7 +360,7 @@ fn recorder_options(
 }
 
 /// Scores the observations and closes the recording.
-fn finish(
+pub(super) fn finish(
     scenario: &Scenario,
     method: Method,
     closed: Closed,
