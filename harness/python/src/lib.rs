@@ -25,7 +25,7 @@ use pyo3::types::PyTuple;
 fn _octant(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<table::Table>()?;
-    module.add_function(wrap_pyfunction!(recording::read_recording, module)?)?;
+    module.add_class::<recording::RawRecording>()?;
     module.add_function(wrap_pyfunction!(recording::read_calibration, module)?)?;
     module.add_function(wrap_pyfunction!(parquet::read_parquet, module)?)?;
     for function in [

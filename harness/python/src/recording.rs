@@ -1,7 +1,7 @@
 //! A recording as tables.
 
 use crate::columns::Columns;
-use crate::failure::input;
+use crate::failure::{argument, input};
 use crate::table::Table;
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::table::CalibrationTable;
@@ -14,7 +14,6 @@ use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT, ParameterEstimate};
 use octant_sample::{Aiding, Health, Navigation, Output, Reference, Sample, Truth};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -32,27 +31,60 @@ struct Topics {
     truncated: bool,
 }
 
-/// Reads a recording.
-///
-/// Returns the tables `samples`, `aiding`, `navigation`, `innovations`, `parameters`, `sigma`,
-/// `truth`, `errors` and `events` in a dictionary, with `scenario` (TOML), `run` (metadata) and
-/// `truncated`.
-#[pyfunction]
-pub(crate) fn read_recording<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let read = py.detach(|| -> Result<_, ReadError> {
-        let (topics, (scenario, run)) = topics(&path)?;
-        Ok((topics.tables(), scenario, run, topics.truncated))
-    });
-    let (tables, scenario, run, truncated) =
-        read.map_err(|error| input(format!("failed to read {}: {error}", path.display())))?;
-    let all = PyDict::new(py);
-    for (name, columns) in tables {
-        all.set_item(name, Bound::new(py, Table::new(columns)?)?)?;
+/// A recording that was read. Its tables are made when they are asked for.
+#[pyclass(module = "octant", frozen)]
+pub(crate) struct RawRecording {
+    topics: Topics,
+    scenario: String,
+    run: BTreeMap<String, String>,
+}
+
+#[pymethods]
+impl RawRecording {
+    /// Reads a recording.
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let read = py.detach(|| topics(&path));
+        let (topics, (scenario, run)) =
+            read.map_err(|error| input(format!("failed to read {}: {error}", path.display())))?;
+        Ok(Self { topics, scenario, run })
     }
-    all.set_item("scenario", scenario)?;
-    all.set_item("run", run)?;
-    all.set_item("truncated", truncated)?;
-    Ok(all)
+
+    /// Makes the table of this name.
+    fn table(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
+        let topics = &self.topics;
+        let columns = py.detach(|| match name {
+            "samples" => Some(topics.samples()),
+            "aiding" => Some(topics.aiding()),
+            "navigation" => Some(topics.navigation()),
+            "innovations" => Some(topics.innovations()),
+            "parameters" => Some(topics.by_parameter(|e, i| e.parameters.to_array()[i])),
+            "sigma" => Some(topics.by_parameter(|e, i| e.sigma[i])),
+            "truth" => Some(topics.truth()),
+            "errors" => Some(topics.errors()),
+            "events" => Some(topics.events()),
+            _ => None,
+        });
+        Table::new(columns.ok_or_else(|| argument(format!("no table {name:?}")))?)
+    }
+
+    /// The resolved scenario, TOML.
+    #[getter]
+    fn scenario(&self) -> &str {
+        &self.scenario
+    }
+
+    /// Metadata of the run.
+    #[getter]
+    fn run(&self) -> BTreeMap<String, String> {
+        self.run.clone()
+    }
+
+    /// True if the recording ends in the middle.
+    #[getter]
+    fn truncated(&self) -> bool {
+        self.topics.truncated
+    }
 }
 
 /// Head of a recording: the resolved scenario, and the metadata of the run.
@@ -84,20 +116,6 @@ fn text(event: &Event) -> String {
 }
 
 impl Topics {
-    fn tables(&self) -> [(&'static str, Columns); 9] {
-        [
-            ("samples", self.samples()),
-            ("aiding", self.aiding()),
-            ("navigation", self.navigation()),
-            ("innovations", self.innovations()),
-            ("parameters", self.by_parameter(|e, i| e.parameters.to_array()[i])),
-            ("sigma", self.by_parameter(|e, i| e.sigma[i])),
-            ("truth", self.truth()),
-            ("errors", self.errors()),
-            ("events", self.events()),
-        ]
-    }
-
     fn samples(&self) -> Columns {
         let all = &self.samples;
         let mut columns = Columns::default();

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Union
 
-from ._octant import InputError, Table, read_calibration, read_parquet, read_recording
+from ._octant import InputError, RawRecording, Table, read_calibration, read_parquet
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -25,7 +25,7 @@ def _json(path: Path) -> Any:
 class Method:
     """One method of a run: the scenario's own, or its baseline.
 
-    Tables are read when they are first asked for, all of a recording at once.
+    The recording is read when the first of its tables is asked for.
 
     Attributes
     ----------
@@ -38,13 +38,13 @@ class Method:
         self._names = (recording, calibration)
 
     @cached_property
-    def _recording(self) -> dict[str, Any]:
+    def _recording(self) -> RawRecording:
         path = self.path / self._names[0]
         if not path.is_file():
             raise InputError(f"{self.path} has no {self._names[0]}")
-        return read_recording(path)
+        return RawRecording(path)
 
-    @property
+    @cached_property
     def samples(self) -> Table:
         """Samples that reached the core.
 
@@ -52,28 +52,28 @@ class Method:
         and ``delta_velocity_x`` to ``_z`` (m/s), exact; gimbal angles (deg); ``status`` (bits). They are
         on the recording's grid, 1 Hz by default; all of them with ``record.samples = "full"``.
         """
-        return self._recording["samples"]
+        return self._recording.table("samples")
 
-    @property
+    @cached_property
     def aiding(self) -> Table:
         """References that reached the core: velocity (m/s, north, east, down) or position (deg, m)."""
-        return self._recording["aiding"]
+        return self._recording.table("aiding")
 
-    @property
+    @cached_property
     def navigation(self) -> Table:
         """Answers of the core.
 
         Position (deg, m), velocity over ground (m/s), attitude ``q_nb`` (takes a vector in body axes
         into north-east-down), mode, stop, commanded gimbal angles (deg), ``health`` (bits).
         """
-        return self._recording["navigation"]
+        return self._recording.table("navigation")
 
-    @property
+    @cached_property
     def truth(self) -> Table:
         """True position, velocity, attitude and gimbal angles, where the source knows them."""
-        return self._recording["truth"]
+        return self._recording.table("truth")
 
-    @property
+    @cached_property
     def errors(self) -> Table:
         """Errors of the navigation solution, navigation minus truth, at each recorded truth.
 
@@ -81,27 +81,27 @@ class Method:
         and the attitude error phi about north, east and down (arcmin):
         ``c_nb(computed) = (I - [phi x]) c_nb(true)``.
         """
-        return self._recording["errors"]
+        return self._recording.table("errors")
 
-    @property
+    @cached_property
     def parameters(self) -> Table:
         """Estimated error parameters of the sensors over time, in deg/h, ppm, arcsec, deg/h/g and ug."""
-        return self._recording["parameters"]
+        return self._recording.table("parameters")
 
-    @property
+    @cached_property
     def sigma(self) -> Table:
         """Standard deviations (1 sigma) of the parameters over time; NaN where not estimated."""
-        return self._recording["sigma"]
+        return self._recording.table("sigma")
 
-    @property
+    @cached_property
     def innovations(self) -> Table:
         """Normalized innovation squared of the measurements (three axes, expected 3), and rejections."""
-        return self._recording["innovations"]
+        return self._recording.table("innovations")
 
-    @property
+    @cached_property
     def events(self) -> Table:
         """Events of the recording, as JSON: changes of mode, onsets and ends of faults, receipts."""
-        return self._recording["events"]
+        return self._recording.table("events")
 
     @cached_property
     def covariance(self) -> Table:
@@ -120,7 +120,7 @@ class Method:
     @property
     def truncated(self) -> bool:
         """Whether the recording ends in the middle, as after a kill."""
-        return self._recording["truncated"]
+        return self._recording.truncated
 
 
 class Run(Method):
