@@ -103,15 +103,20 @@ impl std::fmt::Display for RefusedCommand {
 
 impl std::error::Error for RefusedCommand {}
 
-/// Runs the program and returns its exit status.
-#[must_use]
-pub fn main() -> ExitCode {
+/// Names this build in the manifests that the process writes.
+pub(crate) fn say_build() {
     octant_evidence::build::say(octant_evidence::build::Build {
         git_commit: env!("OCTANT_GIT_COMMIT"),
         is_git_dirty: env!("OCTANT_GIT_DIRTY") == "true",
         rustc: env!("OCTANT_RUSTC"),
         lock_file_sha256: env!("OCTANT_LOCK_FILE"),
     });
+}
+
+/// Runs the program and returns its exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    say_build();
     let cli = Cli::parse();
     if let Some(parent) = cli.parent
         && let Err(error) = progress::leave_interrupts_to(parent)

@@ -8,6 +8,7 @@ mod campaign;
 mod commands;
 mod compare;
 mod doctor;
+pub mod embedded;
 mod evidenced;
 mod failure;
 mod fault_page;

@@ -83,6 +83,7 @@ impl Arguments {
         let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
         Request {
             scenario: self.scenario.scenario.clone(),
+            text: None,
             set: [self.scenario.set.clone(), chosen].concat(),
             out: self.out.clone(),
             force: self.force,
@@ -97,6 +98,7 @@ impl Arguments {
             no_twin: self.no_twin,
             live: self.live.clone(),
             json: self.json,
+            call: None,
         }
     }
 }

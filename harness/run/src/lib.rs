@@ -7,6 +7,7 @@
 //! from its scenario to its scores; [`concluded`] stores a calibration that ended with the stream;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
+//! [`stepped`] runs one method a step at a time, with parts that others made.
 
 mod aligned;
 pub mod assemble;
@@ -19,6 +20,7 @@ pub mod faulted;
 pub mod findings;
 pub mod follow;
 pub mod host;
+mod interfere;
 pub mod method;
 pub mod minimise;
 pub mod paired;
@@ -29,6 +31,7 @@ pub mod realtime;
 mod recording;
 pub mod replayed;
 pub mod scores_text;
+pub mod stepped;
 pub mod twin;
 pub mod unit;
 pub mod watch;
@@ -37,6 +40,8 @@ pub use assemble::{Run, assemble};
 pub use drive::{Ended, Line, RunError, drive_in_time};
 pub use faulted::Faulted;
 pub use host::Host;
+pub use interfere::Interferes;
 pub use method::{MethodRun, Recording, run_method};
 pub use prepared::{Prepared, PreparedError};
+pub use stepped::{Parts, Stepped};
 pub use watch::Watcher;

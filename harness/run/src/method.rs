@@ -158,21 +158,12 @@ pub fn run_as_far_as_it_goes(
     let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
     let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
-    let mut options = recorder_options(scenario, seed, &draws, method);
-    options.trouble = trouble;
-    for (key, told) in [
-        ("true_parameters", true_parameters),
-        (TELLS_VELOCITY, tells.velocity),
-        (TELLS_ATTITUDE, tells.attitude),
-    ] {
-        options.metadata.insert(key.to_owned(), told.to_string());
-    }
-    let mut recorder = match recording {
-        Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash => Recorder::hash_only(&options),
-        Recording::HashAlone => Recorder::stream_hash_only(&options),
-        Recording::None => Recorder::none(),
+    let told = (true_parameters, tells);
+    let options = RecorderOptions {
+        trouble,
+        ..recorder_options(scenario, seed, &draws, method, told)
     };
+    let mut recorder = recording.start(&options).map_err(SetupError::Recorder)?;
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
     let plan = Plan::of(scenario, method, &core, tells, recorded);
     let mut watcher = Watcher::new(plan);
@@ -215,7 +206,7 @@ pub fn run_as_far_as_it_goes(
 }
 
 /// State at the end of a loop.
-struct Closed {
+pub(super) struct Closed {
     ended: Ended,
     broken: Option<RunError>,
     /// Answer to the end of the source.
@@ -246,6 +237,17 @@ fn to_the_end<S: Source, E: Endpoint>(
             (driven, Some(kept))
         }
     };
+    close((driven, kept), source, endpoint, (recorder, watcher), control)
+}
+
+/// Ends source and endpoint after the loop, and asks the core for its conclusion.
+pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
+    (driven, kept): (Result<Ended, RunError>, Option<Kept>),
+    source: &mut S,
+    endpoint: &mut E,
+    (recorder, watcher): (&mut Recorder, &mut Watcher),
+    control: &Control,
+) -> Result<Closed, RunError> {
     // Moving equipment is stopped first.
     let broken = driven.as_ref().err().map(ToString::to_string);
     let (bench, stopped) = source.conclude(broken.as_deref());
@@ -303,7 +305,7 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
 /// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
 /// initial parameters, and a real instrument's errors can be large: the samples are passed
 /// repeatedly until the parameters settle, and the recorded run is one more pass.
-fn settle(
+pub(super) fn settle(
     scenario: &Scenario,
     plant: &octant_plant::config::Config,
     core: &mut core::Config,
@@ -332,12 +334,14 @@ fn settle(
     Ok(())
 }
 
-/// Returns the recorder's options of a method, from the scenario.
-fn recorder_options(
+/// Returns the recorder's options of a method, from the scenario, and from what source and endpoint tell:
+/// whether the true parameters are known, and the parts of an output.
+pub(super) fn recorder_options(
     scenario: &Scenario,
     seed: u64,
     draws: &Draws,
     method: Method,
+    (true_parameters, tells): (bool, Tells),
 ) -> RecorderOptions {
     let record = &scenario.record;
     let method = match method {
@@ -351,15 +355,21 @@ fn recorder_options(
             parameters_period_ns: record.parameters_period_ns,
         },
         scenario: scenario.to_resolved_toml(seed, draws),
-        metadata: [("method", method.to_owned()), ("seed", seed.to_string())]
-            .map(|(key, value)| (key.to_owned(), value))
-            .into(),
+        metadata: [
+            ("method", method.to_owned()),
+            ("seed", seed.to_string()),
+            ("true_parameters", true_parameters.to_string()),
+            (TELLS_VELOCITY, tells.velocity.to_string()),
+            (TELLS_ATTITUDE, tells.attitude.to_string()),
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .into(),
         ..RecorderOptions::default()
     }
 }
 
 /// Scores the observations and closes the recording.
-fn finish(
+pub(super) fn finish(
     scenario: &Scenario,
     method: Method,
     closed: Closed,
