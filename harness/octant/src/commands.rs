@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print};
 use crate::{
-    campaign, compare, doctor, faults, fmu, nightly, observe, progress, rejudge, replay, report,
+    campaign, compare, doctor, export, faults, fmu, nightly, observe, progress, rejudge, replay, report,
     requirements, run, score, selftest, serve, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
@@ -42,6 +42,8 @@ enum Command {
     Serve(serve::Arguments),
     /// Score a recording, without running the core.
     Score(score::Arguments),
+    /// Export a recording to CSV, Parquet, MAT, KML, or MCAP with messages of ROS 2.
+    Export(export::Arguments),
     /// Predict the observability and the accuracy of a sequence, without running it.
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
@@ -129,6 +131,7 @@ pub fn main() -> ExitCode {
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
+        Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),

@@ -9,6 +9,7 @@ mod commands;
 mod compare;
 mod doctor;
 mod evidenced;
+mod export;
 mod failure;
 mod fault_page;
 mod fault_picture;
