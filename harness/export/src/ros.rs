@@ -24,9 +24,9 @@ const VECTOR3: &str = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64
 const QUATERNION: &str = "MSG: geometry_msgs/Quaternion\n\
     float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
 const NAV_SAT_STATUS: &str = "MSG: sensor_msgs/NavSatStatus\n\
-    int8 STATUS_UNKNOWN = -2\nint8 STATUS_NO_FIX = -1\nint8 STATUS_FIX = 0\nint8 STATUS_SBAS_FIX = 1\n\
-    int8 STATUS_GBAS_FIX = 2\nint8 status -2\nuint16 SERVICE_UNKNOWN = 0\nuint16 SERVICE_GPS = 1\n\
-    uint16 SERVICE_GLONASS = 2\nuint16 SERVICE_COMPASS = 4\nuint16 SERVICE_GALILEO = 8\nuint16 service\n";
+    int8 STATUS_NO_FIX = -1\nint8 STATUS_FIX = 0\nint8 STATUS_SBAS_FIX = 1\nint8 STATUS_GBAS_FIX = 2\n\
+    int8 status\nuint16 SERVICE_GPS = 1\nuint16 SERVICE_GLONASS = 2\nuint16 SERVICE_COMPASS = 4\n\
+    uint16 SERVICE_GALILEO = 8\nuint16 service\n";
 
 impl RosType {
     pub(crate) const fn name(self) -> &'static str {

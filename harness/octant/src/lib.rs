@@ -7,6 +7,7 @@ mod arguments;
 mod campaign;
 mod commands;
 mod compare;
+mod diff;
 mod doctor;
 mod evidenced;
 mod export;
