@@ -62,7 +62,7 @@ def check_tables(topics, tables, name):
     truth = {t: m for t, m in topics["/truth"]}
     nan = float("nan")
     errors = [
-        (m.latitude_rad - truth[t].latitude_rad) * 180 * 60 / math.pi if t in truth and m.mode in (1, 3) else nan
+        (m.latitude_rad - truth[t].latitude_rad) * 180 * 60 / math.pi if t in truth and m.mode in (1, 3, 4) else nan
         for t, m in topics["/output"]
     ]
     near(navigation["latitude_error_arcmin"], errors, f"{name}: latitude error")
@@ -126,7 +126,7 @@ def read_mat(path):
 def check_kml(path, topics):
     spaces = {"k": "http://www.opengis.net/kml/2.2", "gx": "http://www.google.com/kml/ext/2.2"}
     tree = etree.parse(str(path))
-    outputs = [m for _, m in topics["/output"] if m.mode in (1, 3)]
+    outputs = [m for _, m in topics["/output"] if m.mode in (1, 3, 4)]
     for name in ("truth", "navigation"):
         [mark] = tree.xpath(f"//k:Placemark[k:name='{name}']", namespaces=spaces)
         times = mark.xpath("gx:Track/k:when/text()", namespaces=spaces)

@@ -319,7 +319,7 @@ impl Rows<'_> {
 
 /// Returns whether a core in this mode has a solution that can be compared with the truth.
 pub(crate) const fn is_solution(mode: Mode) -> bool {
-    matches!(mode, Mode::Calibrating | Mode::Navigating)
+    matches!(mode, Mode::Calibrating | Mode::Navigating | Mode::Done)
 }
 
 /// Errors of a solution: navigation minus truth, north, east, down.
