@@ -84,7 +84,8 @@ impl<'a> FactorColumns<'a> {
 
     /// Units by the names of the columns.
     pub(super) fn units(&self) -> BTreeMap<String, String> {
-        let column = |(name, unit): (&&str, &FactorUnit)| (format!("factor.{name}"), unit.text.clone());
+        let column =
+            |(name, unit): (&&str, &FactorUnit)| (format!("factor.{name}"), unit.text.clone());
         self.units.iter().map(column).collect()
     }
 }

@@ -273,10 +273,7 @@ pub fn write_with_units<'a>(
 }
 
 /// Fields for readers of Arrow, which show metadata of columns.
-fn arrow_fields(
-    columns: &[(String, Kind)],
-    units: &BTreeMap<String, String>,
-) -> Vec<ArrowField> {
+fn arrow_fields(columns: &[(String, Kind)], units: &BTreeMap<String, String>) -> Vec<ArrowField> {
     let field = |(name, kind): &(String, Kind)| ArrowField {
         name: name.clone(),
         kind: match kind {
@@ -285,7 +282,11 @@ fn arrow_fields(
             Kind::Integer => ArrowKind::Int64,
             Kind::Boolean => ArrowKind::Boolean,
         },
-        metadata: units.get(name).map(|unit| ("unit".to_owned(), unit.clone())).into_iter().collect(),
+        metadata: units
+            .get(name)
+            .map(|unit| ("unit".to_owned(), unit.clone()))
+            .into_iter()
+            .collect(),
     };
     columns.iter().map(field).collect()
 }
@@ -373,8 +374,9 @@ impl Table {
         }
         let units = match value(UNITS_KEY) {
             None => BTreeMap::new(),
-            Some(text) => serde_json::from_str(&text)
-                .map_err(|error| form(format!("its {UNITS_KEY} isn't an object of texts: {error}")))?,
+            Some(text) => serde_json::from_str(&text).map_err(|error| {
+                form(format!("its {UNITS_KEY} isn't an object of texts: {error}"))
+            })?,
         };
         let plan = value(PLAN_KEY).ok_or_else(|| form(format!("it has no {PLAN_KEY}")))?;
         let rows: i64 = metadata.file_metadata().num_rows();

@@ -155,10 +155,7 @@ fn as_toml(value: &serde_json::Value) -> Option<toml::Value> {
             toml::Value::Array(all.iter().filter_map(as_toml).collect())
         }
         serde_json::Value::Object(parts) => toml::Value::Table(
-            parts
-                .iter()
-                .filter_map(|(name, part)| Some((name.clone(), as_toml(part)?)))
-                .collect(),
+            parts.iter().filter_map(|(name, part)| Some((name.clone(), as_toml(part)?))).collect(),
         ),
     })
 }

@@ -72,7 +72,9 @@ pub fn runs(first: &DiffSide, second: &DiffSide) -> Result<RunDiff, DiffError> {
     if stream.is_same_policy {
         // Every recorded message has a partner.
     } else {
-        notes.push("the recordings keep different samples: those that both have are compared".to_owned());
+        notes.push(
+            "the recordings keep different samples: those that both have are compared".to_owned(),
+        );
     }
     let scores = scores::compare(first.summary.as_ref(), second.summary.as_ref());
     let parameters = scores::parameters(first.summary.as_ref(), second.summary.as_ref());

@@ -46,10 +46,12 @@ pub fn of_runs(diff: &RunDiff, sides: [&DiffSide; 2]) -> String {
 }
 
 fn settings(settings: &[SettingDiff]) -> Markup {
-    let value = |value: &Option<String>| html! { @match value {
-        Some(value) => td.mono { (value) },
-        None => td { "–" },
-    } };
+    let value = |value: &Option<String>| {
+        html! { @match value {
+            Some(value) => td.mono { (value) },
+            None => td { "–" },
+        } }
+    };
     html! {
         h2 { "Settings" }
         @if settings.is_empty() { p { "The same." } } @else {

@@ -87,10 +87,7 @@ fn walk(path: &str, value: &Value, all: &mut BTreeMap<String, f64>) {
 }
 
 /// Lists the parameters that both summaries have.
-pub(crate) fn parameters(
-    first: Option<&Summary>,
-    second: Option<&Summary>,
-) -> Vec<ParameterDiff> {
+pub(crate) fn parameters(first: Option<&Summary>, second: Option<&Summary>) -> Vec<ParameterDiff> {
     let of = |summary: Option<&Summary>| {
         summary.and_then(|summary| summary.calibration.as_ref()).map(|c| c.parameters.clone())
     };

@@ -55,8 +55,7 @@ impl DiffSide {
     /// # Errors
     /// If there is no recording, or a file can't be read.
     pub fn read(path: &Path) -> Result<Self, DiffError> {
-        let recording =
-            if path.is_dir() { path.join("recording.mcap") } else { path.to_owned() };
+        let recording = if path.is_dir() { path.join("recording.mcap") } else { path.to_owned() };
         if !recording.is_file() {
             return Err(DiffError::NoRun { path: path.to_owned() });
         }
@@ -79,7 +78,11 @@ impl DiffSide {
             numerics: summary.as_ref().and_then(|summary| summary.numerics),
             commit: manifest.as_ref().and_then(|manifest| {
                 let git = manifest.git.as_ref()?;
-                Some(format!("{}{}", git.commit, if git.dirty { ", with local changes" } else { "" }))
+                Some(format!(
+                    "{}{}",
+                    git.commit,
+                    if git.dirty { ", with local changes" } else { "" }
+                ))
             }),
             ended: manifest.map(|manifest| manifest.ended),
             seed: info.run.get("seed").and_then(|seed| seed.parse().ok()),

@@ -108,7 +108,8 @@ pub(crate) fn compare(first: &DiffSide, second: &DiffSide) -> Result<StreamDiff,
         (first.info.samples, first.info.period_ns) == (second.info.samples, second.info.period_ns);
     let mut found = Found {
         diff: StreamDiff { is_same_policy, ..StreamDiff::default() },
-        channels: Topic::ALL.map(|topic| ChannelDiff { channel: topic.name(), ..ChannelDiff::default() }),
+        channels: Topic::ALL
+            .map(|topic| ChannelDiff { channel: topic.name(), ..ChannelDiff::default() }),
         bytes: [Vec::new(), Vec::new()],
         series: Series::default(),
     };

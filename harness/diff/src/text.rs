@@ -88,8 +88,13 @@ fn settings(out: &mut String, settings: &[SettingDiff]) {
     let _ = writeln!(out, "settings: {} differ", counted(settings.len() as u64, "key", "keys"));
     for setting in settings {
         let value = |value: &Option<String>| value.clone().unwrap_or_else(|| "(none)".to_owned());
-        let _ =
-            writeln!(out, "  {}: {} | {}", setting.key, value(&setting.first), value(&setting.second));
+        let _ = writeln!(
+            out,
+            "  {}: {} | {}",
+            setting.key,
+            value(&setting.first),
+            value(&setting.second)
+        );
     }
 }
 
@@ -160,8 +165,7 @@ fn table(out: &mut String, scores: &[ScoreDiff]) {
 
 fn parameters(out: &mut String, diff: &RunDiff) {
     out.push_str("\nparameters\n");
-    let _ =
-        writeln!(out, "  {:<26} {:>12} {:>12} {:>12} {:>8}", "", "A", "B", "B - A", "in σ");
+    let _ = writeln!(out, "  {:<26} {:>12} {:>12} {:>12} {:>8}", "", "A", "B", "B - A", "in σ");
     for row in &diff.parameters {
         let _ = writeln!(
             out,
@@ -170,7 +174,8 @@ fn parameters(out: &mut String, diff: &RunDiff) {
             number(Some(row.first)),
             number(Some(row.second)),
             number(Some(row.difference)),
-            row.in_sigma.map_or_else(|| "–".to_owned(), |sigma| octant_base::number::fixed(sigma, 2)),
+            row.in_sigma
+                .map_or_else(|| "–".to_owned(), |sigma| octant_base::number::fixed(sigma, 2)),
             row.unit
         );
     }
@@ -208,7 +213,9 @@ pub fn of_campaigns(diff: &CampaignDiff) -> String {
     let mut changed = 0;
     for test in diff.comparison.tests.iter().filter(|test| test.change != Change::Same) {
         if changed == 0 {
-            out.push_str("\nmeasures, mean of the pairs; p after Holm's correction for all tests\n");
+            out.push_str(
+                "\nmeasures, mean of the pairs; p after Holm's correction for all tests\n",
+            );
         }
         changed += 1;
         let _ = writeln!(

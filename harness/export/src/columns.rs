@@ -78,7 +78,12 @@ const TRUTH: [Fixed; 12] = [
 ];
 
 const ERRORS: [Fixed; 10] = [
-    ("latitude_error_arcmin", "arcmin", Number, "navigation minus truth, while the core calibrates or navigates, and at the end"),
+    (
+        "latitude_error_arcmin",
+        "arcmin",
+        Number,
+        "navigation minus truth, while the core calibrates or navigates, and at the end",
+    ),
     ("longitude_error_arcmin", "arcmin", Number, "navigation minus truth"),
     ("radial_error_nmi", "nmi", Number, "horizontal distance between navigation and truth"),
     ("height_error_m", "m", Number, "navigation minus truth"),

@@ -91,11 +91,7 @@ enum Part {
 }
 
 /// Passes on the points of a track: those of calibration and navigation.
-fn points(
-    job: &Job<'_>,
-    track: &Track,
-    take: &mut dyn FnMut(Point),
-) -> Result<(), ExportFailure> {
+fn points(job: &Job<'_>, track: &Track, take: &mut dyn FnMut(Point)) -> Result<(), ExportFailure> {
     let Some(table) = job.survey.table(ExportTable::Navigation) else { return Ok(()) };
     let place = |name: &str| {
         table.columns.iter().find(|found| found.column.name == name).map(|found| found.place)
@@ -226,9 +222,14 @@ mod tests {
 
     #[test]
     fn longitudes_are_within_half_a_turn() {
-        for (unwrapped, wanted) in
-            [(0.0, 0.0), (179.0, 179.0), (181.0, -179.0), (-181.0, 179.0), (-540.0, -180.0), (725.0, 5.0)]
-        {
+        for (unwrapped, wanted) in [
+            (0.0, 0.0),
+            (179.0, 179.0),
+            (181.0, -179.0),
+            (-181.0, 179.0),
+            (-540.0, -180.0),
+            (725.0, 5.0),
+        ] {
             assert_eq!(wrapped(unwrapped), wanted, "{unwrapped}");
         }
     }

@@ -48,8 +48,7 @@ pub enum ExportFormat {
 
 impl ExportFormat {
     /// All formats.
-    pub const ALL: [Self; 5] =
-        [Self::Csv, Self::Parquet, Self::Mat, Self::Kml, Self::RosbagMcap];
+    pub const ALL: [Self; 5] = [Self::Csv, Self::Parquet, Self::Mat, Self::Kml, Self::RosbagMcap];
 
     /// Name on the command line.
     #[must_use]

@@ -178,9 +178,7 @@ fn put<D: DataType>(
     column: &mut SerializedColumnWriter<'_>,
     cells: &[ExportCell],
     value: impl Fn(&ExportCell) -> Option<D::T>,
-    typed: impl for<'a, 'b> Fn(
-        &'a mut SerializedColumnWriter<'b>,
-    ) -> &'a mut ColumnWriterImpl<'b, D>,
+    typed: impl for<'a, 'b> Fn(&'a mut SerializedColumnWriter<'b>) -> &'a mut ColumnWriterImpl<'b, D>,
 ) -> Result<(), ParquetError> {
     let values: Vec<Option<D::T>> = cells.iter().map(value).collect();
     let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();

@@ -166,8 +166,8 @@ mod tests {
         let in_b = [0.3, -1.2, 9.0];
         let in_n: [f64; 3] = (q_nb * Vector3::from(in_b)).into();
         let [x, y, z, w] = orientation(&q_nb);
-        let turned = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
-            * Vector3::from(flu(in_b));
+        let turned =
+            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) * Vector3::from(flu(in_b));
         assert!((turned - Vector3::from(enu(in_n))).norm() < 1e-12);
     }
 }

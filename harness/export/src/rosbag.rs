@@ -140,11 +140,7 @@ struct Bag {
 }
 
 impl Bag {
-    fn begin(
-        job: &Job<'_>,
-        file: File,
-        interval_s: Option<f64>,
-    ) -> Result<Self, mcap::McapError> {
+    fn begin(job: &Job<'_>, file: File, interval_s: Option<f64>) -> Result<Self, mcap::McapError> {
         let mut mcap = mcap::WriteOptions::new()
             .profile("ros2")
             .library(concat!("octant ", env!("CARGO_PKG_VERSION")))
@@ -157,7 +153,8 @@ impl Bag {
             ("stamps".to_owned(), "run time, ns since the start of the run".to_owned()),
             ("axes".to_owned(), "REP 103: east, north, up; forward, left, up".to_owned()),
         ]);
-        metadata.extend(job.info.run.iter().map(|(key, value)| (format!("run.{key}"), value.clone())));
+        metadata
+            .extend(job.info.run.iter().map(|(key, value)| (format!("run.{key}"), value.clone())));
         mcap.write_metadata(&Metadata { name: "octant.export".to_owned(), metadata })?;
         let mut schemas = BTreeMap::new();
         let mut ros = [0; TOPICS.len()];

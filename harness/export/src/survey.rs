@@ -84,7 +84,8 @@ impl Survey {
         }
         for table in &self.tables {
             let has_truth = |name: &String| name.starts_with("true_") || name.contains("_error_");
-            let (truth, others): (Vec<_>, Vec<_>) = table.left_out.iter().partition(|n| has_truth(n));
+            let (truth, others): (Vec<_>, Vec<_>) =
+                table.left_out.iter().partition(|n| has_truth(n));
             let name = table.table.name();
             if table.table == ExportTable::Navigation && !truth.is_empty() {
                 notes.push(format!(
@@ -95,7 +96,10 @@ impl Survey {
             let is_sigma = |name: &&String| name.starts_with("sigma_");
             let is_clean = |name: &&String| name.starts_with("clean_");
             for (is, what) in [
-                (&is_error as &dyn Fn(&&String) -> bool, "errors, because the true values are unknown"),
+                (
+                    &is_error as &dyn Fn(&&String) -> bool,
+                    "errors, because the true values are unknown",
+                ),
                 (&is_sigma, "σ of parameters that aren't estimated"),
                 (&is_clean, "samples of the source, because all reached the core as they were"),
             ] {

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print};
 use crate::{
-    campaign, compare, diff, doctor, export, faults, fmu, nightly, observe, progress, rejudge, replay, report,
-    requirements, run, score, selftest, serve, turntable, verify, watch,
+    campaign, compare, diff, doctor, export, faults, fmu, nightly, observe, progress, rejudge,
+    replay, report, requirements, run, score, selftest, serve, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;

@@ -29,14 +29,22 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let (is_equal, html) = match (is_campaign(first), is_campaign(second)) {
         (true, true) => {
             let diff = CampaignDiff::of(first, second).map_err(failed)?;
-            if *json { print_json(&diff)? } else { print(&text::of_campaigns(&diff))? }
+            if *json {
+                print_json(&diff)?
+            } else {
+                print(&text::of_campaigns(&diff))?
+            }
             (diff.equal, out.as_ref().map(|_| page::of_campaigns(&diff)))
         }
         (false, false) => {
             let first = DiffSide::read(first).map_err(failed)?;
             let second = DiffSide::read(second).map_err(failed)?;
             let diff = runs(&first, &second).map_err(failed)?;
-            if *json { print_json(&diff)? } else { print(&text::of_runs(&diff))? }
+            if *json {
+                print_json(&diff)?
+            } else {
+                print(&text::of_runs(&diff))?
+            }
             (diff.equal, out.as_ref().map(|_| page::of_runs(&diff, [&first, &second])))
         }
         (is_first, _) => {

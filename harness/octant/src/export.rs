@@ -49,8 +49,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ))
     })?;
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&place, &recording, format));
-    let choice =
-        ExportChoice { true_parameters: truth(&recording)?, recording, tables, every_ns };
+    let choice = ExportChoice { true_parameters: truth(&recording)?, recording, tables, every_ns };
     let exported = export(&choice, format, &out, arguments.force).map_err(|error| {
         let message = format!("failed to {error}");
         if error.is_input() { Failure::input(message) } else { Failure::bench(message) }
@@ -117,7 +116,9 @@ fn default_out(place: &Place, recording: &Path, format: ExportFormat) -> PathBuf
 
 /// Returns the true parameters of a recording's instrument, SI, where its scenario draws them. A
 /// recording whose scenario can't be read is exported without them.
-fn truth(recording: &Path) -> Result<Option<[f64; octant_sample::parameters::PARAMETER_COUNT]>, Failure> {
+fn truth(
+    recording: &Path,
+) -> Result<Option<[f64; octant_sample::parameters::PARAMETER_COUNT]>, Failure> {
     let (scenario, _, seed) = match scenario_of(recording) {
         Ok(found) => found,
         Err(failure) => {

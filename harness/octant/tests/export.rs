@@ -193,8 +193,7 @@ fn mistakes_are_told_and_nothing_is_overwritten() {
     assert_eq!(std::fs::read_to_string(folder.path().join("x.kml")).unwrap(), "mine");
     export(folder.path(), &["--to", "kml", "--out", "x.kml", "--force"], 0);
     std::fs::write(folder.path().join("other.mcap"), "no recording").unwrap();
-    let (_, error) =
-        ended(octant_in(folder.path(), &["export", "other.mcap", "--to", "csv"]), 2);
+    let (_, error) = ended(octant_in(folder.path(), &["export", "other.mcap", "--to", "csv"]), 2);
     assert!(error.contains("other.mcap"), "{error}");
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().flatten().collect();
     let is_new = |name: &std::ffi::OsStr| name.to_string_lossy().ends_with(".new");
