@@ -33,6 +33,10 @@ pub(crate) fn first_difference(
         let Some((kind, name)) = line.split('#').next().unwrap_or("").trim().split_once(' ') else {
             continue;
         };
+        // A constant takes no room.
+        if name.contains('=') {
+            continue;
+        }
         let (kind, count) = match kind.split_once('[') {
             Some((kind, count)) => (kind, count.trim_end_matches(']').parse().ok()?),
             None => (kind, 1usize),
