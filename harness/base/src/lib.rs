@@ -10,7 +10,9 @@
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
+//! | [`arrow`] | units of columns, in the metadata of Parquet files |
 
+pub mod arrow;
 pub mod child;
 pub mod control;
 pub mod display;

@@ -379,7 +379,8 @@ impl CaseRow {
     fn has_result_of(&self, other: &Self) -> bool {
         let result = |row: &Self| {
             let mut row = row.row.clone();
-            row.retain(|(name, _)| name != "case" && name != "set");
+            // Factors are those of the pair, whatever their form.
+            row.retain(|(name, _)| name != "case" && name != "set" && !name.starts_with("factor."));
             row
         };
         result(self) == result(other)

@@ -1,5 +1,6 @@
 //! Reads the results of a campaign's cases from its tables.
 
+use octant_campaign::factors::parts;
 use octant_campaign::merge::merged;
 use octant_campaign::table::{Table, TableError, Value, Values};
 use octant_requirements::{Comparison, Verdict};
@@ -95,7 +96,7 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
         let reasons = [text("error"), text("reasons")].into_iter().find(|text| !text.is_empty());
         all.push(CaseRow {
             scenario: text("scenario"),
-            pair: pair(&row),
+            pair: pair(&row, &table.units),
             verdict,
             reasons: reasons.unwrap_or_default(),
             measures: measures(&row),
@@ -167,12 +168,23 @@ fn verdict(name: &str) -> Option<Verdict> {
 }
 
 /// Builds the key that pairs cases of two nights. The id can't be used: it changes with the
-/// scenario.
-fn pair(row: &[(String, Value)]) -> String {
+/// scenario. A factor with a unit is a number in tables with units, and a text in older ones.
+fn pair(row: &[(String, Value)], units: &BTreeMap<String, String>) -> String {
     let told = row.iter().filter(|(name, _)| {
         ["scenario", "seed", "replicate"].contains(&name.as_str()) || name.starts_with("factor.")
     });
-    told.map(|(name, value)| format!("{name}={value:?};")).collect()
+    let one = |(name, value): &(String, Value)| {
+        let quantity = match (value, units.get(name)) {
+            (Value::Number(number), Some(unit)) => Some((*number, unit.as_str())),
+            (Value::Text(text), None) if name.starts_with("factor.") => parts(text),
+            _ => None,
+        };
+        match quantity {
+            Some((number, unit)) => format!("{name}={number} {unit};"),
+            None => format!("{name}={value:?};"),
+        }
+    };
+    told.map(one).collect()
 }
 
 /// Collects the measures of a case, and the root mean square of the errors of each group of

@@ -45,7 +45,7 @@ struct Scores {
 }
 
 /// Returns whether the instrument of a recording had the errors that its scenario draws.
-fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
+pub(super) fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
     let recording = Recording::open(path)
         .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
     // Recordings from before FMUs don't state it.

@@ -21,11 +21,13 @@ mod core_spikes;
 mod covariance_golden;
 #[cfg(feature = "dashboard")]
 mod dashboard;
+mod diff;
 mod document_links;
 mod ensemble_against;
 mod ensemble_prediction;
 mod ensembles;
 mod equipment;
+mod export;
 mod extending;
 mod faults_any;
 mod faults_host;
