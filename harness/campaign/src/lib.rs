@@ -11,6 +11,7 @@ pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
+pub mod factors;
 pub mod file;
 pub mod independence;
 pub mod inside;

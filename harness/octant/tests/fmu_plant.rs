@@ -450,7 +450,8 @@ fn what_was_put_is_found_again_bit_for_bit() {
         plant.seed = seed;
         for samples in [plant.calibration_samples, 0, u64::MAX] {
             plant.calibration_samples = samples;
-            let found = Instance::<plant::PlantFmu>::new(&plant::start_values(&plant, &[]).unwrap());
+            let found =
+                Instance::<plant::PlantFmu>::new(&plant::start_values(&plant, &[]).unwrap());
             let found = plant::config(&found.unwrap().values).unwrap();
             assert_eq!(found, plant);
             assert_eq!(format!("{found:?}"), format!("{plant:?}"));

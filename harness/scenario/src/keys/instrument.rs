@@ -23,7 +23,7 @@ macro_rules! group {
         }
 
         impl $name {
-            /// Distribution of the group.
+            /// ParameterDistribution of the group.
             pub(crate) fn distribution(&self) -> ParameterDistribution {
                 let spread = self.normal.map(ParameterDistribution::Normal);
                 let spread = spread.or(self.uniform.map(ParameterDistribution::Uniform));
