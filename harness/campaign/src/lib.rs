@@ -12,6 +12,7 @@ pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
+pub mod factors;
 pub mod independence;
 pub mod inside;
 mod make;

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print, styled};
 use crate::{
-    campaign, compare, doctor, faults, fmu, nightly, observe, progress, rejudge, replay, report,
-    requirements, run, score, selftest, serve, turntable, verify, watch,
+    campaign, compare, diff, doctor, export, faults, fmu, nightly, observe, progress, rejudge,
+    replay, report, requirements, run, score, selftest, serve, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -29,6 +29,8 @@ enum Command {
     Run(run::Arguments),
     /// Compare two methods over many seeds, on the same instruments with the same noise.
     Compare(compare::Arguments),
+    /// Compare two runs or two campaigns: settings, samples, scores.
+    Diff(diff::Arguments),
     /// Run the core again on a recorded stream, and compare the outputs.
     Replay(replay::Arguments),
     /// Run a campaign of many cases: plan it, run it on any number of hosts, merge and report results.
@@ -43,6 +45,8 @@ enum Command {
     Serve(serve::Arguments),
     /// Score a recording, without running the core.
     Score(score::Arguments),
+    /// Export a recording to CSV, Parquet, MAT, KML, or MCAP with messages of ROS 2.
+    Export(export::Arguments),
     /// Predict the observability and the accuracy of a sequence, without running it.
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
@@ -115,15 +119,20 @@ fn help(told: &clap::Error) -> ExitCode {
     ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
 }
 
-/// Runs the program and returns its exit status.
-#[must_use]
-pub fn main() -> ExitCode {
+/// Names this build in the manifests that the process writes.
+pub(crate) fn say_build() {
     octant_evidence::build::say(octant_evidence::build::Build {
         git_commit: env!("OCTANT_GIT_COMMIT"),
         is_git_dirty: env!("OCTANT_GIT_DIRTY") == "true",
         rustc: env!("OCTANT_RUSTC"),
         lock_file_sha256: env!("OCTANT_LOCK_FILE"),
     });
+}
+
+/// Runs the program and returns its exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    say_build();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(told) => return help(&told),
@@ -144,6 +153,8 @@ pub fn main() -> ExitCode {
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
+        Command::Diff(arguments) => diff::command(&arguments),
+        Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),

@@ -4,6 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
+use octant_base::display::UnitChoice;
+use octant_calibration::table::CalibrationTable;
 use octant_campaign::keep;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
@@ -13,18 +15,23 @@ use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
-use octant_report::{ReportData, ReportProvenance};
+use octant_report::{ReportData, ReportProvenance, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_run::done::PlannedWork;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
-use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::Scenario;
 use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_source::Epoch;
 use std::path::{Path, PathBuf};
+
+/// Recording of the baseline, in the folder of a run.
+const BASELINE: &str = "baseline.mcap";
+/// Calibration table, in the folder of a run.
+const TABLE: &str = "calibration.octcal";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -39,6 +46,10 @@ pub(super) struct Arguments {
     /// existing entries and the run's own files don't change.
     #[arg(long, value_name = "FILE")]
     dispositions: Option<PathBuf>,
+    /// Units of errors in the report, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -77,15 +88,30 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Some(path) => disposed(&summary, path, &arguments.run)?,
     };
     let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let baseline = arguments.run.join(BASELINE);
+    let baseline_solution = if baseline.exists() {
+        manifest.check_file(&arguments.run, BASELINE).map_err(failed)?;
+        watch(&baseline, &scenario)?.0.solution
+    } else {
+        SolutionSeries::default()
+    };
     let data = ReportData {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
         events: watcher.events(),
+        navigation_start_h: watcher.navigation_start_h(),
+        solution: watcher.solution,
+        baseline_solution,
+        latitude_rad: Some(scenario.site.latitude_rad),
+        sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
+        covariance: covariance(&manifest, &arguments.run)?,
+        requirement_texts: octant_run::assemble::requirement_texts(&scenario),
         convergence: watcher.convergence,
         nis: watcher.nis,
         gimbals: watcher.gimbals,
         provenance: provenance(&manifest),
         dispositions,
+        units: scenario.display.with(arguments.units.unwrap_or_default()),
         summary,
     };
     let html = octant_report::run::render(&data);
@@ -103,6 +129,21 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     write(&arguments.out, html)?;
     print(&format!("{}\n", arguments.out.display()))?;
     Ok(Verdict::Pass)
+}
+
+/// Reads the covariance of the run's calibration table; `None` for a run without one.
+fn covariance(
+    manifest: &Manifest,
+    run: &Path,
+) -> Result<Option<Box<[[f64; PARAMETER_COUNT]; PARAMETER_COUNT]>>, Failure> {
+    if !run.join(TABLE).exists() {
+        return Ok(None);
+    }
+    let bytes = manifest.read_file(run, TABLE).map_err(|error| Failure::input(error).failed())?;
+    let table = CalibrationTable::from_bytes(&bytes).map_err(|error| {
+        Failure::input(format!("failed to read {}: {error}", run.join(TABLE).display()))
+    })?;
+    Ok(Some(Box::new(table.covariance)))
 }
 
 /// Reads the dispositions of a run's discrepancies, and adds an entry for each that had none.
@@ -125,9 +166,10 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
-    let mut epochs = Epochs::new(recording);
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
     let mut watcher = Watcher::new(PlannedWork::lasting(scenario));
+    watcher.recorded(&recording.info().run);
+    let mut epochs = Epochs::new(recording);
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };

@@ -5,6 +5,7 @@ use super::run_folder::{free_name, in_the_way};
 use crate::arguments::ScenarioArguments;
 use crate::failure::Failure;
 use clap::Args;
+use octant_base::display::UnitChoice;
 use octant_evidence::{Existing, RunFolder};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
@@ -53,6 +54,10 @@ pub(super) struct Arguments {
         default_missing_value = super::live::DEFAULT_ADDRESS
     )]
     live: Option<String>,
+    /// Units of errors in report and terminal: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
     /// Print summary.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -75,9 +80,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 impl Arguments {
     fn request(&self) -> Request {
+        let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
         Request {
             scenario: self.scenario.scenario.clone(),
-            set: self.scenario.set.clone(),
+            text: None,
+            set: [self.scenario.set.clone(), chosen].concat(),
             out: self.out.clone(),
             force: self.force,
             seed: self.seed,
@@ -91,6 +98,7 @@ impl Arguments {
             no_twin: self.no_twin,
             live: self.live.clone(),
             json: self.json,
+            call: None,
         }
     }
 }
@@ -100,6 +108,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
     let path = &arguments.scenario.scenario;
     let given = [
         ("--source", arguments.source.is_some()),
+        ("--units", arguments.units.is_some()),
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),

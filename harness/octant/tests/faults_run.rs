@@ -219,7 +219,7 @@ fn faults_fire_by_hand_and_act_on_both_methods() {
     let summary = &run.summary;
     assert_eq!(summary.baseline.as_ref().unwrap().faults, summary.faults);
     assert!(
-        octant_run::assemble::text(summary)
+        octant_run::assemble::text(summary, &run.report.units)
             .contains("fault spike-1 (spike): fired once, 100 samples from 20001 to 20100")
     );
 }

@@ -50,42 +50,99 @@ where
     E: Endpoint + ?Sized,
     K: Keeps<S, E>,
 {
-    let (mut epoch, mut output) = (Epoch::default(), Output::default());
-    let mut powered = true;
-    let total = source.samples_total().filter(|_| F::INJECTS || K::PACED).unwrap_or(u64::MAX);
-    let mut number = 0;
+    let total = source.samples_total().filter(|_| F::INJECTS || K::PACED);
+    let mut steps = Steps::new(total);
     loop {
+        if let Some(ended) = steps.step(source, faults, endpoint, keeper)? {
+            return Ok(ended);
+        }
+    }
+}
+
+/// State of the loop between two steps.
+#[derive(Debug)]
+pub(super) struct Steps {
+    epoch: Epoch,
+    output: Output,
+    powered: bool,
+    /// Number of steps after which the loop ends before it asks the source.
+    total: u64,
+    number: u64,
+}
+
+impl Steps {
+    /// Creates the state before the first step.
+    pub(super) fn new(total: Option<u64>) -> Self {
+        Self {
+            epoch: Epoch::default(),
+            output: Output::default(),
+            powered: true,
+            total: total.unwrap_or(u64::MAX),
+            number: 0,
+        }
+    }
+
+    /// Epoch that the source delivered in the last step.
+    pub(super) fn epoch(&self) -> &Epoch {
+        &self.epoch
+    }
+
+    /// Last answer of the endpoint.
+    pub(super) fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// Number of steps so far.
+    pub(super) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Takes one step of the source; returns the end of the run, where this was the last one.
+    #[inline(always)]
+    pub(super) fn step<S, F, E, K>(
+        &mut self,
+        source: &mut S,
+        faults: &mut F,
+        endpoint: &mut E,
+        keeper: &mut K,
+    ) -> Result<Option<Ended>, RunError>
+    where
+        S: Source + ?Sized,
+        F: Injects<S, E>,
+        E: Endpoint + ?Sized,
+        K: Keeps<S, E>,
+    {
+        let Self { epoch, output, powered, total, number } = self;
         // No fault sets in after the last sample, and no frame begins.
         if number == total {
-            return keeper.drain(endpoint, &mut output);
+            return keeper.drain(endpoint, output).map(Some);
         }
-        if keeper.begin(number) {
-            return Ok(Ended::Cancelled);
+        if keeper.begin(*number) {
+            return Ok(Some(Ended::Cancelled));
         }
-        number += 1;
+        *number += 1;
         // The turntable keeps the command of the last output while the core gives no answer.
         let mut command = output.gimbal_command;
-        faults.before(number, &mut command, &output, (source, endpoint));
-        if !source.next(&command, &mut epoch)? {
-            return Ok(Ended::SourceEnded);
+        faults.before(*number, &mut command, output, (source, endpoint));
+        if !source.next(&command, epoch)? {
+            return Ok(Some(Ended::SourceEnded));
         }
+        let epoch = &*epoch;
         for event in faults.unit_events(source)? {
             unit::happen(event, endpoint)?;
-            powered = *event != UnitEvent::PowerOff;
-            keeper.unit(event, number);
+            *powered = *event != UnitEvent::PowerOff;
+            keeper.unit(event, *number);
         }
-        let these = match faults.after(&epoch, &output) {
-            _ if !powered => &[],
-            Delivered::Untouched => std::slice::from_ref(&epoch),
+        let these = match faults.after(epoch, output) {
+            _ if !*powered => &[],
+            Delivered::Untouched => std::slice::from_ref(epoch),
             Delivered::These(these) => these,
         };
-        let delivered = deliver(source, (&epoch, these), endpoint, &mut output, keeper);
+        let delivered = deliver(source, (epoch, these), endpoint, output, keeper);
         faults.exchanged(endpoint);
         let ended = delivered?;
         faults.tell(|occurrence| keeper.occurrence(occurrence));
-        if let Some(ended) = ended {
-            return Ok(ended);
-        }
+        Ok(ended)
     }
 }
 
@@ -390,15 +447,15 @@ impl<'a> Books<'a> {
 
 /// Keeps the results of a run in simulated time, which waits for nothing.
 #[derive(Debug)]
-struct InTime<'a> {
+pub(super) struct InTime<'a> {
     /// Recorder and watcher.
-    books: Books<'a>,
+    pub(super) books: Books<'a>,
     /// Control of the run.
-    control: &'a Control,
+    pub(super) control: &'a Control,
     /// Number of epochs between two checks of the control.
-    look_every: u64,
+    pub(super) look_every: u64,
     /// Revision of the last parameters.
-    revision: u32,
+    pub(super) revision: u32,
 }
 
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {

@@ -6,8 +6,10 @@
 //! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
 //! from its scenario to its scores; [`concluded`] stores a calibration that ended with the stream;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
-//! summary and report of a run of one or two methods.
+//! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
+//! [`stepped`] runs one method a step at a time, with parts that others made.
 
+mod aligned;
 pub mod assemble;
 pub mod concluded;
 pub mod done;
@@ -18,6 +20,7 @@ pub mod faulted;
 pub mod findings;
 pub mod follow;
 pub mod host;
+mod interfere;
 pub mod method;
 pub mod minimise;
 pub mod paired;
@@ -27,6 +30,8 @@ pub mod raw_counts;
 pub mod realtime;
 mod recording;
 pub mod replayed;
+pub mod scores_text;
+pub mod stepped;
 pub mod twin;
 pub mod unit;
 pub mod watch;
@@ -35,6 +40,8 @@ pub use assemble::{Run, assemble};
 pub use drive::{Ended, Line, RunError, drive_in_time};
 pub use faulted::Faulted;
 pub use host::RunHost;
+pub use interfere::Interferes;
 pub use method::{MethodRun, StreamKeeping, run_method};
 pub use prepared::{Prepared, PreparedError};
+pub use stepped::{Parts, Stepped};
 pub use watch::Watcher;

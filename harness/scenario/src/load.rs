@@ -46,7 +46,12 @@ impl Scenario {
         Self::parse_fired(text, file, folder, overrides, &[])
     }
 
-    fn parse_fired(
+    /// Checks a text as [`Scenario::parse`] does, with `--fire` arguments applied as
+    /// [`Scenario::load_fired`] does.
+    ///
+    /// # Errors
+    /// As both.
+    pub fn parse_fired(
         text: &str,
         file: &str,
         folder: &Path,

@@ -5,7 +5,7 @@ use crate::report::CampaignReport;
 use crate::report::figures::{CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
+use octant_report::chart::{Band, Chart, Line, Role};
 
 /// Maximum number of combinations that are drawn.
 pub(super) const DRAWN_MAX: usize = 24;
@@ -46,6 +46,7 @@ pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
                 p.hint { "Rows of a whole scenario have no interval: the same instruments are in all of its combinations." }
             }
             (marks(report))
+            (solution(report))
         }
     }
 }
@@ -110,6 +111,25 @@ fn marks(report: &CampaignReport<'_>) -> Markup {
     }
 }
 
+/// Renders the largest errors of attitude and velocity.
+fn solution(report: &CampaignReport<'_>) -> Markup {
+    let all = || report.combinations.iter().zip(&report.statistics.combinations);
+    if all().all(|(_, figures)| figures.solution.is_empty()) {
+        return html! {};
+    }
+    html! {
+        h3 { "Attitude and velocity" }
+        p.hint { "Largest error of each navigation: heading, pitch and roll of the case, velocity to the north and east." }
+        table {
+            thead { tr { th { "Combination" } th { "Largest error" } th.n { "50 %" } th.n { "95 %" } } }
+            tbody { @for (combination, figures) in all() { @for (name, spread) in &figures.solution { tr {
+                td { (combination.name()) } td { (name) }
+                td.n { (with_bounds(&spread.p50)) } td.n { (with_bounds(&spread.p95)) }
+            } } } }
+        }
+    }
+}
+
 /// Draws percentiles of the errors over time. Curves of a prediction belong into the same charts.
 pub(super) fn envelopes(report: &CampaignReport<'_>) -> Markup {
     let all = || {
@@ -148,9 +168,7 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
     };
     let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
-    for (role, from, to) in
-        [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)]
-    {
+    for (role, from, to) in [(Role::Reference, least, greatest), (Role::Primary, low, high)] {
         let points = envelope.hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),
@@ -159,9 +177,9 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         });
     }
     let points = envelope.hours.iter().enumerate();
-    chart.lines.push(ChartLine {
+    chart.lines.push(Line {
         label: "median".to_owned(),
-        role: ChartRole::Primary,
+        role: Role::Primary,
         points: points.map(|(k, hours)| [*hours, value(middle, k)]).collect(),
     });
     chart.render()

@@ -13,6 +13,7 @@ use super::table::{
 };
 use crate::model::MotionComponent;
 use crate::quantity::UnitDimension;
+use octant_base::display::{AttitudeUnit, PositionUnit, VelocityUnit};
 use octant_earth::units::DEG;
 use octant_requirements::Comparison;
 use octant_requirements::decision::DecisionRule;
@@ -53,6 +54,34 @@ keys! {
         endpoint: EndpointKeys = table(), section, "Where the core runs.";
         realtime: RealtimeKeys = table(), section,
             "Whether the run goes by the clock, how, and what makes it too late.";
+        display: DisplayKeys = table(), section,
+            "Units of errors in report and terminal. Files for machines keep theirs.";
+    }
+}
+
+keys! {
+    /// `[display]`.
+    pub(crate) struct DisplayKeys {
+        position: PositionUnit = choice! {
+                "arcmin" => PositionUnit::ArcMinute, "minutes of arc; radial errors in nautical miles";
+                "nmi" => PositionUnit::NauticalMile, "nautical miles along the ground";
+                "m" => PositionUnit::Metre, "metres along the ground";
+                "km" => PositionUnit::Kilometre, "kilometres along the ground";
+            }, "arcmin",
+            "Unit of position errors.";
+        attitude: AttitudeUnit = choice! {
+                "arcmin" => AttitudeUnit::ArcMinute, "minutes of arc";
+                "deg" => AttitudeUnit::Degree, "degrees";
+                "arcsec" => AttitudeUnit::ArcSecond, "seconds of arc";
+                "mrad" => AttitudeUnit::Milliradian, "milliradians";
+            }, "arcmin",
+            "Unit of attitude errors.";
+        velocity: VelocityUnit = choice! {
+                "m/s" => VelocityUnit::MetrePerSecond, "metres per second";
+                "kn" => VelocityUnit::Knot, "knots";
+                "cm/s" => VelocityUnit::CentimetrePerSecond, "centimetres per second";
+            }, "m/s",
+            "Unit of velocity errors.";
     }
 }
 

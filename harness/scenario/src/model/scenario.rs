@@ -7,6 +7,7 @@ use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec};
 use super::source::SourceSpec;
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
+use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
 use octant_faults::station::FaultSpec;
@@ -68,6 +69,8 @@ pub struct Scenario {
     pub endpoint: EndpointSpec,
     /// Pacing by the clock.
     pub realtime: Realtime,
+    /// Units of errors in report and terminal, at the scenario's site.
+    pub display: DisplayUnits,
     /// Name of the scenario's file, for messages.
     pub file: String,
     /// Folder of the scenario, from which relative file names start.
