@@ -396,7 +396,7 @@ impl Watcher {
         let [north, east, _] = truth.velocity_mps;
         let known = self.tells.velocity && north.is_finite() && east.is_finite();
         let [computed_north, computed_east, _] = output.navigation.velocity_mps;
-        known.then(|| [computed_north - north, computed_east - east])
+        known.then_some([computed_north - north, computed_east - east])
     }
 
     /// Returns the drift so far; `None` without navigation or without truth.
