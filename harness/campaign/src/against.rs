@@ -11,7 +11,7 @@ pub use comparison::{Detects, EnsembleComparison, ErrorRow};
 
 use crate::case::{self, CaseResult, ResultError};
 use crate::plan::{Case, Plan, PlanError};
-use octant_observe::ensemble::{Band, Ensemble, EnsembleError, ensemble};
+use octant_observe::ensemble::{Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
 use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
@@ -226,7 +226,7 @@ struct Final {
     name: String,
     unit: &'static str,
     hours: f64,
-    band: Band,
+    band: ErrorBand,
     values: Vec<f64>,
 }
 
@@ -241,7 +241,7 @@ fn finals(
     let scores: Option<Vec<_>> =
         runs.iter().map(|(_, navigation)| Some((*navigation)?.errors())).collect();
     let Some(scores) = scores else { return Vec::new() };
-    let one = |(index, band): (usize, Band)| {
+    let one = |(index, band): (usize, ErrorBand)| {
         // Latitude and longitude come first.
         let index = index + 2;
         let (name, unit, _) = scores.first()?[index];

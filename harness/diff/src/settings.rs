@@ -51,7 +51,9 @@ fn put(key: &str, value: &toml::Value, all: &mut BTreeMap<String, String>) {
             }
         }
         value => {
-            all.insert(key.to_owned(), value.to_string());
+            // Texts, numbers and lists of them are written in JSON as in TOML.
+            let text = serde_json::to_string(value).unwrap_or_else(|_| format!("{value:?}"));
+            all.insert(key.to_owned(), text);
         }
     }
 }

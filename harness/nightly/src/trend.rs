@@ -3,7 +3,7 @@
 use super::history::{History, TrendLine, TrendPoint};
 use maud::{Markup, html};
 use octant_base::number::counted;
-use octant_report::chart::{Chart, Line as Drawn, Role};
+use octant_report::chart::{Chart, ChartLine as Drawn, ChartRole};
 use octant_report::page::page;
 use octant_report::units::unit;
 use std::collections::BTreeMap;
@@ -115,8 +115,8 @@ fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
         line.points.iter().map(|point| [(point.night + 1) as f64, value(point)]).collect()
     };
     chart.lines = vec![
-        Drawn { label: "95th percentile".into(), role: Role::Baseline, points: of(|p| p.p95) },
-        Drawn { label: "median".into(), role: Role::Primary, points: of(|p| p.median) },
+        Drawn { label: "95th percentile".into(), role: ChartRole::Baseline, points: of(|p| p.p95) },
+        Drawn { label: "median".into(), role: ChartRole::Primary, points: of(|p| p.median) },
     ];
     let reference =
         baseline.and_then(|night| line.points.iter().find(|point| point.night == night));

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// A signed error over the ensemble.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Band {
+pub struct ErrorBand {
     /// Mean.
     pub mean: f64,
     /// σ about the mean.
@@ -21,7 +21,7 @@ pub struct Band {
     pub p95: f64,
 }
 
-impl Band {
+impl ErrorBand {
     /// Band of a normal distribution.
     #[must_use]
     pub fn of(mean: f64, sigma: f64) -> Self {
@@ -34,15 +34,15 @@ impl Band {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolutionBands {
     /// Heading error, arcmin.
-    pub heading_arcmin: Band,
+    pub heading_arcmin: ErrorBand,
     /// Pitch error, arcmin.
-    pub pitch_arcmin: Band,
+    pub pitch_arcmin: ErrorBand,
     /// Roll error, arcmin.
-    pub roll_arcmin: Band,
+    pub roll_arcmin: ErrorBand,
     /// Error of the velocity to the north, m/s.
-    pub velocity_north_mps: Band,
+    pub velocity_north_mps: ErrorBand,
     /// Error of the velocity to the east, m/s.
-    pub velocity_east_mps: Band,
+    pub velocity_east_mps: ErrorBand,
 }
 
 impl SolutionBands {
@@ -53,10 +53,13 @@ impl SolutionBands {
         let mean = to_case * at.mean_phi_rad;
         let covariance = to_case * at.phi_rad2 * to_case.transpose();
         let angle = |axis: usize| {
-            Band::of(mean[axis] / ARCMIN, libm::sqrt(covariance[(axis, axis)].max(0.0)) / ARCMIN)
+            ErrorBand::of(
+                mean[axis] / ARCMIN,
+                libm::sqrt(covariance[(axis, axis)].max(0.0)) / ARCMIN,
+            )
         };
         let velocity = |axis: usize| {
-            Band::of(at.mean_mps[axis], libm::sqrt(at.variances_m2ps2[axis].max(0.0)))
+            ErrorBand::of(at.mean_mps[axis], libm::sqrt(at.variances_m2ps2[axis].max(0.0)))
         };
         Self {
             heading_arcmin: angle(0),
@@ -69,7 +72,7 @@ impl SolutionBands {
 
     /// Bands in the order of the scores of a navigation: heading, pitch, roll, north, east.
     #[must_use]
-    pub fn all(&self) -> [Band; 5] {
+    pub fn all(&self) -> [ErrorBand; 5] {
         [
             self.heading_arcmin,
             self.pitch_arcmin,

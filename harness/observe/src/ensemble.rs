@@ -5,7 +5,7 @@
 //! Guidance, Control, and Dynamics 29, 2006). The filter keeps its own prior and noise; the plant's
 //! draws and effects are in [`EnsembleTruth`].
 
-pub use super::bands::{Band, SolutionBands};
+pub use super::bands::{ErrorBand, SolutionBands};
 
 use super::covariance::{
     AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name,
@@ -79,9 +79,9 @@ pub struct DriftBand {
     /// Time since the start of navigation, h.
     pub hours: f64,
     /// Latitude error, arcmin.
-    pub latitude_arcmin: Band,
+    pub latitude_arcmin: ErrorBand,
     /// Longitude error, arcmin.
-    pub longitude_arcmin: Band,
+    pub longitude_arcmin: ErrorBand,
     /// Radial error, nmi.
     pub radial_nmi: RadialBand,
     /// Attitude and velocity; null in predictions from before they were made.
@@ -200,7 +200,7 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
         let unit_m = arcmin_m(earth)[axis];
         let mean = at.mean_m[axis] / unit_m;
         let sigma = libm::sqrt(at.variances_m2[axis].max(0.0)) / unit_m;
-        Band::of(mean, sigma)
+        ErrorBand::of(mean, sigma)
     };
     let square = NAUTICAL_MILE_M * NAUTICAL_MILE_M;
     let plane = Plane {

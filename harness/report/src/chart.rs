@@ -1,4 +1,4 @@
-//! Line charts as inline SVG. Colours are classes of the page's style sheet, so that a chart adapts
+//! ChartLine charts as inline SVG. Colours are classes of the page's style sheet, so that a chart adapts
 //! to light, dark and print; without the style sheet only the colour is lost.
 //!
 //! The drawing is complete without a script. Beside it stand the numbers themselves, from which the
@@ -9,7 +9,7 @@ mod model;
 mod numbers;
 mod ticks;
 
-pub use model::{Band, Chart, Line, Role};
+pub use model::{Band, Chart, ChartLine, ChartRole};
 pub(crate) use numbers::text as json_text;
 pub use ticks::{multiples_of, nice_ticks, round, span, thinned};
 
@@ -87,7 +87,8 @@ mod tests {
         let mut chart = Chart::new("Small", "h", "y");
         let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
         for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
-            chart.lines = vec![Line { label: String::new(), role: Role::Primary, points: line(y) }];
+            chart.lines =
+                vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
             let frame = Frame::of(&chart).unwrap();
             let longest = frame.y_ticks.iter().map(|tick| tick.1.chars().count()).max().unwrap();
             assert!(frame.left - 7.0 >= 6.5 * longest as f64, "{:?}", frame.y_ticks);

@@ -1,6 +1,6 @@
 //! Parameters over the calibration: σ and error of each group, error of each parameter with ±σ.
 
-use super::chart::{Band, Chart, Line, Role};
+use super::chart::{Band, Chart, ChartLine, ChartRole};
 use super::data::{ParameterPoint, ReportData};
 use super::parameters::title;
 use maud::{Markup, html};
@@ -43,7 +43,7 @@ fn panel(data: &ReportData, group: ParameterGroup) -> Markup {
     chart.logarithmic = true;
     chart.bands.push(Band {
         label: "σ".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: data
             .convergence
             .iter()
@@ -61,9 +61,9 @@ fn panel(data: &ReportData, group: ParameterGroup) -> Markup {
             let sum: f64 = group.range().map(|i| (e[i] - truth[i]) * (e[i] - truth[i])).sum();
             libm::sqrt(sum / group.range().len() as f64) / unit
         };
-        chart.lines.push(Line {
+        chart.lines.push(ChartLine {
             label: "rms error".to_owned(),
-            role: Role::Primary,
+            role: ChartRole::Primary,
             points: data.convergence.iter().map(|p| [p.hours, error(p)]).collect(),
         });
     }
@@ -97,12 +97,12 @@ fn parameter(data: &ReportData, truth: &Parameters, group: ParameterGroup, i: us
     }
     chart.bands.push(Band {
         label: "±σ".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: data.convergence.iter().map(|p| [p.hours, -sigma(p), sigma(p)]).collect(),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "error".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: data.convergence.iter().map(|p| [p.hours, error(p)]).collect(),
     });
     chart.render()

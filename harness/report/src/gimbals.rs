@@ -1,6 +1,6 @@
 //! Gimbal angles by phase of the run.
 
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use super::data::{GimbalPoint, ReportData};
 use super::marks::phases;
 use maud::{Markup, html};
@@ -62,14 +62,14 @@ fn chart(points: &[&GimbalPoint]) -> Markup {
         let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
         Some(if high - low > 500.0 { 180.0 } else { 90.0 })
     };
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "azimuth (inner)".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: angle(&|p| p.azimuth_deg),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "roll (outer)".to_owned(),
-        role: Role::Second,
+        role: ChartRole::Second,
         points: angle(&|p| p.roll_deg),
     });
     chart.render()

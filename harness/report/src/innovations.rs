@@ -1,6 +1,6 @@
 //! Innovations of a calibration: NIS with its bounds, and whiteness.
 
-use super::chart::{Band, Chart, Line, Role};
+use super::chart::{Band, Chart, ChartLine, ChartRole};
 use super::data::{NisPoint, ReportData};
 use maud::{Markup, html};
 use octant_base::number;
@@ -53,12 +53,12 @@ fn means(finite: &[NisPoint]) -> Markup {
     chart.y_range = Some([0.0, (1.1 * highest).max(6.0)]);
     chart.bands.push(Band {
         label: "95 % interval of the mean".to_owned(),
-        role: Role::Reference,
+        role: ChartRole::Reference,
         points: ends.iter().map(|&x| [x, (3.0 - half).max(0.0), 3.0 + half]).collect(),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: format!("mean of {size} measurements"),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: means,
     });
     chart.levels.push((3.0, String::new()));
@@ -77,12 +77,12 @@ fn single(finite: &[NisPoint]) -> Markup {
     let ends = [finite[0].hours, finite[finite.len() - 1].hours];
     chart.bands.push(Band {
         label: "95 % interval of single values".to_owned(),
-        role: Role::Reference,
+        role: ChartRole::Reference,
         points: ends.iter().map(|&x| [x, CHI_SQUARED_3[0], CHI_SQUARED_3[1]]).collect(),
     });
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "NIS".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: finite.iter().map(|p| [p.hours, p.nis]).collect(),
     });
     chart.levels.push((3.0, String::new()));
@@ -106,16 +106,16 @@ fn whiteness(finite: &[NisPoint]) -> Markup {
     let lag = |k: usize| (k + 1) as f64;
     chart.bands.push(Band {
         label: "95 % interval of white noise".to_owned(),
-        role: Role::Reference,
+        role: ChartRole::Reference,
         points: [0, correlation.len() - 1].iter().map(|&k| [lag(k), -bound, bound]).collect(),
     });
     let count = correlation.len();
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: format!(
             "{outside} of {count} lags outside, {} expected",
             number::fixed(0.05 * count as f64, 1)
         ),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: correlation.iter().enumerate().map(|(k, r)| [lag(k), *r]).collect(),
     });
     chart.levels.push((0.0, String::new()));

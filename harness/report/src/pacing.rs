@@ -1,6 +1,6 @@
 //! Time keeping of a run.
 
-use super::chart::{Chart, Line, Role};
+use super::chart::{Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::summary::{LatenessQuantiles, PacingRecord, Summary};
@@ -63,6 +63,6 @@ fn later_than(pacing: &PacingRecord) -> Chart {
         left = left.saturating_sub(*count);
         points.push([*edge_ns as f64 / 1e3, left as f64 / total as f64]);
     }
-    chart.lines.push(Line { label: "later".to_owned(), role: Role::Primary, points });
+    chart.lines.push(ChartLine { label: "later".to_owned(), role: ChartRole::Primary, points });
     chart
 }

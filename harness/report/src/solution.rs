@@ -1,6 +1,6 @@
 //! Errors of attitude and velocity over the navigation, and the track of the position error.
 
-use super::chart::{Chart, Line, Role, nice_ticks, round, span};
+use super::chart::{Chart, ChartLine, ChartRole, nice_ticks, round, span};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
@@ -36,11 +36,11 @@ pub(super) fn errors(data: &ReportData) -> Markup {
                 let points = series(&data.baseline_solution);
                 if points.len() >= 2 {
                     let label = baseline.label.clone();
-                    chart.lines.push(Line { label, role: Role::Baseline, points });
+                    chart.lines.push(ChartLine { label, role: ChartRole::Baseline, points });
                 }
             }
             let label = data.summary.method.clone();
-            chart.lines.push(Line { label, role: Role::Primary, points });
+            chart.lines.push(ChartLine { label, role: ChartRole::Primary, points });
             chart.levels.push((0.0, String::new()));
             Some(chart.render())
         })

@@ -5,7 +5,7 @@ use crate::report::CampaignReport;
 use crate::report::figures::{CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_report::chart::{Band, Chart, Line, Role};
+use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 
 /// Maximum number of combinations that are drawn.
 pub(super) const DRAWN_MAX: usize = 24;
@@ -168,7 +168,9 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
     };
     let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
-    for (role, from, to) in [(Role::Reference, least, greatest), (Role::Primary, low, high)] {
+    for (role, from, to) in
+        [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)]
+    {
         let points = envelope.hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),
@@ -177,9 +179,9 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
         });
     }
     let points = envelope.hours.iter().enumerate();
-    chart.lines.push(Line {
+    chart.lines.push(ChartLine {
         label: "median".to_owned(),
-        role: Role::Primary,
+        role: ChartRole::Primary,
         points: points.map(|(k, hours)| [*hours, value(middle, k)]).collect(),
     });
     chart.render()

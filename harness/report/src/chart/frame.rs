@@ -1,6 +1,6 @@
 //! Scales of a static drawing, and its parts as SVG.
 
-use super::model::{Band, Chart, Line};
+use super::model::{Band, Chart, ChartLine};
 use super::ticks::{decades, hour_ticks, is_round, nice_ticks, round, span, thinned, whole_ticks};
 use maud::{Markup, html};
 use octant_base::number;
@@ -130,7 +130,7 @@ impl Frame {
         }
     }
 
-    pub(super) fn pairs(&self, lines: &[Line]) -> Markup {
+    pub(super) fn pairs(&self, lines: &[ChartLine]) -> Markup {
         let first = lines.first().map_or(&[][..], |l| &l.points[..]);
         html! {
             @for (i, [x, _]) in first.iter().enumerate() {
@@ -146,7 +146,7 @@ impl Frame {
     }
 
     /// Draws a dot at every point of a line.
-    pub(super) fn dots(&self, line: &Line) -> Markup {
+    pub(super) fn dots(&self, line: &ChartLine) -> Markup {
         html! {
             @for [x, y] in line.points.iter().filter(|p| p[1].is_finite()) {
                 circle class={ "dot " (line.role.class()) } cx=(round(self.px(*x))) cy=(round(self.py(*y))) r="3" {}

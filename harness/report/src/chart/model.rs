@@ -2,7 +2,7 @@
 
 /// Meaning of a line or band: the style sheet assigns colour and dash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ChartRole {
     /// The method under test.
     Primary,
     /// Method of comparison.
@@ -13,7 +13,7 @@ pub enum Role {
     Reference,
 }
 
-impl Role {
+impl ChartRole {
     pub(super) const fn class(self) -> &'static str {
         match self {
             Self::Primary => "primary",
@@ -26,11 +26,11 @@ impl Role {
 
 /// A line.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct ChartLine {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: Role,
+    pub role: ChartRole,
     /// Points in order of x; NaN breaks the line.
     pub points: Vec<[f64; 2]>,
 }
@@ -41,7 +41,7 @@ pub struct Band {
     /// Name in the legend.
     pub label: String,
     /// Meaning, which sets colour and dash.
-    pub role: Role,
+    pub role: ChartRole,
     /// x, lower, upper.
     pub points: Vec<[f64; 3]>,
 }
@@ -70,7 +70,7 @@ pub struct Chart {
     /// Bands, drawn first.
     pub bands: Vec<Band>,
     /// Lines.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ChartLine>,
     /// Horizontal lines with a label.
     pub levels: Vec<(f64, String)>,
     /// Length of a bracket on the x axis with its label: a reference period.
