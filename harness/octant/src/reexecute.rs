@@ -136,8 +136,7 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     let place = tempfile::tempdir()
         .map_err(|error| Failure::bench(format!("failed to create a folder: {error}")))?;
     let prepared = prepare(&scenario, seed, twins)?;
-    let mut runs =
-        execute(&prepared, &scenario, place.path(), &Follower::Terminal)?.into_iter();
+    let mut runs = execute(&prepared, &scenario, place.path(), &Follower::Terminal)?.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
     };

@@ -249,7 +249,8 @@ impl PyOutput {
     #[setter]
     fn set_mode(&mut self, name: &str) -> PyResult<()> {
         let Some(mode) = Mode::ALL.into_iter().find(|mode| mode.name() == name) else {
-            let known = octant_base::names::suggestion(name, Mode::ALL.iter().map(|m| m.name()), "modes");
+            let known =
+                octant_base::names::suggestion(name, Mode::ALL.iter().map(|m| m.name()), "modes");
             return Err(argument(format!("mode {name:?}, {known}")));
         };
         self.output.mode = mode;
@@ -378,9 +379,9 @@ impl PyOutput {
     fn set_parameters(&mut self, values: Vec<f64>, sigma: Vec<f64>) -> PyResult<()> {
         let all = |what: &str, values: Vec<f64>| -> PyResult<[f64; PARAMETER_COUNT]> {
             let found = values.len();
-            values.try_into().map_err(|_| {
-                argument(format!("found {found} {what}, expected {PARAMETER_COUNT}"))
-            })
+            values
+                .try_into()
+                .map_err(|_| argument(format!("found {found} {what}, expected {PARAMETER_COUNT}")))
         };
         let (values, sigma) = (all("values", values)?, all("sigma", sigma)?);
         let revision = self.output.parameters_revision + 1;

@@ -56,9 +56,8 @@ fn unit_of(name: &str) -> &'static str {
     }
     // "navigation.radial_error_nmi.rate_per_h" is in nmi/h: the part's own end is the last word.
     let parts: Vec<&str> = name.split('.').collect();
-    let found = |part: &str| {
-        UNITS.iter().find(|(end, _)| part.ends_with(end)).map_or("", |(_, unit)| unit)
-    };
+    let found =
+        |part: &str| UNITS.iter().find(|(end, _)| part.ends_with(end)).map_or("", |(_, unit)| unit);
     match parts.as_slice() {
         [.., above, "rate_per_h"] if found(above) == "nmi" => "nmi/h",
         [.., above, "slope_per_day"] if found(above) == "arcmin" => "arcmin/day",

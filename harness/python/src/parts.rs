@@ -207,7 +207,11 @@ impl Source for Samples {
                 return None;
             }
             let made = source.call_method0("truth").and_then(|truth| {
-                if truth.is_none() { Ok(None) } else { truth.extract::<PyTruth>().map(Some).map_err(PyErr::from) }
+                if truth.is_none() {
+                    Ok(None)
+                } else {
+                    truth.extract::<PyTruth>().map(Some).map_err(PyErr::from)
+                }
             });
             made.map_err(|error| self.raised.keep(error)).ok().flatten().map(|truth| truth.truth)
         })

@@ -247,9 +247,8 @@ impl Topics {
         columns.numbers("east", "m", each(&all, east_m));
         columns.numbers("height", "m", each(&all, |(o, t)| navigation(o).height_m - t.height_m));
         for (axis, name) in ["north", "east", "down"].iter().enumerate() {
-            let speed = |(o, t): &(&Output, Truth)| {
-                navigation(o).velocity_mps[axis] - t.velocity_mps[axis]
-            };
+            let speed =
+                |(o, t): &(&Output, Truth)| navigation(o).velocity_mps[axis] - t.velocity_mps[axis];
             columns.numbers(&format!("velocity_{name}"), "m/s", each(&all, speed));
         }
         let phi = each(&all, |(o, t)| phi_of(&rotation(o.navigation.q_nb), &rotation(t.q_nb)));

@@ -5,9 +5,10 @@ pub use super::recording::Recording;
 
 use super::concluded;
 use super::done::Plan;
-use super::drive::{Ended, Line, RunError, drive_in_time};
+use super::drive::{Ended, Line, RunError};
 use super::faulted::Faulted;
 use super::host::Host;
+use super::in_time::drive_in_time;
 use super::realtime::{Kept, drive_by_clock};
 use super::watch::Watcher;
 use crate::passes::{PassError, in_passes};

@@ -10,10 +10,11 @@
 //! steps with the unit's answers, and finds every sample that isn't the one that the unit got.
 
 use super::done::Plan;
-use super::drive::{Books, Ended, InTime, RunError, Steps};
+use super::drive::{Books, Ended, RunError, Steps};
 use super::error::{MethodError, SetupError};
 use super::faulted::{Behind, Faulted};
 use super::host::Host;
+use super::in_time::InTime;
 use super::interfere::{Functions, Interfered, Interferes};
 use super::method::{self, MethodRun};
 use super::recording::Recording;
@@ -79,7 +80,9 @@ impl std::fmt::Debug for Stepped {
 #[derive(Debug, thiserror::Error)]
 pub enum AheadError {
     /// The source has no copy that goes ahead.
-    #[error("make a block of samples: only the simulated plant can go ahead; step by step it works")]
+    #[error(
+        "make a block of samples: only the simulated plant can go ahead; step by step it works"
+    )]
     Source,
     /// The faults can't be copied.
     #[error("make a block of samples: {0} acts step by step alone")]
@@ -136,9 +139,9 @@ impl Stepped {
         };
         let recorder = recording.start(&options).map_err(SetupError::Recorder)?;
         let tells = if unit.is_some() { Tells::ALL } else { endpoint.tells() };
-        let recorded = source.samples_planned().filter(|_| {
-            foreign_source || !scenario.source.is_plant_alone()
-        });
+        let recorded = source
+            .samples_planned()
+            .filter(|_| foreign_source || !scenario.source.is_plant_alone());
         let mut watcher = Watcher::new(Plan::of(scenario, method, &core, tells, recorded));
         watcher.trace = (!scenario.faults.is_empty()).then(Trace::new);
         let functions = Functions::new(parts.faults);
@@ -337,9 +340,7 @@ impl Endpoint for Answers<'_> {
             )));
         }
         *output = *answer;
-        if let Some((_, estimate)) =
-            self.estimates.pop_front_if(|(place, _)| *place == self.next)
-        {
+        if let Some((_, estimate)) = self.estimates.pop_front_if(|(place, _)| *place == self.next) {
             self.last = estimate;
         }
         self.next += 1;

@@ -97,7 +97,8 @@ fn connected(tcp: &Tcp) -> Result<TcpStream, String> {
     if address.port() == 0 {
         return Err("nobody listens at port 0, expected 1 to 65535".to_owned());
     }
-    let stream = TcpStream::connect_timeout(&address, CONNECT).map_err(|error| error.to_string())?;
+    let stream =
+        TcpStream::connect_timeout(&address, CONNECT).map_err(|error| error.to_string())?;
     set_up(&stream).map_err(|error| error.to_string())?;
     Ok(stream)
 }
