@@ -3,22 +3,22 @@
 import numpy as np
 import pytest
 
-matplotlib = pytest.importorskip("matplotlib")
-matplotlib.use("Agg")
-
 import octant
 from octant import plot
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
 
 
 def test_every_figure_of_a_run_is_drawn(quick):
     figures = plot.report(quick)
     assert {"position", "velocity", "attitude", "nis", "gimbals", "ground_track", "correlation"} <= set(figures)
+    assert "parameters.g_dependent" in figures
     for name, figure in figures.items():
         drawn = [line for axis in figure.axes for line in axis.lines if len(line.get_xdata()) > 10]
         images = [image for axis in figure.axes for image in axis.images]
         assert drawn or images, f"{name} is empty"
         figure.canvas.draw()
-        matplotlib.pyplot.close(figure)
 
 
 def test_the_drawn_errors_are_those_of_the_table(quick):

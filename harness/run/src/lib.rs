@@ -1,6 +1,6 @@
 //! A run: epochs driven from source to endpoint to recorder, observed on the way, then scored.
 //!
-//! [`drive`] has the loop, the only one over samples; [`realtime`] runs it by the clock,
+//! [`drive`] has the loop, the only one over samples; [`in_time`] runs it in simulated time, [`realtime`] by the clock,
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
@@ -20,6 +20,7 @@ pub mod faulted;
 pub mod findings;
 pub mod follow;
 pub mod host;
+pub mod in_time;
 mod interfere;
 pub mod method;
 pub mod minimise;
@@ -37,9 +38,10 @@ pub mod unit;
 pub mod watch;
 
 pub use assemble::{Run, assemble};
-pub use drive::{Ended, Line, RunError, drive_in_time};
+pub use drive::{Ended, Line, RunError};
 pub use faulted::Faulted;
 pub use host::RunHost;
+pub use in_time::drive_in_time;
 pub use interfere::Interferes;
 pub use method::{MethodRun, StreamKeeping, run_method};
 pub use prepared::{Prepared, PreparedError};

@@ -10,10 +10,11 @@
 //! steps with the unit's answers, and finds every sample that isn't the one that the unit got.
 
 use super::done::PlannedWork;
-use super::drive::{Books, Ended, InTime, RunError, Steps};
+use super::drive::{Books, Ended, RunError, Steps};
 use super::error::{MethodError, SetupError};
 use super::faulted::{Behind, Faulted};
 use super::host::RunHost;
+use super::in_time::InTime;
 use super::interfere::{Functions, Interfered, Interferes};
 use super::method::{self, MethodRun};
 use super::recording::StreamKeeping;

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -218,7 +219,8 @@ class Bench:
 def _bytes(records: np.ndarray, kind: np.dtype) -> bytes:
     array = np.asarray(records)
     if array.dtype != kind:
-        raise ValueError(f"found records of {array.dtype}, expected octant.{'OUTPUT' if kind is OUTPUT else 'ESTIMATE'}")
+        expected = "OUTPUT" if kind is OUTPUT else "ESTIMATE"
+        raise ValueError(f"found records of {array.dtype}, expected octant.{expected}")
     return np.ascontiguousarray(array).tobytes()
 
 

@@ -8,22 +8,23 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Callable, Mapping, Sequence, Union
+from typing import Any
 
 from . import _octant
 from ._folders import Campaign, PathLike, Run
 from ._octant import BenchError, InputError
 from ._scenario import Scenario, overrides, settings
 
-Progress = Union[bool, None, Callable[[int, Union[int, None]], None]]
+Progress = bool | None | Callable[[int, int | None], None]
 
 
 class _Bar:
     """A bar of tqdm, if it is installed."""
 
     def __init__(self, wanted: Progress, unit: str) -> None:
-        self._bar = None
+        self._bar: Any = None
         self._tell = wanted if callable(wanted) else None
         if wanted is True or (wanted is None and (sys.stderr.isatty() or "ipykernel" in sys.modules)):
             try:
@@ -150,10 +151,12 @@ def program() -> Path:
     if named:
         return Path(named)
     name = "octant.exe" if os.name == "nt" else "octant"
-    schemes = ["", "posix_user" if os.name == "posix" else "nt_user"]
-    for scheme in schemes:
-        folder = sysconfig.get_path("scripts", *([scheme] if scheme else []))
-        if folder and (Path(folder) / name).is_file():
+    user = f"{os.name}_user"
+    folders = [sysconfig.get_path("scripts")]
+    if user in sysconfig.get_scheme_names():
+        folders.append(sysconfig.get_path("scripts", user))
+    for folder in folders:
+        if (Path(folder) / name).is_file():
             return Path(folder) / name
     found = shutil.which(name)
     if found is None:

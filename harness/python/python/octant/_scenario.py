@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
-from typing import Any, Iterator, Mapping, MutableMapping, Union
+from typing import Any, Union
 
 from ._octant import InputError, check_scenario, json_to_toml, schema, toml_to_json
 
