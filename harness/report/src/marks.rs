@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 const MARKS_MAX: usize = 4000;
 
 /// A marker: start and end in hours of the run, and its label.
-type Mark = (f64, f64, String);
+type TimelineMark = (f64, f64, String);
 
 /// Renders the data block of the markers.
 pub(super) fn marks(data: &ReportData) -> Markup {
@@ -40,8 +40,8 @@ pub(super) fn marks(data: &ReportData) -> Markup {
 }
 
 /// Divides the run into moves of the gimbals and the stops between them.
-pub(super) fn phases(gimbals: &[GimbalPoint]) -> (Vec<Mark>, Vec<Mark>) {
-    let (mut moves, mut stops) = (Vec::<Mark>::new(), Vec::<Mark>::new());
+pub(super) fn phases(gimbals: &[GimbalPoint]) -> (Vec<TimelineMark>, Vec<TimelineMark>) {
+    let (mut moves, mut stops) = (Vec::<TimelineMark>::new(), Vec::<TimelineMark>::new());
     let Some(first) = gimbals.first() else { return (moves, stops) };
     let mut since = first.hours;
     for pair in gimbals.windows(2) {
@@ -67,7 +67,7 @@ pub(super) fn phases(gimbals: &[GimbalPoint]) -> (Vec<Mark>, Vec<Mark>) {
 }
 
 /// Times of the faults: from the twin where there is one, else from the first altered sample.
-fn faults(data: &ReportData) -> Vec<Mark> {
+fn faults(data: &ReportData) -> Vec<TimelineMark> {
     let twin = data.summary.counterfactual.as_ref();
     let mut marks = Vec::new();
     for fault in &data.summary.faults {

@@ -50,11 +50,20 @@ fn row(data: &ReportData, r: &RequirementResult) -> Markup {
             }
             td.n data-label="Value" { (significant(r.value, 4)) }
             td.n data-label="Limit" {
-                (super::run::sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
+                (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
                 @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) }
             }
             td.n data-label="Margin" { (significant(r.margin, 3)) }
             td.unit data-label="Unit" { (unit) }
         }
+    }
+}
+
+/// Sign of a comparison as it is printed.
+fn sign(sign: &str) -> &str {
+    match sign {
+        "<=" => "≤",
+        ">=" => "≥",
+        other => other,
     }
 }

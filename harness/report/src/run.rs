@@ -265,15 +265,6 @@ fn faults(summary: &Summary) -> Markup {
     }
 }
 
-/// Sign of a comparison as it is printed.
-pub(super) fn sign(sign: &str) -> &str {
-    match sign {
-        "<=" => "≤",
-        ">=" => "≥",
-        other => other,
-    }
-}
-
 fn events(data: &ReportData) -> Markup {
     const SHOWN: usize = 40;
     html! {

@@ -163,6 +163,8 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
     let mut chart =
         Chart::new(&format!("{name}, {of}"), "hours of navigation", &format!("{name}, arcmin"));
     (chart.width, chart.height) = (480.0, 200.0);
+    // The envelopes of all combinations share range and cursor.
+    chart.run_offset_h = Some(0.0);
     let [least, low, middle, high, greatest] = [0, 1, 2, 3, 4];
     let value = |curve: usize, k: usize| {
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)

@@ -90,7 +90,7 @@ function showRange() {
   const any = linked.plots.some((plot) => plot.view);
   const reset = document.querySelector(".bar .reset");
   if (reset) reset.disabled = !any;
-  if (text) text.textContent = linked.view ? `${hourText(linked.view[0], 1e-3)} to ${hourText(linked.view[1], 1e-3)} h of the run` : "";
+  if (text) text.textContent = linked.view ? `${hourText(linked.view[0], 1e-3)} to ${hourText(linked.view[1], 1e-3)} h` : "";
 }
 
 // Pointer: drag chooses a range, with Shift or by touch it moves the range; two fingers zoom.

@@ -5,7 +5,8 @@ function decodeColumn(text) {
   const raw = atob(text.replaceAll("~", "N"));
   const bytes = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; i += 1) bytes[i] = raw.charCodeAt(i);
-  return new Float32Array(bytes.buffer);
+  // Values beyond every number have no place in a drawing.
+  return new Float32Array(bytes.buffer).map((value) => (Number.isFinite(value) ? value : NaN));
 }
 
 // Index of the first element of a sorted column that isn't below a value.
