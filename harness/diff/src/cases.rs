@@ -136,6 +136,11 @@ fn settings_of(plan: &plan::Plan) -> toml::Table {
         for name in ["cases", "id", "campaign", "schema"] {
             parts.remove(name);
         }
+        // A scenario is named by its hash: the same file may stand elsewhere.
+        let scenarios = parts.get_mut("scenarios").and_then(serde_json::Value::as_array_mut);
+        for scenario in scenarios.into_iter().flatten() {
+            scenario.as_object_mut().map(|scenario| scenario.remove("file"));
+        }
     }
     match as_toml(&document) {
         Some(toml::Value::Table(table)) => table,

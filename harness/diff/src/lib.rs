@@ -69,9 +69,7 @@ pub fn runs(first: &DiffSide, second: &DiffSide) -> Result<RunDiff, DiffError> {
             notes.push(format!("{path} is truncated: it is compared up to its end"));
         }
     }
-    if stream.is_same_policy {
-        // Every recorded message has a partner.
-    } else {
+    if !stream.is_same_policy {
         notes.push(
             "the recordings keep different samples: those that both have are compared".to_owned(),
         );

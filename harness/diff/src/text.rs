@@ -40,7 +40,8 @@ pub fn of_runs(diff: &RunDiff) -> String {
     out.push('\n');
     settings(&mut out, &diff.settings);
     let seeds = diff.runs.each_ref().map(|about| about.seed);
-    if seeds[0] != seeds[1] {
+    // A resolved scenario names its seed; that of a run may come from the command line.
+    if seeds[0] != seeds[1] && !diff.settings.iter().any(|setting| setting.key == "seed") {
         let _ = writeln!(out, "  seed: {} | {}", optional(seeds[0]), optional(seeds[1]));
     }
     stream(&mut out, diff);

@@ -2,6 +2,7 @@
 
 use crate::common::epochs::{Step, push, stream};
 use crate::common::program::{ended, octant_in};
+use octant_campaign::table::{Kind, Table, Value as Cell};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use serde_json::Value;
 use std::path::Path;
@@ -100,4 +101,53 @@ fn bad_input_is_told() {
         let (_, error) = ended(octant_in(folder.path(), &["diff", first, "empty"]), 2);
         assert!(error.contains(told), "{error}");
     }
+}
+
+const SHORT: &str = "schema = 1\ntitle = \"short\"\n[imu]\nrate = \"50 Hz\"\n\
+    [procedure.calibration]\npositions = \"eight\"\nduration = \"40 min\"\n\
+    [procedure.navigation]\nduration = \"10 min\"\n";
+
+const CAMPAIGN: &str = "schema = 1\ntitle = \"both\"\nreplicates = 2\n\
+    [[scenarios]]\nid = \"short\"\nfile = \"short.toml\"\n\
+    [[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nvalues = [\"60 deg\", \"1800 arcmin\"]\n";
+
+#[test]
+fn campaigns_are_compared_over_their_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("a.toml"), CAMPAIGN).unwrap();
+    let ran = |name: &str, scenario: &str| {
+        std::fs::write(at("short.toml"), scenario).unwrap();
+        for words in [
+            &["campaign", "plan", "a.toml", "--out", name][..],
+            &["campaign", "run", name],
+            &["campaign", "merge", name],
+        ] {
+            let output = octant_in(folder.path(), words);
+            let error = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(matches!(output.status.code(), Some(0 | 3)), "{words:?}: {error}");
+        }
+    };
+    ran("a", SHORT);
+    ran("b", &SHORT.replace("40 min", "41 min"));
+    // The factor is a number in the unit of its first value, which the column's metadata names.
+    let table = Table::open(&at("a/cases.parquet")).unwrap();
+    assert!(table.columns.contains(&("factor.latitude".to_owned(), Kind::Number)));
+    assert_eq!(table.units["factor.latitude"], "deg");
+    let latitudes = table.column("factor.latitude").unwrap().unwrap();
+    let latitudes: Vec<_> = (0..4).map(|row| latitudes.at(row).unwrap()).collect();
+    assert!(latitudes.contains(&Cell::Number(60.0)), "{latitudes:?}");
+    let is_thirty = |cell: &Cell| matches!(cell, Cell::Number(x) if (x - 30.0).abs() < 1e-12);
+    assert!(latitudes.iter().any(is_thirty), "{latitudes:?}");
+
+    assert!(diff(folder.path(), &["a", "a"], 0).ends_with("\nequal\n"));
+    let words = ["a", "b", "--json", "--out", "diff.html"];
+    let found: Value = serde_json::from_str(&diff(folder.path(), &words, 1)).unwrap();
+    assert_eq!(found["settings"][0]["key"], "scenarios[short].blake3");
+    assert_eq!(found["comparison"]["pairings"][0]["pairs"], 4);
+    assert_eq!(found["streams"]["differing"], 4);
+    assert!(std::fs::read_to_string(at("diff.html")).unwrap().contains("<svg"));
+    std::fs::write(at("run.mcap"), "").unwrap();
+    let (_, error) = ended(octant_in(folder.path(), &["diff", "a", "run.mcap"]), 2);
+    assert!(error.contains("a is a campaign and run.mcap isn't"), "{error}");
 }
