@@ -11,6 +11,10 @@ use std::path::{Path, PathBuf};
 /// Version of the exported files' layout: tables, names of columns and their units.
 pub const EXPORT_VERSION: u32 = 1;
 
+/// Takes a row of the table with an index.
+pub(crate) type TakesIndexedRow<'a> =
+    dyn FnMut(usize, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+
 /// One export.
 pub(crate) struct Job<'a> {
     pub(crate) choice: &'a ExportChoice,
@@ -40,10 +44,7 @@ impl<'a> Job<'a> {
 
     /// Passes on the rows of the surveyed tables with the table's index. A recording that has grown since the survey
     /// gives no more rows than were counted.
-    pub(crate) fn rows(
-        &self,
-        take: &mut dyn FnMut(usize, &[ExportCell]) -> Result<(), ExportFailure>,
-    ) -> Result<(), ExportFailure> {
+    pub(crate) fn rows(&self, take: &mut TakesIndexedRow<'_>) -> Result<(), ExportFailure> {
         let mut given = vec![0u64; self.survey.tables.len()];
         each_row(self.choice, &mut |table, cells| {
             let found = self.survey.tables.iter().position(|known| known.table == table);

@@ -54,7 +54,7 @@ struct Epoch {
 /// If the recording can't be read, or `take` refuses a row.
 pub fn each_row(
     choice: &ExportChoice,
-    take: &mut dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure>,
+    take: &mut TakesRow<'_>,
 ) -> Result<ReadToEnd, ExportFailure> {
     let mut rows = Rows {
         grids: choice.tables.iter().map(|table| (*table, grid(*table, choice))).collect(),
@@ -116,11 +116,14 @@ fn grid(table: ExportTable, choice: &ExportChoice) -> Grid {
     Grid::new(choice.every_ns.filter(|_| table.is_resampled()))
 }
 
+/// Takes a row of a table.
+type TakesRow<'a> = dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+
 struct Rows<'a> {
     grids: BTreeMap<ExportTable, Grid>,
     true_parameters: Option<&'a [f64; PARAMETER_COUNT]>,
     cells: Vec<ExportCell>,
-    take: &'a mut dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure>,
+    take: &'a mut TakesRow<'a>,
 }
 
 impl Rows<'_> {

@@ -2,7 +2,7 @@
 
 use crate::common::epochs::{Step, push, stream};
 use crate::common::program::{ended, octant_in};
-use octant_campaign::table::{Kind, Table, Value as Cell};
+use octant_campaign::table::{ColumnKind, ColumnValue as Cell, ExistingTable};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use serde_json::Value;
 use std::path::Path;
@@ -131,8 +131,8 @@ fn campaigns_are_compared_over_their_pairs() {
     ran("a", SHORT);
     ran("b", &SHORT.replace("40 min", "41 min"));
     // The factor is a number in the unit of its first value, which the column's metadata names.
-    let table = Table::open(&at("a/cases.parquet")).unwrap();
-    assert!(table.columns.contains(&("factor.latitude".to_owned(), Kind::Number)));
+    let table = ExistingTable::open(&at("a/cases.parquet")).unwrap();
+    assert!(table.columns.contains(&("factor.latitude".to_owned(), ColumnKind::Number)));
     assert_eq!(table.units["factor.latitude"], "deg");
     let latitudes = table.column("factor.latitude").unwrap().unwrap();
     let latitudes: Vec<_> = (0..4).map(|row| latitudes.at(row).unwrap()).collect();

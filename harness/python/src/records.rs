@@ -68,7 +68,7 @@ fn each<'a>(
     size: usize,
     what: &str,
 ) -> PyResult<impl Iterator<Item = Fields<'a>>> {
-    if bytes.len() % size != 0 {
+    if !bytes.len().is_multiple_of(size) {
         let found = bytes.len();
         return Err(argument(format!("{what}: found {found} bytes, expected records of {size}")));
     }
