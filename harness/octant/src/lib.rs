@@ -5,8 +5,10 @@
 
 mod arguments;
 mod campaign;
+mod case_progress;
 mod commands;
 mod compare;
+mod completions;
 mod doctor;
 mod evidenced;
 mod failure;
@@ -16,8 +18,10 @@ mod fault_words;
 mod faults;
 mod fmu;
 mod followed;
+mod grades;
 mod live;
 mod minimise;
+mod new;
 mod nightly;
 mod observe;
 mod progress;

@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The recording, an MCAP file of a run.
-    #[arg(value_name = "RECORDING")]
-    recording: PathBuf,
+    /// Folder of a run, or a recording, an MCAP file.
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -65,7 +65,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = &arguments.recording;
+    let path = &crate::run_folder::recording_of(&arguments.run)?;
     let (scenario, method, seed) = scenario_of(path)?;
     let (watcher, last_event) = super::report::watch(path, &scenario)?;
     let navigation = match watcher.drift() {
