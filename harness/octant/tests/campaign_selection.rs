@@ -34,7 +34,7 @@ fn planned() -> TempDir {
 /// Runs `octant campaign`, which has to end with this status; returns what it prints.
 #[track_caller]
 fn campaign_of(folder: &Path, arguments: &[&str], status: i32) -> String {
-    let arguments = [&["campaign"], arguments].concat();
+    let arguments = [&["campaign"][..], arguments].concat();
     ended(octant_in(folder, &arguments), status).0
 }
 

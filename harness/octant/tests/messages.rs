@@ -32,7 +32,7 @@ fn an_unknown_fault_is_told_with_what_there_is() {
 #[test]
 fn a_seed_is_told_with_its_limits() {
     for seed in [&["--seed", "-1"][..], &["--seed=-1"], &["--seed", "x"], &["--seed", "1e30"]] {
-        let said = said(&[("s.toml", SCENARIO)], &[&["run", "s.toml"], seed].concat());
+        let said = said(&[("s.toml", SCENARIO)], &[&["run", "s.toml"][..], seed].concat());
         let expected = "for '--seed <N>': expected a whole number from 0 to 9223372036854775807";
         assert!(said.contains(expected), "{said}");
         assert!(said.starts_with("error: invalid value"), "{said}");
@@ -60,7 +60,7 @@ fn a_file_of_another_format_is_told_with_its_command() {
 fn a_probability_belongs_to_a_campaign() {
     let requirement = "[[requirements]]\nid = \"A\"\ntext = \"t\"\npass = \"95 %\"\nlimit = \"1 nmi\"\n\
                        measure = \"navigation.radial_error_nmi.max\"\n";
-    let said = said(&[("s.toml", &format!("{SCENARIO}{requirement}"))], &["run", "s.toml"]);
+    let said = said(&[("s.toml", format!("{SCENARIO}{requirement}").as_str())], &["run", "s.toml"]);
     assert!(
         said.contains("s.toml:7:8: requirements[0].pass: one run shows no probability"),
         "{said}"
@@ -71,7 +71,7 @@ fn a_probability_belongs_to_a_campaign() {
 #[test]
 fn a_second_method_on_a_device_is_told_with_the_ways_out() {
     let device = "[endpoint]\nuri = \"udp:127.0.0.1:5999\"\n[baseline]\npositions = \"six\"\n";
-    let said = said(&[("s.toml", &format!("{SCENARIO}{device}"))], &["run", "s.toml"]);
+    let said = said(&[("s.toml", format!("{SCENARIO}{device}").as_str())], &["run", "s.toml"]);
     assert!(said.contains("on the device at udp:127.0.0.1:5999, which has one core"), "{said}");
     assert!(said.contains("write endpoint.uri = \"in-process\", or remove [baseline]"), "{said}");
 }
@@ -79,7 +79,7 @@ fn a_second_method_on_a_device_is_told_with_the_ways_out() {
 #[test]
 fn a_limit_of_microseconds_is_told_with_an_example_of_its_size() {
     let text = format!("{SCENARIO}[realtime]\nlateness_p99 = 5\n");
-    let said = said(&[("s.toml", &text)], &["run", "s.toml"]);
+    let said = said(&[("s.toml", text.as_str())], &["run", "s.toml"]);
     assert_eq!(
         said,
         "error: s.toml:5:16: realtime.lateness_p99: found the bare number 5, expected a time such as \

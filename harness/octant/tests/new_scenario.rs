@@ -7,7 +7,7 @@ use octant_scenario::Scenario;
 fn a_new_scenario_is_valid_and_needs_force_to_be_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let new = |more: &[&str], status: i32| {
-        ended(octant_in(folder.path(), &[&["new", "bench.toml"], more].concat()), status)
+        ended(octant_in(folder.path(), &[&["new", "bench.toml"][..], more].concat()), status)
     };
     let (said, _) = new(&["--instrument", "tactical-mems", "--limit", "300 nmi"], 0);
     assert_eq!(said, "bench.toml\nnext: octant observe bench.toml\nnext: octant run bench.toml\n");
