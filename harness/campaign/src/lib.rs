@@ -24,6 +24,7 @@ pub mod reexecute;
 pub mod report;
 pub mod requirements;
 pub mod results;
+pub mod selection;
 mod shard;
 pub mod status;
 pub mod stop;

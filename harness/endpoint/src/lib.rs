@@ -180,8 +180,9 @@ pub enum EndpointOpenError {
     Load(#[from] octant_link::load::LoadError),
     /// A second method was requested of a device, which has one core with one configuration.
     #[error(
-        "set the core at {uri} to the second method of the scenario's [baseline]: only Octant's own core \
-         takes one"
+        "run the scenario's [baseline] on the device at {uri}, which has one core with one configuration: \
+         write endpoint.uri = \"in-process\", or remove [baseline] and give the second method a scenario of \
+         its own"
     )]
     OneMethod {
         /// The port.

@@ -117,7 +117,7 @@ fn grid(table: ExportTable, choice: &ExportChoice) -> Grid {
 }
 
 /// Takes a row of a table.
-type TakesRow<'a> = dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+pub type TakesRow<'a> = dyn FnMut(ExportTable, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
 
 struct Rows<'a> {
     grids: BTreeMap<ExportTable, Grid>,

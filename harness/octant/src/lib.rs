@@ -5,8 +5,10 @@
 
 mod arguments;
 mod campaign;
+mod case_progress;
 mod commands;
 mod compare;
+mod completions;
 mod diff;
 mod doctor;
 pub mod embedded;
@@ -19,8 +21,10 @@ mod fault_words;
 mod faults;
 mod fmu;
 mod followed;
+mod grades;
 mod live;
 mod minimise;
+mod new;
 mod nightly;
 mod observe;
 mod progress;

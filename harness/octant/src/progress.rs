@@ -1,5 +1,6 @@
 //! Progress on a terminal: simulated time, speed and time left. Silent elsewhere.
 
+use crate::case_progress::duration;
 use crate::progress_bar::ProgressBar;
 use octant_base::control::Control;
 use octant_base::interrupt;
@@ -89,9 +90,9 @@ fn show(
         let wall_s = started.elapsed().as_secs_f64();
         let simulated_s = passed as f64 * sample_s;
         let left = match epochs {
-            Some(epochs) if passed > 0 => {
-                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0).max(0.0);
-                format!(", {left_s:.0} s left")
+            Some(epochs) if (1..epochs).contains(&passed) => {
+                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0);
+                format!(", {} left", duration(left_s))
             }
             _ => String::new(),
         };

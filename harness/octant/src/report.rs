@@ -35,7 +35,7 @@ const TABLE: &str = "calibration.octcal";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder of a run.
+    /// Folder of a run, or its recording.
     #[arg(value_name = "RUN")]
     run: PathBuf,
     /// File for the report; by default report.html in the current folder, because the manifest of
@@ -53,19 +53,20 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if !arguments.run.join(MANIFEST).exists() {
-        let run = arguments.run.display();
+    let folder = crate::run_folder::folder_of(&arguments.run);
+    if !folder.join(MANIFEST).exists() {
+        let run = folder.display();
         return Err(Failure::input(format!(
             "found no {MANIFEST} in {run}, expected the folder of a run"
         )));
     }
     // Only files that the manifest confirms are shown: the summary, the scenario and the recording
     // must be those of the run.
-    let manifest = Manifest::read(&arguments.run)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let manifest =
+        Manifest::read(folder).map_err(|error| Failure::input(format!("failed to {error}")))?;
     let failed = |error: ManifestError| Failure::input(error).failed();
-    let path = arguments.run.join(SUMMARY);
-    let bytes = manifest.read_file(&arguments.run, SUMMARY).map_err(failed)?;
+    let path = folder.join(SUMMARY);
+    let bytes = manifest.read_file(folder, SUMMARY).map_err(failed)?;
     let wrong =
         |reason: String| Failure::input(format!("failed to read {}: {reason}", path.display()));
     let text = String::from_utf8(bytes).map_err(|_| wrong("it isn't UTF-8 text".to_owned()))?;
@@ -79,18 +80,18 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         note!("octant: {}: {told}; octant rejudge derives the verdict again", path.display());
     }
     for name in ["scenario.toml", "recording.mcap"] {
-        manifest.check_file(&arguments.run, name).map_err(failed)?;
+        manifest.check_file(folder, name).map_err(failed)?;
     }
-    let scenario_path = arguments.run.join("scenario.toml");
+    let scenario_path = folder.join("scenario.toml");
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
     let dispositions = match &arguments.dispositions {
         None => Dispositions::default(),
-        Some(path) => disposed(&summary, path, &arguments.run)?,
+        Some(path) => disposed(&summary, path, folder)?,
     };
-    let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
-    let baseline = arguments.run.join(BASELINE);
+    let (watcher, _) = watch(&folder.join("recording.mcap"), &scenario)?;
+    let baseline = folder.join(BASELINE);
     let baseline_solution = if baseline.exists() {
-        manifest.check_file(&arguments.run, BASELINE).map_err(failed)?;
+        manifest.check_file(folder, BASELINE).map_err(failed)?;
         watch(&baseline, &scenario)?.0.solution
     } else {
         SolutionSeries::default()
@@ -104,7 +105,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         baseline_solution,
         latitude_rad: Some(scenario.site.latitude_rad),
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
-        covariance: covariance(&manifest, &arguments.run)?,
+        covariance: covariance(&manifest, folder)?,
         requirement_texts: octant_run::assemble::requirement_texts(&scenario),
         convergence: watcher.convergence,
         nis: watcher.nis,

@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     #[arg(long, requires = "out")]
     force: bool,
     /// Seed of all random draws, instead of the scenario's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Source of the samples, instead of the scenario's source.uri.
     #[arg(long, value_name = "URI")]

@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The recording, an MCAP file of a run.
-    #[arg(value_name = "RECORDING")]
-    recording: PathBuf,
+    /// Folder of a run, or a recording, an MCAP file.
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
     /// Units of errors on the terminal, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
     /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
     #[arg(long, value_name = "UNIT,UNIT")]
@@ -70,7 +70,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = &arguments.recording;
+    let path = &crate::run_folder::recording_of(&arguments.run)?;
     let (scenario, method, seed) = scenario_of(path)?;
     let (watcher, last_event) = super::report::watch(path, &scenario)?;
     let navigation = match watcher.drift() {

@@ -8,10 +8,12 @@ mod common;
 mod architecture;
 mod campaign;
 mod campaign_report;
+mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
 mod chain;
 mod compare_refused;
+mod completions;
 mod core_arbitrary;
 mod core_behaviour;
 mod core_consistency;
@@ -55,6 +57,8 @@ mod hostile;
 #[cfg(unix)]
 mod live;
 mod master;
+mod messages;
+mod new_scenario;
 mod nightly;
 mod qualification;
 mod real_recording;

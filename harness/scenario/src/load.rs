@@ -4,7 +4,7 @@ use super::arguments::{fire, override_set};
 use super::complete::complete;
 use super::error::{Place, ScenarioError};
 use super::model::Scenario;
-use super::{derive, document, keys, read};
+use super::{derive, document, keys, other_format, read};
 use std::path::Path;
 
 impl Scenario {
@@ -58,6 +58,7 @@ impl Scenario {
         overrides: &[String],
         fires: &[String],
     ) -> Result<Self, ScenarioError> {
+        other_format::refuse(text, file, "a scenario")?;
         let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
         let mut document = document::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();

@@ -273,8 +273,17 @@ keys! {
             "How the measure is compared with the limit.";
         clause: Option<String> = text(), absent("none"),
             "Where the requirement comes from: document and clause.";
+        #[expect(dead_code, reason = "it is always refused")]
+        pass: Option<String> = Of::<String>::kind(Kind::Refused(ONE_RUN)), absent("none"), ONE_RUN;
+        #[expect(dead_code, reason = "it is always refused")]
+        confidence: Option<String>
+            = Of::<String>::kind(Kind::Refused(ONE_RUN)), absent("none"), ONE_RUN;
     }
 }
+
+/// Reason why a scenario takes no probability.
+const ONE_RUN: &str = "one run shows no probability: write pass and confidence with the requirement in \
+                       the file that a campaign names (requirements = \"requirements.toml\")";
 
 keys! {
     /// `[record]`.
@@ -299,22 +308,23 @@ keys! {
                 "clock" => true, "a sample leaves when its time has come; `octant run --realtime`";
             }, "free",
             "What a run goes by. What is computed is the same.";
-        overrun: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 ms",
+        overrun: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), "1 ms",
             "A sample that leaves later than this is an overrun.";
         overruns: u64 = integer(0, i64::MAX), "0",
             "Overruns that are allowed; beyond, the run is inconclusive.";
-        lateness_p99: Option<f64> = si(&[UnitDimension::TIME], Bounds::Positive), absent("no limit"),
+        lateness_p99: Option<f64>
+            = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), absent("no limit"),
             "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.";
         late_answers: u64 = integer(0, i64::MAX), "0",
             "Periods that may end without their answer; beyond, the run is inconclusive.";
-        silence: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 s",
+        silence: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), "1 s",
             "An endpoint that owes an answer for longer is gone, which ends the run.";
         priority: u8 = integer(0, 99), "80",
             "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.";
         cpu: Option<u16> = integer::<u16>(0, 1023), absent("any"),
             "The only processor that the thread of the samples runs on.";
         lock_memory: bool = boolean(), "true", "All memory of the program stays in place.";
-        spin: f64 = si(&[UnitDimension::TIME], Bounds::NotNegative), "0 s",
+        spin: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::NotNegative), "0 s",
             "The last part of each wait that is spent looking at the clock, where a real-time priority \
          was granted.";
     }

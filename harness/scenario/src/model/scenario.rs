@@ -141,15 +141,20 @@ pub struct Realtime {
 
 /// Error of an id that no fault of a scenario has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "no fault has the id {id:?}, {}",
-    suggestion(.id, .known.iter().map(String::as_str), "its faults")
-)]
+#[error("no fault has the id {id:?}{}", known_faults(.id, .known))]
 pub struct UnknownFault {
     /// The id.
     pub id: String,
     /// Ids of the scenario's faults.
     pub known: Vec<String>,
+}
+
+/// Ids to write instead of an unknown one, as the end of a message.
+fn known_faults(id: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return ": the scenario has no [[faults]]".to_owned();
+    }
+    format!(", {}", suggestion(id, known.iter().map(String::as_str), "its faults"))
 }
 
 impl Scenario {

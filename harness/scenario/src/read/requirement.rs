@@ -26,7 +26,7 @@ const SUFFIXES: [(&str, &str); 9] = [
 
 pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
     let mut all: Vec<RequirementSpec> = Vec::new();
-    for RequirementKeys { id, text, measure, limit, comparison, clause } in keys {
+    for RequirementKeys { id, text, measure, limit, comparison, clause, .. } in keys {
         if id.trim().is_empty() {
             return Err(id.problem("found an empty text, expected an identifier"));
         }
