@@ -77,7 +77,7 @@ pub struct UnitChoice {
 
 /// A list of units that can't be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum UnitError {
+pub enum DisplayUnitError {
     /// No quantity has the unit.
     #[error("found {found:?}, {}", suggestion(found, names(), "expected some of"))]
     Unknown {
@@ -102,20 +102,20 @@ fn names() -> impl Iterator<Item = &'static str> + Clone {
 }
 
 impl std::str::FromStr for UnitChoice {
-    type Err = UnitError;
+    type Err = DisplayUnitError;
 
     /// Reads a list such as `nmi,deg,kn`. `arcmin` is a unit of position and of attitude: it is that of
     /// each of them for which the list has no other.
-    fn from_str(text: &str) -> Result<Self, UnitError> {
+    fn from_str(text: &str) -> Result<Self, DisplayUnitError> {
         fn put<T: Copy>(
             slot: &mut Option<T>,
             unit: T,
             found: &str,
             quantity: &'static str,
-        ) -> Result<(), UnitError> {
+        ) -> Result<(), DisplayUnitError> {
             match slot.replace(unit) {
                 None => Ok(()),
-                Some(_) => Err(UnitError::Twice { found: found.to_owned(), quantity }),
+                Some(_) => Err(DisplayUnitError::Twice { found: found.to_owned(), quantity }),
             }
         }
         fn of<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
@@ -132,7 +132,7 @@ impl std::str::FromStr for UnitChoice {
             } else if let Some(unit) = of(&VELOCITY, name) {
                 put(&mut choice.velocity, unit, name, "velocity")?;
             } else {
-                return Err(UnitError::Unknown { found: name.to_owned() });
+                return Err(DisplayUnitError::Unknown { found: name.to_owned() });
             }
         }
         if arcmin {

@@ -177,7 +177,7 @@ impl Found {
         {
             self.diff.first = Some(FirstDiff {
                 channel: topic.name(),
-                time_s: time_ns as f64 * 1e-9,
+                time_s: time_ns as f64 / 1e9,
                 field,
                 first: a,
                 second: b,
@@ -194,7 +194,7 @@ impl Found {
             let words = |is_there: bool| if is_there { "recorded" } else { "missing" }.to_owned();
             self.diff.first = Some(FirstDiff {
                 channel: topic.name(),
-                time_s: time_ns as f64 * 1e-9,
+                time_s: time_ns as f64 / 1e9,
                 field: "message".to_owned(),
                 first: words(is_first),
                 second: words(!is_first),

@@ -77,7 +77,7 @@ impl<'a> Job<'a> {
                 "run": self.info.run,
                 "truncated": self.survey.end.is_truncated,
             },
-            "every_s": self.choice.every_ns.map(|period_ns| period_ns as f64 * 1e-9),
+            "every_s": self.choice.every_ns.map(|period_ns| period_ns as f64 / 1e9),
             "tables": tables.collect::<Vec<_>>(),
         })
     }

@@ -112,7 +112,7 @@ fn interval_s(path: &Path) -> Result<Option<f64>, ExportFailure> {
         let numbers = sample.sequence.checked_sub(first.sequence).filter(|n| *n > 0);
         let time_ns = sample.device_time.ns.checked_sub(first.device_time.ns).filter(|t| *t > 0);
         if let Some((numbers, time_ns)) = numbers.zip(time_ns) {
-            return Ok(Some(time_ns as f64 * 1e-9 / numbers as f64));
+            return Ok(Some(time_ns as f64 / 1e9 / numbers as f64));
         }
     }
     Ok(None)

@@ -133,7 +133,7 @@ impl Rows<'_> {
             return false;
         }
         self.cells.clear();
-        self.cells.push((time_ns as f64 * 1e-9).into());
+        self.cells.push((time_ns as f64 / 1e9).into());
         true
     }
 
@@ -181,7 +181,7 @@ impl Rows<'_> {
     fn sample(&mut self, sample: Option<&Sample>) {
         let Some(sample) = sample else { return self.empty(11) };
         self.put(sample.sequence);
-        self.put(sample.device_time.ns as f64 * 1e-9);
+        self.put(sample.device_time.ns as f64 / 1e9);
         self.numbers(&sample.delta_theta.map(|count| f64::from(count) * DELTA_THETA_LSB_RAD));
         self.numbers(&sample.delta_velocity.map(|count| f64::from(count) * DELTA_VELOCITY_LSB_MPS));
         self.gimbals(Some(sample.gimbal));

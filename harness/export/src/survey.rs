@@ -79,7 +79,7 @@ impl Survey {
         if self.end.is_truncated {
             notes.push(format!(
                 "the recording is truncated after {:.3} s; the part before that is exported",
-                self.end.last_ns as f64 * 1e-9
+                self.end.last_ns as f64 / 1e9
             ));
         }
         for table in &self.tables {

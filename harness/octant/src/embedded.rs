@@ -2,13 +2,13 @@
 //!
 //! A run is the one of `octant run`, with the same folder of evidence; only the terminal is left out.
 
-pub use crate::evidenced::{Evidence, Request};
+pub use crate::evidenced::{Evidence, RunRequest};
 pub use crate::failure::Failure;
 
 use crate::evidenced::{Asked, Begun, evidence};
 use crate::progress::Follower;
 use octant_base::control::Control;
-use octant_run::{Parts, Stepped, StreamKeeping};
+use octant_run::{Parts, SteppedRun, StreamKeeping};
 use octant_scenario::{Method, Scenario};
 
 /// Names the build in the manifests that this process writes.
@@ -22,7 +22,7 @@ pub fn say_build() {
 /// # Errors
 /// If the request is refused, or the bench fails.
 pub fn run(
-    request: &Request,
+    request: &RunRequest,
     look: &(dyn Fn(&[Control], Option<u64>) + Sync),
 ) -> Result<Evidence, Failure> {
     evidence(request, &Follower::Host(look))
@@ -32,18 +32,18 @@ pub fn run(
 ///
 /// # Errors
 /// If it is refused.
-pub fn scenario(request: &Request) -> Result<Scenario, Failure> {
+pub fn scenario(request: &RunRequest) -> Result<Scenario, Failure> {
     Ok(Asked::of(request)?.scenario)
 }
 
 /// A run of one method that another program steps.
 #[derive(Debug)]
 pub struct Bench {
-    request: Request,
+    request: RunRequest,
     asked: Asked,
     begun: Begun,
     /// The run between two steps.
-    pub stepped: Stepped,
+    pub stepped: SteppedRun,
 }
 
 impl Bench {
@@ -51,7 +51,7 @@ impl Bench {
     ///
     /// # Errors
     /// If the request is refused, or the run can't be set up.
-    pub fn new(request: Request, parts: Parts) -> Result<Self, Failure> {
+    pub fn new(request: RunRequest, parts: Parts) -> Result<Self, Failure> {
         let asked = Asked::of(&request)?;
         if asked.scenario.realtime.by_clock {
             return Err(Failure::input(
@@ -61,7 +61,7 @@ impl Bench {
         let begun = asked.begin(&request, 1)?;
         let path = begun.folder.path().join("recording.mcap");
         let file = StreamKeeping::File(&path);
-        let stepped = Stepped::new(&asked.scenario, Method::Primary, asked.seed, file, parts)
+        let stepped = SteppedRun::new(&asked.scenario, Method::Primary, asked.seed, file, parts)
             .map_err(|error| {
                 // Nothing was run: a folder without a run is in nobody's way.
                 let _ = std::fs::remove_dir_all(begun.folder.path());

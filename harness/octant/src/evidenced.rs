@@ -24,7 +24,7 @@ use std::time::SystemTime;
 
 /// Request for a run of a scenario.
 #[derive(Clone, Debug, Default)]
-pub struct Request {
+pub struct RunRequest {
     /// File of the scenario.
     pub scenario: PathBuf,
     /// Text of the scenario, in place of the file's content.
@@ -79,7 +79,7 @@ pub struct Evidence {
 }
 
 /// Runs a scenario, writes its evidence, and prints the results.
-pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
+pub(crate) fn run(request: &RunRequest) -> Result<Verdict, Failure> {
     let evidence = evidence(request, &Follower::Terminal)?;
     if !evidence.broken.is_empty() {
         // With --json stdout is for programs, and the folder of a failed job may be gone.
@@ -98,7 +98,7 @@ pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
 }
 
 /// Runs a scenario and writes its evidence.
-pub(crate) fn evidence(request: &Request, follower: &Follower<'_>) -> Result<Evidence, Failure> {
+pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<Evidence, Failure> {
     let asked = Asked::of(request)?;
     let (scenario, seed) = (&asked.scenario, asked.seed);
     // Contradictions, and sources that can't be opened, are reported before anything is written. A
@@ -142,7 +142,7 @@ pub(crate) struct Begun {
 
 impl Asked {
     /// Reads the scenario of a request.
-    pub(crate) fn of(request: &Request) -> Result<Self, Failure> {
+    pub(crate) fn of(request: &RunRequest) -> Result<Self, Failure> {
         let mut more = Vec::new();
         if let Some(uri) = &request.source {
             more.push(format!("source.uri={}", from_here(uri)?));
@@ -181,7 +181,7 @@ impl Asked {
     }
 
     /// Makes the folder of the run, with the resolved scenario in it.
-    pub(crate) fn begin(&self, request: &Request, tasks: usize) -> Result<Begun, Failure> {
+    pub(crate) fn begin(&self, request: &RunRequest, tasks: usize) -> Result<Begun, Failure> {
         let fmus = fmus(&self.scenario, tasks)?;
         let inputs = octant_evidence::inputs(&self.scenario)
             .map_err(|error| Failure::input(format!("failed to {error}")))?;
@@ -204,7 +204,7 @@ impl Asked {
     /// Writes the evidence of runs that have ended.
     pub(crate) fn conclude(
         self,
-        request: &Request,
+        request: &RunRequest,
         begun: Begun,
         runs: Vec<MethodRun>,
     ) -> Result<Evidence, Failure> {
@@ -350,7 +350,7 @@ fn write_results(
 }
 
 /// Returns the command line that makes the run again, with the seed that was used.
-fn rerun(request: &Request, seed: u64) -> Vec<String> {
+fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
     if let Some(call) = &request.call {
         return call.clone();
     }
@@ -398,13 +398,13 @@ pub(crate) fn on_recording(
     let recording = std::path::absolute(recording).map_err(|error| {
         Failure::input(format!("failed to find {}: {error}", recording.display()))
     })?;
-    run(&Request {
+    run(&RunRequest {
         scenario: scenario.to_owned(),
         set: set.to_vec(),
         out: out.map(Path::to_owned),
         source: Some(format!("{kind}:{}", recording.display())),
         json,
-        ..Request::default()
+        ..RunRequest::default()
     })
 }
 
@@ -414,7 +414,7 @@ pub(crate) fn case(
     case: &octant_campaign::plan::Case,
     out: &Path,
 ) -> Result<Verdict, Failure> {
-    run(&Request {
+    run(&RunRequest {
         scenario: scenario.to_owned(),
         set: case.set.clone(),
         out: Some(out.to_owned()),
@@ -422,7 +422,7 @@ pub(crate) fn case(
         only_faults: case.faults.clone(),
         planned_faults: true,
         require: true,
-        ..Request::default()
+        ..RunRequest::default()
     })
 }
 

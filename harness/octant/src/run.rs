@@ -1,6 +1,6 @@
 //! `octant run`.
 
-use super::evidenced::{self, Request};
+use super::evidenced::{self, RunRequest};
 use super::run_folder::{free_name, in_the_way};
 use crate::arguments::ScenarioArguments;
 use crate::failure::Failure;
@@ -79,9 +79,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 impl Arguments {
-    fn request(&self) -> Request {
+    fn request(&self) -> RunRequest {
         let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
-        Request {
+        RunRequest {
             scenario: self.scenario.scenario.clone(),
             text: None,
             set: [self.scenario.set.clone(), chosen].concat(),

@@ -77,8 +77,8 @@ fn recordings_of_other_policies_are_compared_where_both_have_messages() {
     let text = diff(folder.path(), &["full.mcap", "few.mcap"], 0);
     assert!(text.contains("keep different samples"), "{text}");
     steps[399].faulted.sample.delta_theta[0] += 1;
-    record(&folder.path().join("few.mcap"), SCENARIO, Samples::Decimated, &steps);
-    let text = diff(folder.path(), &["full.mcap", "few.mcap"], 1);
+    record(&folder.path().join("other.mcap"), SCENARIO, Samples::Decimated, &steps);
+    let text = diff(folder.path(), &["full.mcap", "other.mcap"], 1);
     assert!(text.contains("/imu at 2 s, delta_theta[0]"), "{text}");
 }
 

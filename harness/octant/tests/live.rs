@@ -141,13 +141,14 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
 #[test]
 fn a_program_that_ends_or_is_not_there_ends_the_run() {
     let bench = Bench::new(SHORT);
-    for (device, reason) in [
+    let tried = [
         ("exec:true", "the program ended: exit status: 0"),
         ("exec:./no-such-program --fast", "expected a program"),
         ("stdio:", "expected exec:"),
         ("tcp:127.0.0.1:1", "refused"),
-    ] {
-        let output = bench.run(&bench.scenario, "gone", &["--endpoint", device]);
+    ];
+    for (i, (device, reason)) in tried.into_iter().enumerate() {
+        let output = bench.run(&bench.scenario, &format!("gone-{i}"), &["--endpoint", device]);
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(said.contains(reason), "{device}: {said}");
         let expected = if device == "stdio:" { 2 } else { 4 };
@@ -310,7 +311,7 @@ fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     let output = bench.run(Path::new(quick), "quick", &["--endpoint", &served.uri]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("the second method of the scenario's [baseline]"), "{said}");
+    assert!(said.contains("[baseline] on the device"), "{said}");
     assert!(!bench.folder.path().join("quick.partial").exists(), "nothing was begun");
     let nobody = ["--endpoint", "udp:127.0.0.1:9", "--set", "endpoint.link.hello=300 ms"];
     let output = bench.run(&bench.scenario, "nobody", &nobody);

@@ -1,7 +1,7 @@
 //! Runs and scenarios, as Python asks for them.
 
 use crate::failure::{argument, failed};
-use octant::embedded::{self, Evidence, Failure, Request};
+use octant::embedded::{self, Evidence, Failure, RunRequest};
 use octant_base::control::Control;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -14,8 +14,8 @@ use std::time::Duration;
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Makes a request of the settings in a dictionary. Unknown settings are refused.
-pub(crate) fn request(settings: &Bound<'_, PyDict>) -> PyResult<Request> {
-    let mut request = Request::default();
+pub(crate) fn request(settings: &Bound<'_, PyDict>) -> PyResult<RunRequest> {
+    let mut request = RunRequest::default();
     for (key, value) in settings {
         let key: String = key.extract()?;
         match key.as_str() {
@@ -82,7 +82,7 @@ pub(crate) fn run(
 
 /// Runs on a thread of its own, and looks at Python's signals meanwhile.
 fn follow(
-    request: &Request,
+    request: &RunRequest,
     look: &(dyn Fn(&[Control], Option<u64>) + Sync),
     told: &(dyn Fn() -> PyResult<()> + Sync),
     cancel: &AtomicBool,

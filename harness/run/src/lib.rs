@@ -45,5 +45,5 @@ pub use in_time::drive_in_time;
 pub use interfere::Interferes;
 pub use method::{MethodRun, StreamKeeping, run_method};
 pub use prepared::{Prepared, PreparedError};
-pub use stepped::{Parts, Stepped};
+pub use stepped::{Parts, SteppedRun};
 pub use watch::Watcher;

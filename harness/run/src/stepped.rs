@@ -1,12 +1,12 @@
 //! One method, a step at a time, with parts that others made.
 //!
-//! A host program holds a [`Stepped`] and decides when the next sample is due. Source, unit under
+//! A host program holds a [`SteppedRun`] and decides when the next sample is due. Source, unit under
 //! test and faults may be its own ([`Parts`]). Each step is the one of [`drive`](super::drive), so a run
 //! of the harness's own parts has the same stream hash as any other.
 //!
 //! In a block, the unit gets many samples at once. That is possible where its commands are known
-//! before: a command from sample k is felt in sample k + 2. [`Stepped::ahead`] makes the samples from
-//! the announced commands on a copy of the source and of the faults; [`Stepped::play`] then takes the
+//! before: a command from sample k is felt in sample k + 2. [`SteppedRun::ahead`] makes the samples from
+//! the announced commands on a copy of the source and of the faults; [`SteppedRun::play`] then takes the
 //! steps with the unit's answers, and finds every sample that isn't the one that the unit got.
 
 use super::done::PlannedWork;
@@ -52,7 +52,7 @@ impl std::fmt::Debug for Parts {
 }
 
 /// A run of one method between two steps.
-pub struct Stepped {
+pub struct SteppedRun {
     scenario: Scenario,
     method: Method,
     source: Box<dyn Source + Send>,
@@ -70,9 +70,9 @@ pub struct Stepped {
     ended: Option<Result<Ended, RunError>>,
 }
 
-impl std::fmt::Debug for Stepped {
+impl std::fmt::Debug for SteppedRun {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Stepped").field("steps", &self.steps).finish_non_exhaustive()
+        f.debug_struct("SteppedRun").field("steps", &self.steps).finish_non_exhaustive()
     }
 }
 
@@ -92,7 +92,7 @@ pub enum AheadError {
     Run(#[from] RunError),
 }
 
-impl Stepped {
+impl SteppedRun {
     /// Sets up a method of a scenario with a seed and with parts that others made.
     ///
     /// # Errors

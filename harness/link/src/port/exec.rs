@@ -5,7 +5,7 @@ use super::{Bytes, PortError};
 use crate::Uri;
 use crate::uri::Exec;
 use std::io::{ErrorKind, Read, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{Child, ChildStdin, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
@@ -107,7 +107,7 @@ fn explain(error: &std::io::Error) -> String {
 }
 
 fn start(exec: &Exec) -> std::io::Result<Running> {
-    let mut child = Command::new(&exec.program)
+    let mut child = octant_base::child::command(&exec.program)
         .args(&exec.arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
