@@ -10,7 +10,7 @@ use octant_fmu_host::description::{
     ModelStructure, Standard, UnitDefinition, Variability, Variable, VariableType,
 };
 use octant_fmu_host::instance::{
-    FmuMessage, Instance, InstanceError, StepOutcome, SteppedRun, Update, VariableGroup,
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
 };
 
 /// Builds a variable with usual attributes.
@@ -335,7 +335,7 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         Ok(())
     }
 
-    fn step(&mut self, time_s: f64, step_s: f64) -> Result<SteppedRun, InstanceError> {
+    fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let component = self.component.as_mut().unwrap();
         let period_s = component.period_ns() as f64 * 1e-9;
         assert!((step_s / period_s - 1.0).abs() < 1e-6, "{step_s}");
@@ -343,7 +343,7 @@ impl<C: ModelComponent> Instance for OwnModel<C> {
         stepped.map_err(|error| self.fail("step", error.to_string()))?;
         self.take_remark();
         let time_s = time_s + step_s;
-        Ok(SteppedRun { time_s, outcome: StepOutcome::Done, event: false, terminate: false })
+        Ok(Stepped { time_s, outcome: StepOutcome::Done, event: false, terminate: false })
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {
@@ -395,13 +395,13 @@ impl Instance for Scripted {
         Ok(())
     }
 
-    fn step(&mut self, time_s: f64, step_s: f64) -> Result<SteppedRun, InstanceError> {
+    fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let end_s = time_s + step_s;
         let goes_on = (self.behaviour)(&mut self.cells, end_s).map_err(|what| {
             InstanceError::Process { fmu: self.description.model_name.clone(), what }
         })?;
         let outcome = StepOutcome::Done;
-        Ok(SteppedRun { time_s: end_s, outcome, event: false, terminate: !goes_on })
+        Ok(Stepped { time_s: end_s, outcome, event: false, terminate: !goes_on })
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {

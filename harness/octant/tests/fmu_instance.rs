@@ -8,7 +8,7 @@ use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::description::Variable;
 use octant_fmu_host::instance::{
     AccessPlan, Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace, StepOutcome,
-    SteppedRun, VariableGroup,
+    Stepped, VariableGroup,
 };
 
 /// Returns options for code that runs in this process.
@@ -68,8 +68,7 @@ fn fmi2_takes_and_gives_every_type() {
     set(gain, "on", &[1.0]).unwrap();
     set(gain, "mode", &[2.0]).unwrap();
     let stepped = gain.step(0.0, 2.0).unwrap();
-    let done =
-        SteppedRun { time_s: 2.0, outcome: StepOutcome::Done, event: false, terminate: false };
+    let done = Stepped { time_s: 2.0, outcome: StepOutcome::Done, event: false, terminate: false };
     assert_eq!(stepped, done);
     assert_eq!(get(gain, "y"), [3.0]);
     assert_eq!(get(gain, "n_next"), [-6.0]);

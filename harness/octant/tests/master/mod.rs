@@ -13,7 +13,7 @@ use octant_cosim::ssp::package::Package;
 use octant_cosim::ssp::structure::SystemStructure;
 use octant_cosim::system::System;
 use octant_fmu_host::description::Description;
-use octant_fmu_host::instance::{Instance, StepOutcome, SteppedRun};
+use octant_fmu_host::instance::{Instance, StepOutcome, Stepped};
 use octant_scenario::connection_faults;
 use std::sync::{Arc, Mutex};
 
@@ -426,7 +426,7 @@ fn early_returns_are_gone_on_from_and_ends_are_obeyed() {
         };
         *numbers.get_mut(&2).unwrap() += until - time_s;
         let early = until < time_s + step_s;
-        SteppedRun {
+        Stepped {
             time_s: until,
             outcome: if early { StepOutcome::Early } else { StepOutcome::Done },
             event: early,

@@ -2,7 +2,7 @@
 
 use octant_fmu_host::description::{Description, read};
 use octant_fmu_host::instance::{
-    FmuMessage, Instance, InstanceError, StepOutcome, SteppedRun, Update, VariableGroup,
+    FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
 };
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub type Numbers = BTreeMap<u32, f64>;
 
 /// Step of a toy: its numbers, the time and the length.
-pub type Law = Box<dyn FnMut(&mut Numbers, f64, f64) -> SteppedRun + Send>;
+pub type Law = Box<dyn FnMut(&mut Numbers, f64, f64) -> Stepped + Send>;
 
 /// Calculation at every access: outputs with direct feedthrough.
 pub type Algebra = fn(&mut Numbers);
@@ -31,23 +31,13 @@ pub struct Toy {
 }
 
 /// Returns a step that was done.
-pub fn done(time_s: f64, step_s: f64) -> SteppedRun {
-    SteppedRun {
-        time_s: time_s + step_s,
-        outcome: StepOutcome::Done,
-        event: false,
-        terminate: false,
-    }
+pub fn done(time_s: f64, step_s: f64) -> Stepped {
+    Stepped { time_s: time_s + step_s, outcome: StepOutcome::Done, event: false, terminate: false }
 }
 
 /// Returns a step that was refused after a part of it.
-pub fn refused(reached_s: f64) -> SteppedRun {
-    SteppedRun {
-        time_s: reached_s,
-        outcome: StepOutcome::Discarded,
-        event: false,
-        terminate: false,
-    }
+pub fn refused(reached_s: f64) -> Stepped {
+    Stepped { time_s: reached_s, outcome: StepOutcome::Discarded, event: false, terminate: false }
 }
 
 /// Builds a description of FMI 2.0: inputs and outputs (`name:unit`, `name` for plain numbers),
@@ -191,7 +181,7 @@ impl Instance for Toy {
         unreachable!("toys have no bytes")
     }
 
-    fn step(&mut self, time_s: f64, step_s: f64) -> Result<SteppedRun, InstanceError> {
+    fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         self.note(format!("step {time_s} {step_s}"));
         Ok((self.law)(&mut self.numbers, time_s, step_s))
     }
