@@ -144,7 +144,7 @@ fn a_program_that_ends_or_is_not_there_ends_the_run() {
     let tried = [
         ("exec:true", "the program ended: exit status: 0"),
         ("exec:./no-such-program --fast", "expected a program"),
-        ("stdio:", "expected exec:"),
+        ("stdio:", "possible: in-process"),
         ("tcp:127.0.0.1:1", "refused"),
     ];
     for (i, (device, reason)) in tried.into_iter().enumerate() {
