@@ -69,7 +69,11 @@ function startContents() {
 function stackTables() {
   const tables = Array.from(document.querySelectorAll("main table:not(.cards)"));
   for (const table of tables) table.classList.remove("stacked");
-  const wide = tables.filter((table) => table.scrollWidth > table.parentElement.clientWidth + 1 || table.clientWidth + 1 < table.scrollWidth);
+  const room = (box) => {
+    const style = getComputedStyle(box);
+    return box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  };
+  const wide = tables.filter((table) => table.scrollWidth > room(table.parentElement) + 1 || table.clientWidth + 1 < table.scrollWidth);
   for (const table of wide) {
     const heads = Array.from(table.querySelectorAll("thead tr:last-child th"), (th) => th.textContent.trim());
     for (const row of table.querySelectorAll("tbody tr")) {
