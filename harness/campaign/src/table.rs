@@ -211,10 +211,10 @@ pub fn write<'a>(
     write_with_units(path, plan, columns, &BTreeMap::new(), values)
 }
 
-/// Writes a table as [`write`] does, with units of columns in their metadata.
+/// Writes a table as [`write()`] does, with units of columns in their metadata.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_with_units<'a>(
     path: &Path,
     plan: &str,

@@ -92,7 +92,7 @@ pub struct SolutionFloor {
 }
 
 impl SolutionFloor {
-    /// Value of an error by the name that [`crate::summary::Navigation::errors`] gives it.
+    /// Value of an error by the name that [`crate::summary::NavigationScore::errors`] gives it.
     #[must_use]
     pub fn of(&self, name: &str) -> Option<FloorValue> {
         match name {
