@@ -7,6 +7,7 @@ repository that a page links to becomes a page that shows it: the site is read w
 Usage: docs/site/stage.py PROGRAM FOLDER     (writes FOLDER/mkdocs.yml and FOLDER/source)
 """
 
+import json
 import os
 import pathlib
 import re
@@ -85,10 +86,10 @@ class Stage:
         if file.is_dir():
             names = sorted(one.name + ("/" if one.is_dir() else "") for one in file.iterdir())
             body = "".join(f"- `{name}`\n" for name in names)
+        elif file.suffix == ".ipynb":
+            body = notebook(file)
         else:
-            text = file.read_text(encoding="utf-8")
-            ticks = "`" * max(3, 1 + max((len(run) for run in re.findall("`+", text)), default=0))
-            body = f"{ticks}{LANGUAGES.get(file.suffix, 'text')}\n{text.rstrip()}\n{ticks}\n"
+            body = fenced(file.read_text(encoding="utf-8"), LANGUAGES.get(file.suffix, "text"))
         head = f"---\nsearch: {{exclude: true}}\ntitle: {file.name}\n---\n\n# `{inside}`\n\n"
         self.write(inside.parent / (file.name + ".src.md"), head + body)
 
@@ -101,6 +102,23 @@ class Stage:
         to = self.source / inside
         to.parent.mkdir(parents=True, exist_ok=True)
         to.write_text(text, encoding="utf-8")
+
+
+def fenced(text, language):
+    ticks = "`" * max(3, 1 + max((len(run) for run in re.findall("`+", text)), default=0))
+    return f"{ticks}{language}\n{text.rstrip()}\n{ticks}\n"
+
+
+def notebook(file):
+    """The cells of a notebook as Markdown, with its headings a level deeper; the notebooks are kept without output."""
+    parts = []
+    for cell in json.loads(file.read_text(encoding="utf-8"))["cells"]:
+        text = "".join(cell["source"])
+        if cell.get("outputs"):
+            raise SystemExit(f"{file.relative_to(ROOT)}: found a cell with output, expected none")
+        is_text = cell["cell_type"] == "markdown"
+        parts.append(re.sub("^#", "##", text, flags=re.M) + "\n" if is_text else fenced(text, "python"))
+    return "\n".join(parts)
 
 
 def configuration(kinds):

@@ -31,6 +31,10 @@ const browser = await chromium.launch({
   ],
 });
 
+// Waits until what follows a change of size or style is drawn.
+const settled = (page) => page.evaluate(() => new Promise((done) =>
+  requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50)))));
+
 // What every page has to keep, whatever is on it. `use` gets the open page.
 async function visit(name, path, use) {
   const context = await browser.newContext({ offline: true, viewport: { width: 1280, height: 900 } });
@@ -59,11 +63,21 @@ async function visit(name, path, use) {
   check(`${name}: no mark has a place that is no number`, broken === 0, broken);
   await use(page);
 
-  // No page is wider than the screen, on a phone either.
-  for (const width of [1280, 390]) {
-    await page.setViewportSize({ width, height: 900 });
-    const content = await page.evaluate(() => document.documentElement.scrollWidth);
-    check(`${name}: ${width} pixels are wide enough`, content <= width, content);
+  // Nothing is beyond the edge of the screen, on a phone either.
+  for (const scheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme: scheme });
+    for (const width of [360, 390, 1280, 2560]) {
+      await page.setViewportSize({ width, height: 900 });
+      await settled(page);
+      const beyond = await page.evaluate(() => {
+        const all = Array.from(document.querySelectorAll("main *:not(svg *)"));
+        const far = all.filter((one) => one.getBoundingClientRect().right > innerWidth + 1);
+        return document.documentElement.scrollWidth > innerWidth || far.length > 0
+          ? [document.documentElement.scrollWidth, ...far.slice(0, 4).map((one) => `${one.tagName}.${one.className}`)].join(" ") : "";
+      });
+      check(`${name}: ${width} pixels are wide enough, ${scheme}`, beyond === "", beyond);
+      if (width !== 360) await page.screenshot({ path: `${pictures}/${name}-${width}-${scheme}.png` });
+    }
   }
   await page.setViewportSize({ width: 1280, height: 900 });
 
@@ -91,7 +105,7 @@ async function visit(name, path, use) {
   check(`${name}: no error in the console`, errors.length === 0, errors.join("; "));
   const outside = requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:"));
   check(`${name}: nothing is asked of the network`, outside.length === 0, outside.join(" "));
-  check(`${name}: one file is all of it`, requests.length === 1, requests.join(" "));
+  check(`${name}: one file is all of it`, new Set(requests).size === 1, requests.join(" "));
   await context.close();
 }
 
@@ -118,7 +132,90 @@ await visit("report", report, async (page) => {
     text.includes(summary.stream_hash.slice(0, 8)), summary.stream_hash);
   const drawn = await charts(page);
   check("report: charts have lines", drawn >= 4, drawn);
+  await plots(page);
+  await requirementsInSight(page);
 });
+
+// Zoom, cursor, markers and keys of the plots.
+async function plots(page) {
+  const size = (await readFile(report)).length;
+  console.log(`     report: ${(size / 1e6).toFixed(2)} MB`);
+  check("report: under 3 MB", size < 3_000_000, size);
+  // The best of a few, since the host does other things as well.
+  const paints = [];
+  for (let k = 0; k < 3; k += 1) {
+    await page.reload();
+    await settled(page);
+    paints.push(await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Infinity));
+  }
+  console.log(`     report: first paint after ${Math.min(...paints).toFixed(0)} ms`);
+  check("report: first paint within 1 s", Math.min(...paints) < 1000, paints.join(" "));
+
+  const first = page.locator(".chart > svg[tabindex]").first();
+  await first.scrollIntoViewIfNeeded();
+  await settled(page);
+  const box = await first.boundingBox();
+  const ticks = () => first.locator(".tick.x").allTextContents();
+  const before = (await ticks()).join(" ");
+  await page.mouse.move(box.x + 0.4 * box.width, box.y + 60);
+  const shown = await page.locator(".chart .shown").count();
+  check("report: the cursor is in every plot in sight", shown >= 2, shown);
+  const readouts = (await page.locator(".readout").allTextContents()).filter((text) => /^−?\d/.test(text));
+  check("report: values at the cursor are told", readouts.length >= 2, readouts.join(" "));
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 60, { steps: 4 });
+  await page.mouse.up();
+  await settled(page);
+  const zoomed = await page.locator(".chart.zoomed").count();
+  check("report: a drag zooms all plots in sight", zoomed >= 2, zoomed);
+  check("report: the axis follows", (await ticks()).join(" ") !== before, before);
+  const draws = [];
+  await first.focus();
+  for (const key of ["+", "+", "-", "ArrowRight", "+", "-", "-"]) {
+    await page.keyboard.press(key);
+    await settled(page);
+    draws.push(await page.evaluate(() => Number(document.documentElement.dataset.drawMs)));
+  }
+  draws.sort((a, b) => a - b);
+  console.log(`     report: zoom drawn in ${draws[3].toFixed(1)} ms (median), ${draws.at(-1).toFixed(1)} ms (largest)`);
+  check("report: a zoom is drawn within 50 ms", draws[3] < 50, draws.join(" "));
+  await page.keyboard.press("0");
+  await settled(page);
+  check("report: 0 shows everything again", (await ticks()).join(" ") === before, (await ticks()).join(" "));
+
+  const boxes = await page.locator(".switch input").count();
+  check("report: markers have switches", boxes >= 2, boxes);
+  await page.keyboard.press("m");
+  check("report: m switches the markers off", (await page.locator(".switch input:checked").count()) === 0);
+  await page.keyboard.press("m");
+  check("report: and on", (await page.locator(".switch input:checked").count()) === boxes);
+  await page.evaluate(() => { document.activeElement.blur(); scrollTo(0, 0); });
+  await page.keyboard.press("j");
+  await page.waitForURL((url) => url.hash !== "");
+  await page.keyboard.press("?");
+  check("report: ? lists the keys", await page.locator("dialog.help").isVisible());
+  await page.keyboard.press("Escape");
+
+  // Without a script nothing is missing but what moves.
+  const context = await browser.newContext({ javaScriptEnabled: false, offline: true, viewport: { width: 1280, height: 900 } });
+  const still = await context.newPage();
+  await still.goto(pathToFileURL(report).href);
+  const drawings = await still.locator("svg[role=img]").count();
+  const lines = await still.locator("svg[role=img]:has(path.line[d], rect.diagonal)").count();
+  check("report: every drawing is there without a script", drawings >= 30 && lines === drawings, `${lines} of ${drawings}`);
+  await context.close();
+}
+
+// Verdict, value, limit, margin, unit and text of a requirement are in sight on a phone.
+async function requirementsInSight(page) {
+  await page.setViewportSize({ width: 360, height: 900 });
+  await settled(page);
+  const cells = await page.$$eval(".requirements tbody tr:first-child td", (all) =>
+    all.map((cell) => ({ box: cell.getBoundingClientRect(), text: cell.innerText.trim() })));
+  const seen = cells.filter(({ box, text }) => box.width > 0 && box.left >= 0 && box.right <= 360 && text !== "");
+  check("report: all of a requirement is in sight at 360 pixels", cells.length === 6 && seen.length === 6, seen.length);
+  await page.setViewportSize({ width: 1280, height: 900 });
+}
 
 await visit("compare", comparison, async (page) => {
   const text = await visible(page);
@@ -189,6 +286,15 @@ await visit("campaign", `${campaign}/report.html`, async (page) => {
   await page.keyboard.press("Space");
   check("campaign: the space bar unfolds", await folded.evaluate((one) => one.open));
   await page.keyboard.press("Space");
+  // The list of cases is filtered by words.
+  await page.$$eval("details", (all) => all.forEach((one) => { one.open = true; }));
+  const rows = page.locator("table.filtered tbody tr:visible");
+  const total = await rows.count();
+  await page.locator("input.filter").first().fill("no such case");
+  check("campaign: a filter hides the other cases", total > 1 && (await rows.count()) === 0, total);
+  await page.locator("input.filter").first().fill("");
+  check("campaign: and shows them again", (await rows.count()) === total, await rows.count());
+  await page.$$eval("details", (all) => all.forEach((one) => { one.open = false; }));
   await page.evaluate(() => window.scrollTo(0, 0));
 });
 

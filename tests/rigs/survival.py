@@ -414,7 +414,7 @@ class Bench:
             self.expect(status is not None, "it hung for 20 s")
             self.expect("panicked" not in self.said, "it panicked")
             if status == 4:
-                self.expect("octant: " in self.said or "reasons" in self.said, "an error in words")
+                self.expect("error: " in self.said or "octant: " in self.said or "reasons" in self.said, "an error in words")
             recording = out / "recording.mcap"
             if not recording.exists():
                 recording = partial

@@ -3,6 +3,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`names`] | the known name that is nearest to one that isn't known |
+//! | [`display`] | units in which errors are shown |
 //! | [`number`] | numbers as people read them |
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
@@ -10,9 +11,12 @@
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
 //! | [`serial`] | serial ports and pseudo terminals |
+//! | [`arrow`] | units of columns, in the metadata of Parquet files |
 
+pub mod arrow;
 pub mod child;
 pub mod control;
+pub mod display;
 pub mod hash;
 pub mod interrupt;
 pub mod names;

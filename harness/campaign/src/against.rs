@@ -11,7 +11,7 @@ pub use comparison::{Detects, EnsembleComparison, ErrorRow};
 
 use crate::case::{self, CaseResult, ResultError};
 use crate::plan::{Case, Plan, PlanError};
-use octant_observe::ensemble::{Ensemble, EnsembleError, ensemble};
+use octant_observe::ensemble::{Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
 use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
@@ -221,6 +221,37 @@ fn at(navigation: &NavigationScore, hours: f64) -> Option<[f64; 2]> {
     Some([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])))
 }
 
+/// Attitude or velocity error at the end of the navigation, predicted and in each run.
+struct Final {
+    name: String,
+    unit: &'static str,
+    hours: f64,
+    band: ErrorBand,
+    values: Vec<f64>,
+}
+
+/// Collects the final errors of attitude and velocity that the prediction and all runs have: results
+/// from before they were scored have none.
+fn finals(
+    ensemble: &Ensemble,
+    runs: &[(&CalibrationScore, Option<&NavigationScore>)],
+) -> Vec<Final> {
+    let Some(last) = ensemble.drift.last() else { return Vec::new() };
+    let Some(solution) = &last.solution else { return Vec::new() };
+    let scores: Option<Vec<_>> =
+        runs.iter().map(|(_, navigation)| Some((*navigation)?.errors())).collect();
+    let Some(scores) = scores else { return Vec::new() };
+    let one = |(index, band): (usize, ErrorBand)| {
+        // Latitude and longitude come first.
+        let index = index + 2;
+        let (name, unit, _) = scores.first()?[index];
+        let values = scores.iter().map(|run| Some(run[index].2?.r#final)).collect::<Option<_>>()?;
+        let name = format!("{name} at {:.1} h", last.hours);
+        Some(Final { name, unit, hours: last.hours, band, values })
+    };
+    solution.all().into_iter().enumerate().filter_map(one).collect()
+}
+
 fn compare(
     first: &Case,
     ensemble: &Ensemble,
@@ -240,7 +271,8 @@ fn compare(
     }
     let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
     let times: Vec<_> = ensemble.drift.iter().skip(every - 1).step_by(every).collect();
-    let rows = NAMES.len() + 2 * times.len();
+    let finals = finals(ensemble, &runs);
+    let rows = NAMES.len() + 2 * times.len() + finals.len();
     // Each row has two intervals.
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
     let (low, high) = deviation::factors(count as u64 - 1, each)
@@ -289,6 +321,10 @@ fn compare(
                 student,
             ));
         }
+    }
+    for Final { name, unit, hours, band, values } in finals {
+        let predicted = (band.mean, band.sigma);
+        drift.push(row(name, unit, Some(hours), predicted, &values, (low, high), student));
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
     let mut comparison = EnsembleComparison {

@@ -5,6 +5,7 @@
 //! consistency: the verdict of a check with its value and limit, that of a case with its checks.
 
 use super::case;
+use super::factors::FactorColumns;
 use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
 use super::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
@@ -92,9 +93,12 @@ pub fn check(plan: &Plan, folder: &Path, path: impl Fn(&str) -> PathBuf) -> Resu
         }
     }
     // One after another, because memory would hold the rows of a large campaign twice.
-    let texts = results::texts(plan);
+    let is_text = |factor: &str| {
+        matches!(tables[0].columns.get(&format!("factor.{factor}")), Some(ColumnValues::Text(_)))
+    };
+    let factors = FactorColumns::of(plan).without_units(is_text, plan);
     for index in compared {
-        let expected = results::rows(plan, folder, std::iter::once(index), &texts)?;
+        let expected = results::rows(plan, folder, std::iter::once(index), &factors)?;
         for (table, rows) in tables.iter().zip(&expected) {
             same(plan, folder, index, table, rows)?;
         }

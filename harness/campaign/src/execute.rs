@@ -6,6 +6,7 @@ pub use super::shard::{Shard, ShardError};
 use super::case::{self, CaseJob, CaseResult, StoreOutcome, differing};
 use super::plan::{Case, Plan, PlanError};
 use super::process::{TRIES, command};
+use super::selection::CaseSelection;
 use super::status::StatusError;
 use octant_base::child::{ChildEnded, finish};
 use octant_base::pool::in_order;
@@ -38,6 +39,8 @@ pub struct ExecuteOptions<'a> {
     pub end: usize,
     /// True if cases that ended as errors are run again.
     pub again: bool,
+    /// Cases that may be run, and those that are run although they have a result.
+    pub selection: CaseSelection,
     /// Set to end the execution.
     pub cancel: &'a AtomicBool,
 }
@@ -47,6 +50,8 @@ pub struct ExecuteOptions<'a> {
 pub enum ExecutionEvent {
     /// Number of cases that have results already.
     There(usize),
+    /// A case has begun, given by its place in the plan.
+    Begun(usize),
     /// A case has ended.
     Done(CaseDone),
 }
@@ -124,7 +129,7 @@ pub enum ExecuteError {
     },
 }
 
-/// Runs the cases that have no result yet. `tell` is called with each as it ends, in any order.
+/// Runs the selected cases that have no result yet, and the repetitions. `tell` is called with each as it ends, in any order.
 ///
 /// # Errors
 /// If the folder isn't of this plan, or the operating system refuses; stored results stay.
@@ -140,14 +145,20 @@ pub fn execute(
         forget_errors(plan, options)?;
     }
     let up_to_end = || plan.cases.iter().enumerate().take(options.end);
-    let mine = || up_to_end().filter(|(index, _)| options.shard.has(*index));
-    let open: Vec<(usize, &Case)> =
-        mine().filter(|(_, case)| !case::file(options.folder, &case.id).exists()).collect();
+    let mine = || {
+        up_to_end()
+            .filter(|(index, _)| options.shard.has(*index) && options.selection.picks(*index))
+    };
+    let is_open = |(index, case): &(usize, &Case)| {
+        options.selection.repeats(*index) || !case::file(options.folder, &case.id).exists()
+    };
+    let open: Vec<(usize, &Case)> = mine().filter(is_open).collect();
     let skipped = mine().count() - open.len();
     tell(&ExecutionEvent::There(skipped));
     let work = |task: usize| {
         let (index, case) = open[task];
-        let done = one(plan, case, options)?.map(|done| CaseDone { index, ..done });
+        tell(&ExecutionEvent::Begun(index));
+        let done = one(plan, (index, case), options)?.map(|done| CaseDone { index, ..done });
         Ok::<_, ExecuteError>(done.map(|done| {
             let differs = done.differs.clone();
             tell(&ExecutionEvent::Done(done));
@@ -177,6 +188,7 @@ fn forget_errors(plan: &Plan, options: &ExecuteOptions<'_>) -> Result<(), Execut
     for (index, case) in plan.cases.iter().enumerate() {
         let path = case::file(options.folder, &case.id);
         if options.shard.has(index)
+            && options.selection.picks(index)
             && path.exists()
             && CaseResult::read(&path).is_ok_and(|result| result.error.is_some())
         {
@@ -193,12 +205,13 @@ fn forget_errors(plan: &Plan, options: &ExecuteOptions<'_>) -> Result<(), Execut
 /// Runs one case, again if its process is ended from outside; `None` if it was ended by a request.
 fn one(
     plan: &Plan,
-    case: &Case,
+    (index, case): (usize, &Case),
     options: &ExecuteOptions<'_>,
 ) -> Result<Option<CaseDone>, ExecuteError> {
+    let is_repeated = options.selection.repeats(index);
     let mut by = String::new();
     for _ in 0..TRIES {
-        match try_one(plan, case, options)? {
+        match try_one(plan, case, options, is_repeated)? {
             Tried::Done(done) => return Ok(Some(done)),
             Tried::Cancelled => return Ok(None),
             Tried::Outside(signal) => by = signal,
@@ -215,7 +228,12 @@ enum Tried {
 }
 
 /// Runs one case in a process of its own.
-fn try_one(plan: &Plan, case: &Case, options: &ExecuteOptions<'_>) -> Result<Tried, ExecuteError> {
+fn try_one(
+    plan: &Plan,
+    case: &Case,
+    options: &ExecuteOptions<'_>,
+    is_repeated: bool,
+) -> Result<Tried, ExecuteError> {
     let system = |action, path: &Path, source| ExecuteError::System {
         action,
         path: path.to_owned(),
@@ -243,6 +261,8 @@ fn try_one(plan: &Plan, case: &Case, options: &ExecuteOptions<'_>) -> Result<Tri
     let words = outcome.err;
     let error = match outcome.ended {
         ChildEnded::Cancelled => return Ok(Tried::Cancelled),
+        // The stored result is the one of the first time.
+        ChildEnded::Outside(by) if is_repeated => return Ok(Tried::Outside(by)),
         // The process may have been ended after it stored the result.
         ChildEnded::Outside(_) | ChildEnded::TooLong
             if case::file(options.folder, &case.id).exists() =>
@@ -285,7 +305,7 @@ fn kept(case: &Case, options: &ExecuteOptions<'_>) -> Result<CaseDone, ExecuteEr
 /// Returns the message of a process, without the name of the program.
 fn said(words: &str) -> &str {
     let said = words.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("");
-    said.trim_start_matches("octant: ")
+    said.trim_start_matches("error: ")
 }
 
 /// Describes why a process stored nothing.

@@ -6,7 +6,7 @@ use super::plan::{Plan, short};
 use super::results::{Columns, NUMERICS, TABLES, ordered};
 use super::shard::Shard;
 use super::stop;
-use super::table::{ColumnKind, ColumnValues, ExistingTable, TableError, write};
+use super::table::{ColumnKind, ColumnValues, ExistingTable, TableError, write_with_units};
 use octant_requirements::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -255,7 +255,11 @@ pub fn merge(
                 missing: end.min(plan.cases.len()) - kept.len(),
             };
         }
-        write(&merged(out, name), &plan.id, &columns, |index| {
+        let mut units = BTreeMap::new();
+        tables.iter().for_each(|table| units.extend(table.units.clone()));
+        // A part that is older than units makes the column text.
+        units.retain(|name, _| columns.contains(&(name.clone(), ColumnKind::Number)));
+        write_with_units(&merged(out, name), &plan.id, &columns, &units, |index| {
             let (column, kind) = &columns[index];
             let of_parts =
                 tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;

@@ -2,11 +2,12 @@
 
 use super::besides::besides;
 use super::case::{self, CaseResult};
-use super::plan::{Case, FactorValue, Plan};
-use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write};
+use super::factors::FactorColumns;
+use super::plan::{Case, Plan};
+use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write_with_units};
 use octant_score::summary::Summary;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -92,10 +93,20 @@ impl Rows {
         }
     }
 
-    fn write(&self, first: Columns, path: &Path, plan: &str) -> Result<(), TableError> {
+    fn write(
+        &self,
+        first: Columns,
+        path: &Path,
+        plan: &str,
+        units: &BTreeMap<String, String>,
+    ) -> Result<(), TableError> {
+        let mut units = units.clone();
+        units.retain(|name, _| self.columns.contains_key(name));
         let kinds = self.columns.iter().map(|(name, values)| (name.as_str(), values.kind()));
         let columns = ordered(first, &kinds.collect());
-        write(path, plan, &columns, |index| Ok(Cow::Borrowed(&self.columns[&columns[index].0])))
+        write_with_units(path, plan, &columns, &units, |index| {
+            Ok(Cow::Borrowed(&self.columns[&columns[index].0]))
+        })
     }
 }
 
@@ -119,19 +130,12 @@ pub fn tables(
     cases: impl Iterator<Item = usize>,
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
-    let all = rows(plan, folder, cases, &texts(plan))?;
+    let factors = FactorColumns::of(plan);
+    let all = rows(plan, folder, cases, &factors)?;
     for ((name, first), rows) in TABLES.iter().zip(&all) {
-        rows.write(first, &path(name), &plan.id)?;
+        rows.write(first, &path(name), &plan.id, &factors.units())?;
     }
     Ok(())
-}
-
-/// Lists the text factors: a factor that is a number in one case and a text in another is a text in
-/// all.
-pub(super) fn texts(plan: &Plan) -> BTreeSet<&str> {
-    let texts = (plan.cases.iter().flat_map(|case| &case.factors))
-        .filter(|(_, value)| matches!(value, FactorValue::Text(_)));
-    texts.map(|(name, _)| name.as_str()).collect()
 }
 
 /// Collects the rows of all tables from the results in a folder.
@@ -139,7 +143,7 @@ pub(super) fn rows(
     plan: &Plan,
     folder: &Path,
     cases: impl Iterator<Item = usize>,
-    texts: &BTreeSet<&str>,
+    factors: &FactorColumns<'_>,
 ) -> Result<[Rows; 3], TableError> {
     let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
     for index in cases {
@@ -154,7 +158,7 @@ pub(super) fn rows(
         let read =
             CaseResult::of_plan(plan, folder, case).map_err(|error| form(error.to_string()))?;
         let (result, hash) = read.ok_or_else(|| form("it is gone".to_owned()))?;
-        all_cases.push(case_row(case, &result, &hash, texts));
+        all_cases.push(case_row(case, &result, &hash, factors));
         if let Some(summary) = &result.summary {
             check_rows(case, summary).for_each(|row| checks.push(row));
             drift_rows(case, summary).for_each(|row| drift.push(row));
@@ -178,7 +182,7 @@ fn case_row(
     case: &Case,
     result: &CaseResult,
     hash: &str,
-    texts: &BTreeSet<&str>,
+    factors: &FactorColumns<'_>,
 ) -> BTreeMap<String, ColumnValue> {
     let summary = result.summary.as_ref();
     let mut all = row([
@@ -199,14 +203,7 @@ fn case_row(
         ("set", Some(text(case.set.join("; ")))),
     ]);
     for (name, value) in &case.factors {
-        let value = match value {
-            FactorValue::Number(number) if texts.contains(name.as_str()) => {
-                text(number.to_string())
-            }
-            FactorValue::Number(number) => ColumnValue::Number(*number),
-            FactorValue::Text(text) => ColumnValue::Text(text.as_str().into()),
-        };
-        all.insert(format!("factor.{name}"), value);
+        all.insert(format!("factor.{name}"), factors.value(name, value));
     }
     if let Some(document) = summary.and_then(|summary| serde_json::to_value(summary).ok()) {
         measures(&document, &mut all);

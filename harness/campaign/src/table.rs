@@ -3,6 +3,7 @@
 //! A file has one row group, every column may be null, and it contains nothing of host or clock:
 //! the same table gives the same bytes.
 
+use octant_base::arrow::{ARROW_SCHEMA_KEY, ArrowField, ArrowKind, arrow_schema};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -12,16 +13,21 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the tables' layout.
 pub const SCHEMA: &str = "1";
+/// Version of tables in which columns have units.
+pub const SCHEMA_WITH_UNITS: &str = "2";
 /// Metadata key of the version.
 const VERSION_KEY: &str = "octant.schema";
 /// Metadata key of the plan's id.
 const PLAN_KEY: &str = "octant.plan";
+/// Metadata key of the units: a JSON object from names of columns to units.
+const UNITS_KEY: &str = "octant.units";
 
 /// Values of a column, by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,6 +206,20 @@ pub fn write<'a>(
     path: &Path,
     plan: &str,
     columns: &[(String, ColumnKind)],
+    values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, ColumnValues>, TableError>,
+) -> Result<(), TableError> {
+    write_with_units(path, plan, columns, &BTreeMap::new(), values)
+}
+
+/// Writes a table as [`write()`] does, with units of columns in their metadata.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_with_units<'a>(
+    path: &Path,
+    plan: &str,
+    columns: &[(String, ColumnKind)],
+    units: &BTreeMap<String, String>,
     mut values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, ColumnValues>, TableError>,
 ) -> Result<(), TableError> {
     let folder = path.parent().unwrap_or(Path::new("."));
@@ -216,7 +236,15 @@ pub fn write<'a>(
     let pair = |key: &str, value: &str| KeyValue::new(key.to_owned(), value.to_owned());
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3).map_err(wrong)?))
-        .set_key_value_metadata(Some(vec![pair(VERSION_KEY, SCHEMA), pair(PLAN_KEY, plan)]))
+        .set_key_value_metadata(Some(match units.is_empty() {
+            true => vec![pair(VERSION_KEY, SCHEMA), pair(PLAN_KEY, plan)],
+            false => vec![
+                pair(VERSION_KEY, SCHEMA_WITH_UNITS),
+                pair(PLAN_KEY, plan),
+                pair(UNITS_KEY, &serde_json::json!(units).to_string()),
+                pair(ARROW_SCHEMA_KEY, &arrow_schema(&arrow_fields(columns, units))),
+            ],
+        }))
         .build();
     let file = new.as_file().try_clone().map_err(system)?;
     let schema = Arc::new(root.map_err(wrong)?);
@@ -244,6 +272,28 @@ pub fn write<'a>(
     new.as_file().sync_data().map_err(system)?;
     new.persist(path).map_err(|error| system(error.error))?;
     Ok(())
+}
+
+/// Fields for readers of Arrow, which show metadata of columns.
+fn arrow_fields(
+    columns: &[(String, ColumnKind)],
+    units: &BTreeMap<String, String>,
+) -> Vec<ArrowField> {
+    let field = |(name, kind): &(String, ColumnKind)| ArrowField {
+        name: name.clone(),
+        kind: match kind {
+            ColumnKind::Text => ArrowKind::Utf8,
+            ColumnKind::Number => ArrowKind::Double,
+            ColumnKind::Integer => ArrowKind::Int64,
+            ColumnKind::Boolean => ArrowKind::Boolean,
+        },
+        metadata: units
+            .get(name)
+            .map(|unit| ("unit".to_owned(), unit.clone()))
+            .into_iter()
+            .collect(),
+    };
+    columns.iter().map(field).collect()
 }
 
 /// Number of rows passed to the library, or taken from it, at a time: it needs values in types of
@@ -288,6 +338,8 @@ pub struct ExistingTable {
     pub plan: String,
     /// Names and kinds of the columns.
     pub columns: Vec<(String, ColumnKind)>,
+    /// Units of columns, by name.
+    pub units: BTreeMap<String, String>,
     /// Number of rows.
     pub rows: usize,
 }
@@ -320,9 +372,17 @@ impl ExistingTable {
         let Some(version) = value(VERSION_KEY) else {
             return Err(form(format!("it has no {VERSION_KEY}: expected a table of a campaign")));
         };
-        if version != SCHEMA {
-            return Err(form(format!("found version {version}, this program reads {SCHEMA}")));
+        if ![SCHEMA, SCHEMA_WITH_UNITS].contains(&version.as_str()) {
+            return Err(form(format!(
+                "found version {version}, this program reads {SCHEMA} and {SCHEMA_WITH_UNITS}"
+            )));
         }
+        let units = match value(UNITS_KEY) {
+            None => BTreeMap::new(),
+            Some(text) => serde_json::from_str(&text).map_err(|error| {
+                form(format!("its {UNITS_KEY} isn't an object of texts: {error}"))
+            })?,
+        };
         let plan = value(PLAN_KEY).ok_or_else(|| form(format!("it has no {PLAN_KEY}")))?;
         let rows: i64 = metadata.file_metadata().num_rows();
         if metadata.num_row_groups() > 1 {
@@ -344,7 +404,7 @@ impl ExistingTable {
         });
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
         let rows = usize::try_from(rows).map_err(|_| form(format!("it has {rows} rows")))?;
-        Ok(Self { path: path.to_owned(), reader, plan, columns, rows })
+        Ok(Self { path: path.to_owned(), reader, plan, columns, units, rows })
     }
 
     /// Returns the values of a column; `None` if there is no such column.

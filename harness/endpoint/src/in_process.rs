@@ -86,6 +86,7 @@ impl Endpoint for InProcess {
             nis_mean: Some(quality.nis_mean),
             measurements: Some(quality.used + quality.rejected),
             table: self.core.table().cloned(),
+            solution: self.core.concluded().copied(),
             events: Vec::new(),
         }
     }

@@ -14,6 +14,7 @@ pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 
 use octant_calibration::CoreConfig;
+use octant_calibration::covariance::SolutionCovariance;
 use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
@@ -132,6 +133,8 @@ pub struct Conclusion {
     pub measurements: Option<u64>,
     /// The calibration table, where the calibration was accepted.
     pub table: Option<CalibrationTable>,
+    /// Covariance of attitude and velocity at the end of the calibration, where there is one.
+    pub solution: Option<SolutionCovariance>,
     /// Events of the connection to be recorded: frames that a wire carried and lost.
     pub events: Vec<Event>,
 }
@@ -177,8 +180,9 @@ pub enum EndpointOpenError {
     Load(#[from] octant_link::load::LoadError),
     /// A second method was requested of a device, which has one core with one configuration.
     #[error(
-        "set the core at {uri} to the second method of the scenario's [baseline]: only Octant's own core \
-         takes one"
+        "run the scenario's [baseline] on the device at {uri}, which has one core with one configuration: \
+         write endpoint.uri = \"in-process\", or remove [baseline] and give the second method a scenario of \
+         its own"
     )]
     OneMethod {
         /// The port.

@@ -28,6 +28,12 @@ pub enum Uri {
     Slcan(SlcanUri),
     /// UDP: `udp:host:port`.
     Udp(Udp),
+    /// TCP: `tcp:host:port`.
+    Tcp(Tcp),
+    /// A program whose standard input and output are the line: `exec:./core --fast`.
+    Exec(Exec),
+    /// Standard input and output, for the device end of `exec:`: `stdio:`.
+    Stdio,
 }
 
 /// A serial line.
@@ -81,6 +87,24 @@ pub struct Udp {
     pub port: u16,
 }
 
+/// A TCP address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tcp {
+    /// Host or address of the other end; at the device end, the address to listen at; empty: loopback.
+    pub host: String,
+    /// Port; at the device end, 0 is any free port.
+    pub port: u16,
+}
+
+/// A program with its arguments. In its text, spaces separate them; there are no quotes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exec {
+    /// The program, from the current folder or on the path.
+    pub program: String,
+    /// Its arguments.
+    pub arguments: Vec<String>,
+}
+
 /// Bit rates of a port.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rates {
@@ -88,7 +112,7 @@ pub enum Rates {
     Line(u32),
     /// A bus; `None`: the rates are those that its interface reports.
     Bus(Option<Bus>),
-    /// None: a pseudo terminal, UDP.
+    /// None: a pseudo terminal, UDP, TCP, a program.
     Unlimited,
 }
 
@@ -116,7 +140,7 @@ pub struct Scheme {
 }
 
 /// All schemes.
-pub const SCHEMES: [Scheme; 5] = [SERIAL, CAN, SLCAN, UDP, PTY];
+pub const SCHEMES: [Scheme; 8] = [SERIAL, CAN, SLCAN, UDP, TCP, EXEC, PTY, STDIO];
 
 const SERIAL: Scheme = Scheme {
     name: "serial",
@@ -163,10 +187,40 @@ const UDP: Scheme = Scheme {
     medium: Medium::Datagrams,
     options: &[],
     read: |parts| {
-        udp(parts.name).ok_or_else(|| UriError::Name {
+        let (host, port) = address(parts.name).ok_or_else(|| UriError::Name {
             found: parts.text.to_owned(),
             expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
-        })
+        })?;
+        Ok(Uri::Udp(Udp { host, port }))
+    },
+};
+
+const TCP: Scheme = Scheme {
+    name: "tcp",
+    devices: Some("a device on TCP: tcp:HOST:PORT"),
+    medium: Medium::Line,
+    options: &[],
+    read: |parts| {
+        let (host, port) = address(parts.name).ok_or_else(|| UriError::Name {
+            found: parts.text.to_owned(),
+            expected: "tcp:HOST:PORT, such as tcp:127.0.0.1:5005 or tcp:[::1]:5005",
+        })?;
+        Ok(Uri::Tcp(Tcp { host, port }))
+    },
+};
+
+const EXEC: Scheme = Scheme {
+    name: "exec",
+    devices: Some("a program, by its standard input and output: exec:./core --fast"),
+    medium: Medium::Line,
+    options: &[],
+    read: |parts| {
+        let mut words = parts.name.split_whitespace().map(str::to_owned);
+        let program = words.next().ok_or_else(|| UriError::Name {
+            found: parts.text.to_owned(),
+            expected: "exec:PROGRAM ARGUMENT..., such as exec:./core --fast",
+        })?;
+        Ok(Uri::Exec(Exec { program, arguments: words.collect() }))
     },
 };
 
@@ -176,6 +230,19 @@ const PTY: Scheme = Scheme {
     medium: Medium::Line,
     options: &[],
     read: |parts| Ok(Uri::Pty { link: parts.name.to_owned() }),
+};
+
+const STDIO: Scheme = Scheme {
+    name: "stdio",
+    devices: None,
+    medium: Medium::Line,
+    options: &[],
+    read: |parts| {
+        if parts.name.is_empty() {
+            return Ok(Uri::Stdio);
+        }
+        Err(UriError::Name { found: parts.text.to_owned(), expected: "stdio: alone" })
+    },
 };
 
 fn schemes() -> Vec<&'static str> {
@@ -221,11 +288,10 @@ fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
 }
 
 /// Parses `host:port`, `[v6]:port`, `:port` or `port`.
-fn udp(name: &str) -> Option<Uri> {
+fn address(name: &str) -> Option<(String, u16)> {
     let (host, port) = name.rsplit_once(':').unwrap_or(("", name));
     let host = host.strip_prefix('[').map_or(Some(host), |host| host.strip_suffix(']'))?;
-    let port = port.parse().ok()?;
-    Some(Uri::Udp(Udp { host: host.to_owned(), port }))
+    Some((host.to_owned(), port.parse().ok()?))
 }
 
 impl Uri {
@@ -236,6 +302,9 @@ impl Uri {
             Self::Can(_) => const { &CAN },
             Self::Slcan(_) => const { &SLCAN },
             Self::Udp(_) => const { &UDP },
+            Self::Tcp(_) => const { &TCP },
+            Self::Exec(_) => const { &EXEC },
+            Self::Stdio => const { &STDIO },
         }
     }
 
@@ -256,7 +325,9 @@ impl Uri {
     pub fn rates(&self) -> Rates {
         match self {
             Self::Serial(serial) => Rates::Line(serial.baud),
-            Self::Pty { .. } | Self::Udp(_) => Rates::Unlimited,
+            Self::Pty { .. } | Self::Udp(_) | Self::Tcp(_) | Self::Exec(_) | Self::Stdio => {
+                Rates::Unlimited
+            }
             Self::Can(can) => Rates::Bus(can.bus()),
             // The line of an adapter is USB, whatever baud rate it was given.
             Self::Slcan(slcan) => Rates::Bus(Some(slcan.bus)),
@@ -295,6 +366,13 @@ impl fmt::Display for Uri {
             }
             Self::Udp(Udp { host, port }) if host.contains(':') => write!(f, "udp:[{host}]:{port}"),
             Self::Udp(Udp { host, port }) => write!(f, "udp:{host}:{port}"),
+            Self::Tcp(Tcp { host, port }) if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
+            Self::Tcp(Tcp { host, port }) => write!(f, "tcp:{host}:{port}"),
+            Self::Exec(Exec { program, arguments }) => {
+                write!(f, "exec:{program}")?;
+                arguments.iter().try_for_each(|argument| write!(f, " {argument}"))
+            }
+            Self::Stdio => f.write_str("stdio:"),
         }
     }
 }
@@ -321,6 +399,11 @@ mod tests {
             "udp:192.168.1.7:5005",
             "udp:[::1]:5005",
             "udp::5005",
+            "tcp:192.168.1.7:5005",
+            "tcp:[::1]:5005",
+            "exec:./core",
+            "stdio:",
+            "exec:python3 core.py --rate 200",
         ] {
             let uri: Uri = text.parse().unwrap();
             assert_eq!(uri.to_string(), text);
@@ -359,5 +442,8 @@ mod tests {
         for text in ["udp:", "udp:localhost", "udp:localhost:65536", "udp:[::1:5005"] {
             assert!(refused(text).contains("udp:HOST:PORT"), "{text}");
         }
+        assert!(refused("tcp:localhost").contains("tcp:HOST:PORT"));
+        assert!(refused("exec:").contains("exec:PROGRAM"));
+        assert!(refused("exec:./core?fast=1").contains("it has no options"));
     }
 }

@@ -14,7 +14,7 @@ pub use super::change::{Change, ChangeThresholds, Tested};
 
 use super::change::tested;
 use super::night::{CampaignNight, Night, Program};
-use super::results::CaseRow;
+use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;
 use octant_requirements::Verdict;
 use octant_score::numerics::in_words;
@@ -292,6 +292,11 @@ impl NightComparison {
             }));
         };
         for name in names {
+            // A baseline from before attitude and velocity were scored has nothing to compare with.
+            let later = SCORED_LATER.contains(&name.as_str());
+            if later && !pairs.iter().any(|(a, _)| a.measures.contains_key(&name)) {
+                continue;
+            }
             put(name.clone(), &|row| row.measures.get(&name).copied(), 1.0);
         }
         for id in &requirements {
@@ -374,7 +379,8 @@ impl CaseRow {
     fn has_result_of(&self, other: &Self) -> bool {
         let result = |row: &Self| {
             let mut row = row.row.clone();
-            row.retain(|(name, _)| name != "case" && name != "set");
+            // Factors are those of the pair, whatever their form.
+            row.retain(|(name, _)| name != "case" && name != "set" && !name.starts_with("factor."));
             row
         };
         result(self) == result(other)

@@ -1,5 +1,6 @@
 //! Reads the results of a campaign's cases from its tables.
 
+use octant_campaign::factors::parts;
 use octant_campaign::merge::merged;
 use octant_campaign::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
 use octant_requirements::{Comparison, Verdict};
@@ -9,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Measures for which less is better, as columns of `cases.parquet`.
-const LESS_IS_BETTER: [&str; 8] = [
+const LESS_IS_BETTER: [&str; 13] = [
     "navigation.latitude_error_arcmin.max",
     "navigation.latitude_error_arcmin.rms",
     "navigation.longitude_error_arcmin.max",
@@ -17,7 +18,21 @@ const LESS_IS_BETTER: [&str; 8] = [
     "navigation.radial_error_nmi.max",
     "navigation.radial_error_nmi.rms",
     "navigation.radial_error_nmi.rate_per_h",
+    "navigation.heading_error_arcmin.rms",
+    "navigation.pitch_error_arcmin.rms",
+    "navigation.roll_error_arcmin.rms",
+    "navigation.velocity_north_error_mps.rms",
+    "navigation.velocity_east_error_mps.rms",
     "calibration.worst_normalized_error",
+];
+
+/// Those of them that older programs don't score.
+pub(crate) const SCORED_LATER: [&str; 5] = [
+    "navigation.heading_error_arcmin.rms",
+    "navigation.pitch_error_arcmin.rms",
+    "navigation.roll_error_arcmin.rms",
+    "navigation.velocity_north_error_mps.rms",
+    "navigation.velocity_east_error_mps.rms",
 ];
 
 /// One case.
@@ -81,7 +96,7 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
         let reasons = [text("error"), text("reasons")].into_iter().find(|text| !text.is_empty());
         all.push(CaseRow {
             scenario: text("scenario"),
-            pair: pair(&row),
+            pair: pair(&row, &table.units),
             verdict,
             reasons: reasons.unwrap_or_default(),
             measures: measures(&row),
@@ -156,12 +171,23 @@ fn verdict(name: &str) -> Option<Verdict> {
 }
 
 /// Builds the key that pairs cases of two nights. The id can't be used: it changes with the
-/// scenario.
-fn pair(row: &[(String, ColumnValue)]) -> String {
+/// scenario. A factor with a unit is a number in tables with units, and a text in older ones.
+fn pair(row: &[(String, ColumnValue)], units: &BTreeMap<String, String>) -> String {
     let told = row.iter().filter(|(name, _)| {
         ["scenario", "seed", "replicate"].contains(&name.as_str()) || name.starts_with("factor.")
     });
-    told.map(|(name, value)| format!("{name}={value:?};")).collect()
+    let one = |(name, value): &(String, ColumnValue)| {
+        let quantity = match (value, units.get(name)) {
+            (ColumnValue::Number(number), Some(unit)) => Some((*number, unit.as_str())),
+            (ColumnValue::Text(text), None) if name.starts_with("factor.") => parts(text),
+            _ => None,
+        };
+        match quantity {
+            Some((number, unit)) => format!("{name}={number} {unit};"),
+            None => format!("{name}={value:?};"),
+        }
+    };
+    told.map(one).collect()
 }
 
 /// Collects the measures of a case, and the root mean square of the errors of each group of

@@ -170,7 +170,7 @@ fn one(
 
 fn first_line(said: &str, status: Option<i32>) -> String {
     let line = said.lines().map(str::trim).find(|line| !line.is_empty());
-    let line = line.map(|line| line.trim_start_matches("octant: ").to_owned());
+    let line = line.map(|line| line.trim_start_matches("error: ").to_owned());
     line.unwrap_or_else(|| match status {
         Some(status) => format!("it ended with status {status} and no word"),
         None => "it crashed or took too long, without a word".to_owned(),

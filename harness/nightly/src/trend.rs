@@ -2,8 +2,10 @@
 
 use super::history::{History, TrendLine, TrendPoint};
 use maud::{Markup, html};
+use octant_base::number::counted;
 use octant_report::chart::{Chart, ChartLine as Drawn, ChartRole};
 use octant_report::page::page;
+use octant_report::units::unit;
 use std::collections::BTreeMap;
 
 /// Renders the page. `baseline` is the accepted night.
@@ -14,42 +16,85 @@ pub fn render(history: &History, baseline: Option<&str>) -> String {
     for line in history.lines() {
         groups.entry((line.campaign.clone(), line.scenario.clone())).or_default().push(line);
     }
+    // The worst first: groups and lines whose last night is worse than its baseline.
+    let mut groups: Vec<_> = groups.into_iter().collect();
+    for (_, lines) in &mut groups {
+        lines.sort_by_key(|line| std::cmp::Reverse(severity(line)));
+    }
+    groups.sort_by_key(|(_, lines)| std::cmp::Reverse(lines.iter().map(severity).max()));
     let number =
         |name: &str| nights.iter().position(|night| night.get("night").is_some_and(|n| n == name));
     let marked = baseline.and_then(number);
     let body = html! {
         header {
-            div.eyebrow { "Nights" }
-            h1 { "Trend over " (nights.len()) " nights" }
+            div.eyebrow { "Nightly regression" }
+            h1 { "Trend over " (counted(nights.len(), "night", "nights")) }
             p.lead { @match baseline {
                 Some(night) => { "The accepted baseline is night " strong { (night) } "." }
                 None => { "No baseline is accepted yet." }
             } }
         }
-        h2 { "Nights" }
-        (table(&nights, baseline))
-        @for ((campaign, scenario), lines) in &groups {
-            h2 { (campaign) ": " (scenario) }
-            @for line in lines { (chart(line, marked)) }
+        nav.contents aria-label="Contents" {
+            a href="#nights" { "Nights" } " "
+            @for (index, ((campaign, scenario), _)) in groups.iter().enumerate() {
+                a href={ "#scenario-" (index) } { (short(campaign)) ": " (short(scenario)) } " "
+            }
+        }
+        section {
+            h2 #nights { "Nights" }
+            (table(&nights, baseline))
+        }
+        @for (index, ((campaign, scenario), lines)) in groups.iter().enumerate() {
+            section {
+                h2 id={ "scenario-" (index) } { (short(campaign)) ": " (short(scenario)) }
+                div.plots { @for line in lines { (chart(line, marked)) } }
+            }
         }
     };
-    page("Nights", &body)
+    page("Nightly trend", &body)
+}
+
+/// Severity of a line: 2 if its last night is worse than its baseline, 1 if an earlier one is.
+fn severity(line: &TrendLine) -> u8 {
+    let worse = |point: &TrendPoint| point.change == "worse";
+    if line.points.last().is_some_and(worse) { 2 } else { u8::from(line.points.iter().any(worse)) }
+}
+
+/// Name of a campaign or scenario: of a path its file without folder and extension.
+fn short(name: &str) -> &str {
+    let file = name.rsplit('/').next().unwrap_or(name);
+    file.strip_suffix(".toml").filter(|stem| !stem.is_empty()).unwrap_or(file)
+}
+
+/// Title of a measure in words, with its unit where it has one.
+fn title(measure: &str) -> String {
+    let unit = unit(measure);
+    let words = measure.trim_matches('|').replace(['.', '_'], " ");
+    // The unit ends the title and needn't be in the name as well.
+    let ending = match unit {
+        "m/s" => "mps",
+        "µs" => "us",
+        other => other,
+    };
+    let words = words.split(' ').filter(|word| *word != ending).collect::<Vec<_>>().join(" ");
+    if unit.is_empty() { words } else { format!("{words}, {unit}") }
 }
 
 fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "number" } th { "night" } th { "verdict" } th { "against" } th { "octant" }
-                th { "commit" } th { "program" }
+                th { "Number" } th { "Verdict" } th { "Night" } th { "Started" } th { "Baseline" }
+                th { "Octant" } th { "Commit" } th { "Program" }
             } }
             tbody { @for (index, night) in nights.iter().enumerate() {
                 @let get = |name: &str| night.get(name).cloned().unwrap_or_default();
                 @let short = |name: &str| get(name).chars().take(12).collect::<String>();
                 tr {
                     td { (index + 1) }
-                    td { (get("night")) @if baseline == Some(get("night").as_str()) { " (baseline)" } }
                     td { span class={ "badge " (get("verdict")) } { (get("verdict")) } }
+                    td { (get("night")) @if baseline == Some(get("night").as_str()) { " (baseline)" } }
+                    td { (get("started")) }
                     td { (get("baseline")) }
                     td { (get("octant")) }
                     td { code { (short("commit")) } }
@@ -61,8 +106,10 @@ fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> M
 }
 
 fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
-    let mut chart = Chart::new(&line.measure, "night", &line.measure);
+    let title = title(&line.measure);
+    let mut chart = Chart::new(&title, "number of the night", &title);
     chart.hours = false;
+    chart.dots = true;
     chart.height = 170.0;
     let of = |value: fn(&TrendPoint) -> f64| -> Vec<[f64; 2]> {
         line.points.iter().map(|point| [(point.night + 1) as f64, value(point)]).collect()
@@ -83,11 +130,53 @@ fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
     let (worse, better) = (told("worse"), told("better"));
     html! {
         @if let [only] = line.points.as_slice() {
-            h3 { (line.measure) }
+            h3 { (title) }
             p { "median " (octant_base::number::significant(only.median, 4)) ", 95th percentile "
                 (octant_base::number::significant(only.p95, 4)) ", in one night" }
         } @else { (chart.render()) }
         @if !worse.is_empty() { p.hint { "Worse than its baseline in night " (worse.join(", ")) "." } }
         @if !better.is_empty() { p.hint { "Better than its baseline in night " (better.join(", ")) "." } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn titles_are_words_with_a_unit_and_no_paths() {
+        assert_eq!(
+            title("navigation.longitude_error_arcmin.max"),
+            "navigation longitude error max, arcmin"
+        );
+        assert_eq!(
+            title("|calibration.parameters.g_zz.error|"),
+            "calibration parameters g zz error, deg/h/g"
+        );
+        assert_eq!(title("passes of NAV-1"), "passes of NAV-1");
+        assert_eq!(short("fixtures/campaigns/certification.toml"), "certification");
+        assert_eq!(short("suite"), "suite");
+    }
+
+    #[test]
+    fn a_line_that_got_worse_comes_first() {
+        let line = |changes: &[&str]| TrendLine {
+            campaign: String::new(),
+            scenario: String::new(),
+            measure: String::new(),
+            points: changes
+                .iter()
+                .enumerate()
+                .map(|(night, change)| TrendPoint {
+                    night,
+                    median: 1.0,
+                    p95: 2.0,
+                    change: (*change).to_owned(),
+                })
+                .collect(),
+        };
+        assert_eq!(severity(&line(&["", "worse"])), 2);
+        assert_eq!(severity(&line(&["worse", ""])), 1);
+        assert_eq!(severity(&line(&["", "better"])), 0);
     }
 }

@@ -70,6 +70,33 @@ pub struct PredictedResult {
     pub achieved: Covariance,
     /// Position error in navigation, a point every ten minutes.
     pub drift: Vec<PositionError>,
+    /// Attitude and velocity error at the same times.
+    pub motion: Vec<MotionError>,
+}
+
+/// Attitude and velocity error of an ensemble at one time, computed − true.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionError {
+    /// Mean of φ in n, rad.
+    pub mean_phi_rad: Vector3<f64>,
+    /// Covariance of φ about it, rad².
+    pub phi_rad2: Matrix3<f64>,
+    /// Mean of the velocity error, north and east, m/s.
+    pub mean_mps: [f64; 2],
+    /// Its variances, (m/s)².
+    pub variances_m2ps2: [f64; 2],
+}
+
+impl MotionError {
+    /// Attitude and velocity part of the moments of all errors.
+    fn of(mean: &[f64; STATE_COUNT], covariance: &Covariance) -> Self {
+        Self {
+            mean_phi_rad: Vector3::from_fn(|i, _| mean[PHI + i]),
+            phi_rad2: Matrix3::from_fn(|i, j| covariance.at(PHI + i, PHI + j)),
+            mean_mps: [mean[DV], mean[DV + 1]],
+            variances_m2ps2: [covariance.at(DV, DV), covariance.at(DV + 1, DV + 1)],
+        }
+    }
 }
 
 /// Reasons why a procedure can't be analysed.
@@ -164,7 +191,7 @@ pub fn reach(
         calibrate(&mut platform, kalman, noise_of(config), (start_s, end_s), &mut errors);
     let (mean, achieved) = errors.moments();
 
-    let mut drift = Vec::new();
+    let (mut drift, mut motion) = (Vec::new(), Vec::new());
     if let Some(plan) = &config.navigation
         && let Some(duration_s) = plan.duration_s
     {
@@ -177,9 +204,9 @@ pub fn reach(
             .map(|wander| 0.1 * wander.correlation_time_s)
             .fold(NAVIGATION_STEP_S, f64::min)
             .max(1.0);
-        drift = navigate(platform, &mut errors, end_s, duration_s, step_s);
+        (drift, motion) = navigate(platform, &mut errors, end_s, duration_s, step_s);
     }
-    Ok(PredictedResult { believed, mean, achieved, drift })
+    Ok(PredictedResult { believed, mean, achieved, drift, motion })
 }
 
 fn calibrate(
@@ -236,9 +263,9 @@ fn navigate(
     start_s: f64,
     duration_s: f64,
     step_s: f64,
-) -> Vec<PositionError> {
+) -> (Vec<PositionError>, Vec<MotionError>) {
     errors.start_free(start_s);
-    let mut drift = Vec::new();
+    let (mut drift, mut motion) = (Vec::new(), Vec::new());
     let (mut t, mut dwelling) = (0.0, None);
     let mut mark_s: f64 = DRIFT_EVERY_S;
     while t < duration_s - 1e-6 {
@@ -271,11 +298,12 @@ fn navigate(
                 variances_m2: [covariance.at(DR, DR), covariance.at(DR + 1, DR + 1)],
                 covariance_m2: covariance.at(DR, DR + 1),
             });
+            motion.push(MotionError::of(&mean, &covariance));
             mark_s += DRIFT_EVERY_S;
         }
         platform.reach(t);
     }
-    drift
+    (drift, motion)
 }
 
 /// Returns the name of a state, one of 39, as in golden files and results.

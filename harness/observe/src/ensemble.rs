@@ -5,6 +5,8 @@
 //! Guidance, Control, and Dynamics 29, 2006). The filter keeps its own prior and noise; the plant's
 //! draws and effects are in [`EnsembleTruth`].
 
+pub use super::bands::{ErrorBand, SolutionBands};
+
 use super::covariance::{
     AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name,
 };
@@ -27,7 +29,6 @@ use octant_scenario::{
     AlignmentSpec, DocksideSpec, Method, MotionSpec, ParameterDistribution, Scenario,
 };
 use octant_source::configure::configurations;
-use octant_statistics::normal;
 use octant_statistics::radius::Plane;
 use serde::{Deserialize, Serialize};
 
@@ -83,21 +84,9 @@ pub struct DriftBand {
     pub longitude_arcmin: ErrorBand,
     /// Radial error, nmi.
     pub radial_nmi: RadialBand,
-}
-
-/// A signed error over the ensemble.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ErrorBand {
-    /// Mean.
-    pub mean: f64,
-    /// σ about the mean.
-    pub sigma: f64,
-    /// 5th percentile.
-    pub p5: f64,
-    /// Median.
-    pub p50: f64,
-    /// 95th percentile.
-    pub p95: f64,
+    /// Attitude and velocity; null in predictions from before they were made.
+    #[serde(default)]
+    pub solution: Option<SolutionBands>,
 }
 
 /// A radial error over the ensemble.
@@ -153,7 +142,8 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
     };
     let c = c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad);
     let truth = truth(scenario, &config, &calibration.sequence, &c)?;
-    let PredictedResult { believed, mean, achieved, drift } = reach(&config, &c, &truth)?;
+    let attitude = mean;
+    let PredictedResult { believed, mean, achieved, drift, motion } = reach(&config, &c, &truth)?;
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let states = (0..STATE_COUNT).map(|state| {
         let (unit, si) = state_unit(state);
@@ -178,7 +168,14 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
         method: label(scenario, method),
         calibration_h: calibration.duration_s / 3600.0,
         states: states.collect(),
-        drift: drift.iter().map(|at| band(at, &earth)).collect(),
+        drift: drift
+            .iter()
+            .zip(&motion)
+            .map(|(at, motion)| {
+                let solution = SolutionBands::of(motion, attitude.heading_rad, attitude.pitch_rad);
+                DriftBand { solution: Some(solution), ..band(at, &earth) }
+            })
+            .collect(),
         not_modelled: not_modelled(scenario),
     })
 }
@@ -203,8 +200,7 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
         let unit_m = arcmin_m(earth)[axis];
         let mean = at.mean_m[axis] / unit_m;
         let sigma = libm::sqrt(at.variances_m2[axis].max(0.0)) / unit_m;
-        let percentile = |p: f64| mean + sigma * normal::quantile(p);
-        ErrorBand { mean, sigma, p5: percentile(0.05), p50: mean, p95: percentile(0.95) }
+        ErrorBand::of(mean, sigma)
     };
     let square = NAUTICAL_MILE_M * NAUTICAL_MILE_M;
     let plane = Plane {
@@ -217,6 +213,7 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
         latitude_arcmin: one(0),
         longitude_arcmin: one(1),
         radial_nmi: RadialBand { p50: plane.quantile(0.5), p95: plane.quantile(0.95) },
+        solution: None,
     }
 }
 

@@ -3,6 +3,7 @@
 //! [`static_rank`](mod@static_rank) is the algebra of static positions, [`covariance`] predicts the
 //! result of one configuration, [`ensemble`] that of a scenario's draws.
 
+mod bands;
 pub mod covariance;
 pub mod ensemble;
 mod platform;

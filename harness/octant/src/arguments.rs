@@ -26,6 +26,12 @@ pub(crate) fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
     })
 }
 
+/// Parses a seed on the command line. The limits are those of a scenario's key, which takes it over.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    let number = text.trim().parse::<u64>().ok().filter(|seed| i64::try_from(*seed).is_ok());
+    number.ok_or_else(|| format!("expected a whole number from 0 to {}", i64::MAX))
+}
+
 /// Reads a scenario with the changes of the command line.
 pub(crate) fn load(
     arguments: &ScenarioArguments,

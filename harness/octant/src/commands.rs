@@ -1,10 +1,11 @@
 //! Commands of the program, and its entry point.
 
 use crate::failure::Failure;
-use crate::terminal::{note, print, styled};
+use crate::terminal::{note, print, printable, styled};
 use crate::{
-    campaign, compare, doctor, faults, fmu, nightly, observe, progress, rejudge, replay, report,
-    requirements, run, score, selftest, serve, turntable, verify, watch,
+    campaign, compare, completions, diff, doctor, export, faults, fmu, new, nightly, observe,
+    progress, rejudge, replay, report, requirements, run, score, selftest, serve, turntable,
+    verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -25,10 +26,14 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented scenario, from flags and from questions on a terminal.
+    New(new::Arguments),
     /// Run a scenario or a system of FMUs: calibrate, navigate, score, and write a folder of evidence.
     Run(run::Arguments),
     /// Compare two methods over many seeds, on the same instruments with the same noise.
     Compare(compare::Arguments),
+    /// Compare two runs or two campaigns: settings, samples, scores.
+    Diff(diff::Arguments),
     /// Run the core again on a recorded stream, and compare the outputs.
     Replay(replay::Arguments),
     /// Run a campaign of many cases: plan it, run it on any number of hosts, merge and report results.
@@ -43,6 +48,8 @@ enum Command {
     Serve(serve::Arguments),
     /// Score a recording, without running the core.
     Score(score::Arguments),
+    /// Export a recording to CSV, Parquet, MAT, KML, or MCAP with messages of ROS 2.
+    Export(export::Arguments),
     /// Predict the observability and the accuracy of a sequence, without running it.
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
@@ -63,14 +70,23 @@ enum Command {
     Doctor(doctor::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
+    /// Print the completion script of a shell.
+    Completions(completions::CompletionArguments),
+    /// Write the manual pages of all commands.
+    Man(completions::ManArguments),
     #[command(external_subcommand)]
     Other(Vec<OsString>),
+}
+
+/// Returns the command line with all of its commands.
+fn whole() -> clap::Command {
+    <Cli as clap::CommandFactory>::command()
 }
 
 /// Reports an unknown command.
 fn other(words: &[OsString]) -> Failure {
     let name = words.first().map_or("".into(), |word| word.to_string_lossy());
-    let command = <Cli as clap::CommandFactory>::command();
+    let command = whole();
     let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
     let known = octant_base::names::suggestion(&name, known.into_iter(), "commands");
     Failure::input(format!("unknown command {name:?}, {known}"))
@@ -106,7 +122,10 @@ impl std::error::Error for RefusedCommand {}
 
 /// Prints help, the version, or the error of a command line, as clap does it.
 fn help(told: &clap::Error) -> ExitCode {
+    // The style of the program's own errors: fragments without a full stop.
     let text = told.render().to_string();
+    let text = text.replace("For more information, try '--help'.", "try --help for all options");
+    let text = text.replace("invalid digit found in string", "expected a whole number");
     // A reader that has gone (`| head`) is no failure.
     let _ = match told.use_stderr() {
         true => std::io::stderr().write_all(styled(&text, &std::io::stderr()).as_bytes()),
@@ -115,15 +134,20 @@ fn help(told: &clap::Error) -> ExitCode {
     ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
 }
 
-/// Runs the program and returns its exit status.
-#[must_use]
-pub fn main() -> ExitCode {
+/// Names this build in the manifests that the process writes.
+pub(crate) fn say_build() {
     octant_evidence::build::say(octant_evidence::build::Build {
         git_commit: env!("OCTANT_GIT_COMMIT"),
         is_git_dirty: env!("OCTANT_GIT_DIRTY") == "true",
         rustc: env!("OCTANT_RUSTC"),
         lock_file_sha256: env!("OCTANT_LOCK_FILE"),
     });
+}
+
+/// Runs the program and returns its exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    say_build();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(told) => return help(&told),
@@ -131,10 +155,11 @@ pub fn main() -> ExitCode {
     if let Some(parent) = cli.parent
         && let Err(error) = progress::leave_interrupts_to(parent)
     {
-        note!("octant: failed to follow process {parent}: {error}");
+        note!("error: failed to follow process {parent}: {error}");
         return ExitCode::from(Verdict::Error.exit_code());
     }
     let outcome = match cli.command {
+        Command::New(arguments) => new::command(&arguments),
         Command::Run(arguments) => run::command(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Nightly(arguments) => nightly::command(&arguments),
@@ -144,6 +169,8 @@ pub fn main() -> ExitCode {
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
+        Command::Diff(arguments) => diff::command(&arguments),
+        Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),
@@ -154,6 +181,8 @@ pub fn main() -> ExitCode {
         Command::Turntable(arguments) => turntable::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
+        Command::Completions(arguments) => completions::completions(&arguments, whole()),
+        Command::Man(arguments) => completions::man(&arguments, whole()),
         Command::Schema => {
             print(&format!("{:#}\n", octant_scenario::schema())).map(|()| Verdict::Pass)
         }
@@ -161,7 +190,8 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(verdict) => ExitCode::from(verdict.exit_code()),
         Err(failure) => {
-            note!("octant: {}", failure.message);
+            let line = format!("error: {}\n", printable(&failure.message));
+            eprint!("{}", styled(&line, &std::io::stderr()));
             ExitCode::from(failure.status)
         }
     }

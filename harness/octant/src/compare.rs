@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
+use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_requirements::Verdict;
 use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
@@ -26,6 +27,10 @@ pub(super) struct Arguments {
     /// Folder for compare.json and compare.html; by default nothing is written.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Units of errors in report and terminal: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
     /// Print compare.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -34,7 +39,8 @@ pub(super) struct Arguments {
 /// Returns both sides: the reference method, and the method under comparison.
 fn sides(arguments: &Arguments) -> Result<(MethodSide, MethodSide), Failure> {
     let side = |scenario, method| MethodSide { scenario, method };
-    let second = load(&arguments.scenario, &[])?;
+    let chosen = arguments.units.map(|units| units.settings()).unwrap_or_default();
+    let second = load(&arguments.scenario, &chosen)?;
     if let Some(against) = &arguments.against {
         let first = Scenario::load(against, &[]).map_err(Failure::input)?;
         return Ok((side(first, Method::Primary), side(second, Method::Primary)));
@@ -63,13 +69,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let comparison =
         with_progress(&controls, epochs, sample_s, || paired(&first, &second, &seeds, &controls))?;
-    write_results(arguments, &comparison)?;
+    write_results(arguments, &comparison, &scenario.display)?;
     // With too few pairs nothing is shown.
     let compared = !comparison.cells.is_empty();
     Ok(if compared { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
-fn write_results(arguments: &Arguments, comparison: &MethodComparison) -> Result<(), Failure> {
+fn write_results(
+    arguments: &Arguments,
+    comparison: &MethodComparison,
+    units: &DisplayUnits,
+) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))
@@ -90,12 +100,12 @@ fn write_results(arguments: &Arguments, comparison: &MethodComparison) -> Result
         }
         line.extend(["--seeds".to_owned(), arguments.seeds.to_string()]);
         let provenance = [("rerun".to_owned(), line.join(" "))];
-        let html = octant_report::compare::render(comparison, &provenance);
+        let html = octant_report::compare::render(comparison, &provenance, units);
         write(&folder.join("compare.html"), html)?;
     }
     if arguments.json {
         print_json(comparison)
     } else {
-        print(&octant_report::compare::table(comparison))
+        print(&octant_report::compare::table(comparison, units))
     }
 }

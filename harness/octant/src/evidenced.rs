@@ -3,10 +3,11 @@
 use crate::arguments::read_scenario;
 use crate::failure::Failure;
 use crate::live::Live;
-use crate::progress::with_progress;
+use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
 use crate::terminal::{note, print, write};
-use octant_evidence::{Existing, FmuFacts, Manifest, RunFacts, RunFolder};
+use octant_evidence::signature::SigningKey;
+use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
 use octant_report as report;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
@@ -18,70 +19,88 @@ use octant_scenario::{Method, Scenario};
 use octant_score::junit::junit;
 use octant_source::configure::configurations;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 /// Request for a run of a scenario.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Request {
+pub struct RunRequest {
     /// File of the scenario.
-    pub(crate) scenario: PathBuf,
+    pub scenario: PathBuf,
+    /// Text of the scenario, in place of the file's content.
+    pub text: Option<String>,
     /// Changes of its keys, `KEY=VALUE`.
-    pub(crate) set: Vec<String>,
+    pub set: Vec<String>,
     /// Folder of the run; by default a new one in ./runs.
-    pub(crate) out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Replaces a run in the folder.
-    pub(crate) force: bool,
+    pub force: bool,
     /// Seed, instead of the scenario's.
-    pub(crate) seed: Option<u64>,
+    pub seed: Option<u64>,
     /// URI of the source, instead of the scenario's.
-    pub(crate) source: Option<String>,
+    pub source: Option<String>,
     /// URI of the endpoint, instead of the scenario's.
-    pub(crate) endpoint: Option<String>,
+    pub endpoint: Option<String>,
     /// Faults that are triggered by hand, `ID=TIME`.
-    pub(crate) fire: Vec<String>,
+    pub fire: Vec<String>,
     /// Ids of the faults that are injected; `None` for all.
-    pub(crate) only_faults: Option<Vec<String>>,
+    pub only_faults: Option<Vec<String>>,
     /// The faults are the ones that a campaign plans for its case: none is left out.
-    pub(crate) planned_faults: bool,
+    pub planned_faults: bool,
     /// Counts a run of which nothing is required as inconclusive.
-    pub(crate) require: bool,
+    pub require: bool,
     /// Runs by the clock.
-    pub(crate) realtime: bool,
+    pub realtime: bool,
     /// Leaves out the twins.
-    pub(crate) no_twin: bool,
+    pub no_twin: bool,
     /// Address at which the run is served to Foxglove.
-    pub(crate) live: Option<String>,
+    pub live: Option<String>,
     /// Prints the summary as JSON.
-    pub(crate) json: bool,
+    pub json: bool,
+    /// Call that made the run, in place of a command line that makes it again.
+    pub call: Option<Vec<String>>,
+}
+
+/// Evidence of a run that has ended.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Folder of the run.
+    pub folder: PathBuf,
+    /// Content of `summary.json`.
+    pub summary: String,
+    /// Results in words.
+    pub text: String,
+    /// Reasons for which the run broke off.
+    pub broken: Vec<String>,
+    /// True if the run was interrupted.
+    pub interrupted: bool,
+}
+
+/// Runs a scenario, writes its evidence, and prints the results.
+pub(crate) fn run(request: &RunRequest) -> Result<Verdict, Failure> {
+    let evidence = evidence(request, &Follower::Terminal)?;
+    if !evidence.broken.is_empty() {
+        // With --json stdout is for programs, and the folder of a failed job may be gone.
+        for reason in &evidence.broken {
+            note!("octant: {reason}");
+        }
+        note!("octant: the run broke off; the recorded part is in {}", evidence.folder.display());
+    }
+    if request.json {
+        print(&evidence.summary)?;
+    } else {
+        print(&evidence.text)?;
+        print(&format!("{}\n", evidence.folder.join("report.html").display()))?;
+    }
+    Ok(evidence.verdict)
 }
 
 /// Runs a scenario and writes its evidence.
-pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
-    let mut more = Vec::new();
-    if let Some(uri) = &request.source {
-        more.push(format!("source.uri={}", from_here(uri)?));
-    }
-    if let Some(uri) = &request.endpoint {
-        more.push(format!("endpoint.uri={}", from_here(uri)?));
-    }
-    if request.realtime {
-        more.push("realtime.pace=\"clock\"".to_owned());
-    }
-    let mut scenario = read_scenario(&request.scenario, &request.set, &more, &request.fire)?;
-    let mut left_out = Vec::new();
-    if let Some(faults) = &request.only_faults {
-        // `--only-faults=` gives one empty name.
-        let faults: Vec<String> = faults.iter().filter(|id| !id.is_empty()).cloned().collect();
-        if !request.planned_faults {
-            let all = scenario.faults.iter().map(|fault| fault.spec.id.clone());
-            left_out = all.filter(|id| !faults.contains(id)).collect();
-        }
-        scenario = scenario.with_only(&faults).map_err(|reason| {
-            let file = request.scenario.display();
-            Failure::input(format!("{file}: --only-faults: {reason}"))
-        })?;
-    }
-    let seed = request.seed.unwrap_or(scenario.seed);
+pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<Evidence, Failure> {
+    let asked = Asked::of(request)?;
+    let (scenario, seed) = (&asked.scenario, asked.seed);
     // Contradictions, and sources that can't be opened, are reported before anything is written. A
     // real instrument doesn't repeat its measurements, so it has no twin.
     let once = scenario.source.instrument().is_some();
@@ -89,100 +108,170 @@ pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
     if once && !request.no_twin && !scenario.faults.is_empty() {
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
-    let prepared = prepare(&scenario, seed, twins)?;
-    let fmus = fmus(&scenario, prepared.tasks())?;
-    let inputs = octant_evidence::inputs(&scenario)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
-    let key = crate::signing::signing_key()?;
+    let prepared = prepare(scenario, seed, twins)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
-    let (path, existing) = match &request.out {
-        Some(path) if request.force => (path.clone(), Existing::Replace),
-        Some(path) => (path.clone(), Existing::Refuse),
-        None => (free_name(&request.scenario), Existing::Refuse),
-    };
-    let folder = RunFolder::create(&path, existing)
-        .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))?;
+    let begun = asked.begin(request, prepared.tasks())?;
     if let Some(live) = &mut live {
-        live.follow(folder.path())?;
+        live.follow(begun.folder.path())?;
     }
-    let started = SystemTime::now();
-    let (_, _, draws) = configurations(&scenario, Method::Primary, seed)
-        .map_err(|e| Failure::input(format!("failed to {e}")))?;
-    write(&folder.path().join("scenario.toml"), scenario.to_resolved_toml(seed, &draws))?;
+    let runs = execute(&prepared, scenario, begun.folder.path(), follower)?;
+    asked.conclude(request, begun, runs)
+}
 
-    let runs = execute(&prepared, &scenario, folder.path())?;
-    let unfinished = |ended| matches!(ended, Ended::Cancelled | Ended::Broken);
-    let interrupted = runs.iter().any(|run| {
-        unfinished(run.ended) || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
-    });
-    let broken = runs.iter().find_map(|run| run.broken.as_ref().map(ToString::to_string));
-    // With a full disk, there may be no space for the results either.
-    let failed = |failure: Failure| match &broken {
-        None => failure,
-        Some(reason) => {
-            let message = format!("failed to {reason}; and {}", failure.message);
-            Failure { message, ..failure }
+/// Scenario of a request, with its changes.
+#[derive(Debug)]
+pub(crate) struct Asked {
+    /// The scenario.
+    pub(crate) scenario: Scenario,
+    /// Seed of the run.
+    pub(crate) seed: u64,
+    /// Ids of the faults that were left out.
+    left_out: Vec<String>,
+}
+
+/// Folder of a run that has begun, with facts of its beginning.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    /// The folder.
+    pub(crate) folder: RunFolder,
+    started: SystemTime,
+    fmus: Vec<FmuFacts>,
+    inputs: Vec<InputFacts>,
+    key: Option<Arc<SigningKey>>,
+}
+
+impl Asked {
+    /// Reads the scenario of a request.
+    pub(crate) fn of(request: &RunRequest) -> Result<Self, Failure> {
+        let mut more = Vec::new();
+        if let Some(uri) = &request.source {
+            more.push(format!("source.uri={}", from_here(uri)?));
         }
-    };
-    let mut runs = runs.into_iter();
-    let (Some(primary), baseline) = (runs.next(), runs.next()) else {
-        return Err(Failure::bench("failed to run the scenario: no method ran"));
-    };
-    let tables = [
-        ("calibration", primary.table.clone()),
-        ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
-    ];
-    let reasons = what_broke(&primary, baseline.as_ref());
-    let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
-    let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
-    let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
-    let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
-    let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
-    // Certificates are compared with the day in the manifest.
-    let ended = SystemTime::now();
-    let choice = Choice { require: request.require, left_out, day: Some(Day::of(ended)) };
-    let run = assemble_with(&scenario, seed, primary, baseline, &choice)
-        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
-    for (name, table) in tables {
-        if let Some(table) = table {
-            let path = folder.path().join(format!("{name}.octcal"));
-            write(&path, table.to_bytes()).map_err(failed)?;
+        if let Some(uri) = &request.endpoint {
+            more.push(format!("endpoint.uri={}", from_here(uri)?));
         }
-    }
-    let facts = RunFacts {
-        seed: Some(seed),
-        command_line: rerun(request, seed),
-        fmus,
-        link,
-        bench,
-        realtime,
-        key,
-        inputs,
-        equipment: scenario.equipment.clone(),
-        ..RunFacts::between(started, ended)
-    };
-    let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
-    let (verdict, json) = write_results(folder.path(), run, &facts).map_err(failed)?;
-    let place = if interrupted {
-        // An unfinished run keeps the name of a partial folder.
-        folder.path().to_owned()
-    } else {
-        folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
-    };
-    if !reasons.is_empty() {
-        // With --json stdout is for programs, and the folder of a failed job may be gone.
-        for reason in &reasons {
-            note!("octant: {reason}");
+        if request.realtime {
+            more.push("realtime.pace=\"clock\"".to_owned());
         }
-        note!("octant: the run broke off; the recorded part is in {}", place.display());
+        let (path, set) = (&request.scenario, &request.set);
+        let mut scenario = match &request.text {
+            None => read_scenario(path, set, &more, &request.fire)?,
+            Some(text) => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let (name, set) = (path.display().to_string(), [&**set, &*more].concat());
+                Scenario::parse_fired(text, &name, folder, &set, &request.fire)
+                    .map_err(Failure::input)?
+            }
+        };
+        let mut left_out = Vec::new();
+        if let Some(faults) = &request.only_faults {
+            // `--only-faults=` gives one empty name.
+            let faults: Vec<String> = faults.iter().filter(|id| !id.is_empty()).cloned().collect();
+            if !request.planned_faults {
+                let all = scenario.faults.iter().map(|fault| fault.spec.id.clone());
+                left_out = all.filter(|id| !faults.contains(id)).collect();
+            }
+            scenario = scenario.with_only(&faults).map_err(|reason| {
+                let file = request.scenario.display();
+                Failure::input(format!("{file}: --only-faults: {reason}"))
+            })?;
+        }
+        let seed = request.seed.unwrap_or(scenario.seed);
+        Ok(Self { scenario, seed, left_out })
     }
-    if request.json {
-        print(&json.text)?;
-    } else {
-        print(&(json.human + &raw))?;
-        print(&format!("{}\n", place.join("report.html").display()))?;
+
+    /// Makes the folder of the run, with the resolved scenario in it.
+    pub(crate) fn begin(&self, request: &RunRequest, tasks: usize) -> Result<Begun, Failure> {
+        let fmus = fmus(&self.scenario, tasks)?;
+        let inputs = octant_evidence::inputs(&self.scenario)
+            .map_err(|error| Failure::input(format!("failed to {error}")))?;
+        let key = crate::signing::signing_key()?;
+        let (path, existing) = match &request.out {
+            Some(path) if request.force => (path.clone(), Existing::Replace),
+            Some(path) => (path.clone(), Existing::Refuse),
+            None => (free_name(&request.scenario), Existing::Refuse),
+        };
+        let folder = RunFolder::create(&path, existing)
+            .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))?;
+        let started = SystemTime::now();
+        let (_, _, draws) = configurations(&self.scenario, Method::Primary, self.seed)
+            .map_err(|e| Failure::input(format!("failed to {e}")))?;
+        let resolved = self.scenario.to_resolved_toml(self.seed, &draws);
+        write(&folder.path().join("scenario.toml"), resolved)?;
+        Ok(Begun { folder, started, fmus, inputs, key })
     }
-    Ok(verdict)
+
+    /// Writes the evidence of runs that have ended.
+    pub(crate) fn conclude(
+        self,
+        request: &RunRequest,
+        begun: Begun,
+        runs: Vec<MethodRun>,
+    ) -> Result<Evidence, Failure> {
+        let Self { scenario, seed, left_out } = self;
+        let Begun { folder, started, fmus, inputs, key } = begun;
+        let unfinished = |ended| matches!(ended, Ended::Cancelled | Ended::Broken);
+        let interrupted = runs.iter().any(|run| {
+            unfinished(run.ended)
+                || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
+        });
+        let broken = runs.iter().find_map(|run| run.broken.as_ref().map(ToString::to_string));
+        // With a full disk, there may be no space for the results either.
+        let failed = |failure: Failure| match &broken {
+            None => failure,
+            Some(reason) => {
+                let message = format!("failed to {reason}; and {}", failure.message);
+                Failure { message, ..failure }
+            }
+        };
+        let mut runs = runs.into_iter();
+        let (Some(primary), baseline) = (runs.next(), runs.next()) else {
+            return Err(Failure::bench("failed to run the scenario: no method ran"));
+        };
+        let tables = [
+            ("calibration", primary.table.clone()),
+            ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
+        ];
+        let reasons = what_broke(&primary, baseline.as_ref());
+        let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
+        let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
+        let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
+        let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
+        let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
+        // Certificates are compared with the day in the manifest.
+        let ended = SystemTime::now();
+        let choice = Choice { require: request.require, left_out, day: Some(Day::of(ended)) };
+        let run = assemble_with(&scenario, seed, primary, baseline, &choice)
+            .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+        for (name, table) in tables {
+            if let Some(table) = table {
+                let path = folder.path().join(format!("{name}.octcal"));
+                write(&path, table.to_bytes()).map_err(failed)?;
+            }
+        }
+        let facts = RunFacts {
+            seed: Some(seed),
+            command_line: rerun(request, seed),
+            fmus,
+            link,
+            bench,
+            realtime,
+            key,
+            inputs,
+            equipment: scenario.equipment.clone(),
+            ..RunFacts::between(started, ended)
+        };
+        let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
+        let (verdict, printed) = write_results(folder.path(), run, &facts).map_err(failed)?;
+        let folder = if interrupted {
+            // An unfinished run keeps the name of a partial folder.
+            folder.path().to_owned()
+        } else {
+            folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
+        };
+        let (summary, text) = (printed.text, printed.human + &raw);
+        Ok(Evidence { verdict, folder, summary, text, broken: reasons, interrupted })
+    }
 }
 
 /// Prepares the methods of a scenario.
@@ -195,15 +284,16 @@ pub(crate) fn prepare(
         .map_err(|error| Failure::from(MethodError::from(error)).failed())
 }
 
-/// Runs the methods of a scenario, with their progress on the terminal.
+/// Runs the methods of a scenario, followed by the terminal or a host program.
 pub(crate) fn execute(
     prepared: &Prepared<'_>,
     scenario: &Scenario,
     folder: &Path,
+    follower: &Follower<'_>,
 ) -> Result<Vec<MethodRun>, Failure> {
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let runs =
-        with_progress(prepared.controls(), prepared.epochs(), sample_s, || prepared.run(folder));
+        follower.follow(prepared.controls(), prepared.epochs(), sample_s, || prepared.run(folder));
     runs.map_err(|error| {
         let failure = match error {
             PreparedError::Method(error) => Failure::from(error),
@@ -249,7 +339,7 @@ fn write_results(
     let xml = junit(summary)
         .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
     write(&folder.join("junit.xml"), xml)?;
-    let mut human = text(summary);
+    let mut human = text(summary, &run.report.units);
     if run.report.truth.is_none() {
         human += &parameter_text(summary);
     }
@@ -260,7 +350,10 @@ fn write_results(
 }
 
 /// Returns the command line that makes the run again, with the seed that was used.
-fn rerun(request: &Request, seed: u64) -> Vec<String> {
+fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
+    if let Some(call) = &request.call {
+        return call.clone();
+    }
     let mut line =
         vec!["octant".to_owned(), "run".to_owned(), request.scenario.display().to_string()];
     for set in &request.set {
@@ -305,13 +398,13 @@ pub(crate) fn on_recording(
     let recording = std::path::absolute(recording).map_err(|error| {
         Failure::input(format!("failed to find {}: {error}", recording.display()))
     })?;
-    run(&Request {
+    run(&RunRequest {
         scenario: scenario.to_owned(),
         set: set.to_vec(),
         out: out.map(Path::to_owned),
         source: Some(format!("{kind}:{}", recording.display())),
         json,
-        ..Request::default()
+        ..RunRequest::default()
     })
 }
 
@@ -321,7 +414,7 @@ pub(crate) fn case(
     case: &octant_campaign::plan::Case,
     out: &Path,
 ) -> Result<Verdict, Failure> {
-    run(&Request {
+    run(&RunRequest {
         scenario: scenario.to_owned(),
         set: case.set.clone(),
         out: Some(out.to_owned()),
@@ -329,7 +422,7 @@ pub(crate) fn case(
         only_faults: case.faults.clone(),
         planned_faults: true,
         require: true,
-        ..Request::default()
+        ..RunRequest::default()
     })
 }
 

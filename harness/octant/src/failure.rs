@@ -4,10 +4,26 @@ use octant_requirements::Verdict;
 
 /// Reason why a command ended without a verdict.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub struct Failure {
     pub(crate) status: u8,
     pub(crate) message: String,
 }
+
+impl Failure {
+    /// Exit status: 2 bad input or usage, 3 inconclusive, 4 error of the bench.
+    #[must_use]
+    pub fn status(&self) -> u8 {
+        self.status
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
 
 impl Failure {
     /// Creates a failure by bad input or usage.
@@ -16,7 +32,7 @@ impl Failure {
     }
 
     /// Creates a failure of the bench.
-    pub(crate) fn bench(error: impl std::fmt::Display) -> Self {
+    pub fn bench(error: impl std::fmt::Display) -> Self {
         Self { status: Verdict::Error.exit_code(), message: error.to_string() }
     }
 }

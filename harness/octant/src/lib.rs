@@ -5,10 +5,15 @@
 
 mod arguments;
 mod campaign;
+mod case_progress;
 mod commands;
 mod compare;
+mod completions;
+mod diff;
 mod doctor;
+pub mod embedded;
 mod evidenced;
+mod export;
 mod failure;
 mod fault_page;
 mod fault_picture;
@@ -16,8 +21,10 @@ mod fault_words;
 mod faults;
 mod fmu;
 mod followed;
+mod grades;
 mod live;
 mod minimise;
+mod new;
 mod nightly;
 mod observe;
 mod progress;

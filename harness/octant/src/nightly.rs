@@ -1,16 +1,18 @@
 //! `octant nightly`: runs the fault suite and campaigns, and compares them with the accepted
 //! baseline.
 
-use super::campaign::run::in_rounds;
+use super::campaign::run::{in_rounds, show};
 use super::progress::watch_interrupts;
+use crate::case_progress::CaseBar;
 use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
 use octant_base::interrupt;
 use octant_campaign::case;
-use octant_campaign::execute::{CaseDone, ExecuteOptions, ExecutionEvent, Shard, execute};
+use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, Shard, execute};
 use octant_campaign::plan::Plan;
+use octant_campaign::selection::CaseSelection;
 use octant_campaign::{merge, results, status};
 use octant_evidence::manifest::{Machine, operator};
 use octant_nightly::accept::{self, Baseline, accept as accept_night};
@@ -310,27 +312,24 @@ fn run_all(
     cancel: &AtomicBool,
 ) -> Result<bool, Failure> {
     if let Some(suite) = &inputs.suite {
+        let bar = CaseBar::new("suite", suite.cases.len(), inputs.jobs, false);
         let tell = |result: &SuiteResult| {
+            bar.ended(None, result.problem.is_some());
             if let Some(problem) = &result.problem {
-                note!("suite: {}: {problem}", result.name);
+                bar.note(&format!("suite: {}: {problem}", result.name));
             }
         };
         let into = folder.join("suite");
-        let found = suite::run(suite, &into, &inputs.program, inputs.jobs, cancel, &tell);
+        let found = bar.during(&|_| String::new(), || {
+            suite::run(suite, &into, &inputs.program, inputs.jobs, cancel, &tell)
+        });
         let Some(found) = found.map_err(Failure::bench)? else { return Ok(false) };
         night.suite = found;
     }
     for (name, plan) in &inputs.plans {
         let into = folder.join(name);
-        let tell = |event: &ExecutionEvent| {
-            if let ExecutionEvent::Done(CaseDone { index, verdict, reason, .. }) = event
-                && *verdict > Verdict::Inconclusive
-            {
-                let case = plan.cases.get(*index).map_or("", |case| case.id.as_str());
-                let reason = reason.as_deref().unwrap_or("");
-                note!("{name}: case {case}: {}: {reason}", verdict.name());
-            }
-        };
+        let bar = CaseBar::new(name, plan.cases.len(), inputs.jobs, plan.stop.is_some());
+        let tell = |event: &ExecutionEvent| show(&bar, plan, event);
         let mut options = ExecuteOptions {
             folder: &into,
             program: &inputs.program,
@@ -338,9 +337,12 @@ fn run_all(
             shard: Shard::WHOLE,
             end: plan.cases.len(),
             again: false,
+            selection: CaseSelection::default(),
             cancel,
         };
-        if in_rounds(plan, &mut options, &tell)?.left > 0 || cancel.load(Ordering::Relaxed) {
+        let id = |index: usize| plan.cases[index].id.clone();
+        let outcome = bar.during(&id, || in_rounds(plan, &mut options, &tell))?;
+        if outcome.left > 0 || cancel.load(Ordering::Relaxed) {
             return Ok(false);
         }
         let found = conclude(plan, &into, &inputs.program, cancel)?;
@@ -384,6 +386,7 @@ fn conclude(
         shard: Shard::WHOLE,
         end: 1,
         again: false,
+        selection: CaseSelection::default(),
         cancel,
     };
     execute(plan, &options, &|_| {})?;

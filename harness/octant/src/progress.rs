@@ -1,5 +1,6 @@
 //! Progress on a terminal: simulated time, speed and time left. Silent elsewhere.
 
+use crate::case_progress::duration;
 use crate::progress_bar::ProgressBar;
 use octant_base::control::Control;
 use octant_base::interrupt;
@@ -15,14 +16,48 @@ pub(super) fn with_progress<T>(
     sample_s: f64,
     work: impl FnOnce() -> T,
 ) -> T {
-    watch_interrupts();
-    let done = std::sync::atomic::AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        scope.spawn(|| show(controls, epochs, sample_s, &done));
-        let result = work();
-        done.store(true, Ordering::Relaxed);
-        result
-    })
+    Follower::Terminal.follow(controls, epochs, sample_s, work)
+}
+
+/// Program that follows the progress of runs, and may end them.
+pub(crate) enum Follower<'a> {
+    /// This one, on a terminal.
+    Terminal,
+    /// Another one: a function with the controls and the total, called 50 times a second.
+    Host(&'a (dyn Fn(&[Control], Option<u64>) + Sync)),
+}
+
+impl Follower<'_> {
+    /// Follows some runs while `work` does them.
+    ///
+    /// `epochs` is the total that the controls will count, `sample_s` the length of one.
+    pub(crate) fn follow<T>(
+        &self,
+        controls: &[Control],
+        epochs: Option<u64>,
+        sample_s: f64,
+        work: impl FnOnce() -> T,
+    ) -> T {
+        let done = std::sync::atomic::AtomicBool::new(false);
+        let done = &done;
+        if matches!(self, Self::Terminal) {
+            watch_interrupts();
+        }
+        std::thread::scope(|scope| {
+            scope.spawn(move || match self {
+                Self::Terminal => show(controls, epochs, sample_s, done),
+                Self::Host(look) => {
+                    while !done.load(Ordering::Relaxed) {
+                        std::thread::sleep(Duration::from_millis(20));
+                        look(controls, epochs);
+                    }
+                }
+            });
+            let result = work();
+            done.store(true, Ordering::Relaxed);
+            result
+        })
+    }
 }
 
 fn show(
@@ -55,9 +90,9 @@ fn show(
         let wall_s = started.elapsed().as_secs_f64();
         let simulated_s = passed as f64 * sample_s;
         let left = match epochs {
-            Some(epochs) if passed > 0 => {
-                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0).max(0.0);
-                format!(", {left_s:.0} s left")
+            Some(epochs) if (1..epochs).contains(&passed) => {
+                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0);
+                format!(", {} left", duration(left_s))
             }
             _ => String::new(),
         };

@@ -17,26 +17,12 @@ pub(crate) struct Progress {
     pub(crate) done: u64,
     /// Units of work in all, if known.
     pub(crate) total: Option<u64>,
-    /// Units that were done before this work began: no measure of its speed.
-    before: u64,
     /// What is being done.
     pub(crate) message: String,
-    begun: Instant,
     drawn: Option<Instant>,
 }
 
 impl Progress {
-    /// Units of work done per second.
-    pub(crate) fn per_s(&self) -> f64 {
-        (self.done - self.before) as f64 / self.begun.elapsed().as_secs_f64().max(1e-3)
-    }
-
-    /// Seconds until the end at the mean speed so far; `None` before there is one.
-    pub(crate) fn left_s(&self) -> Option<f64> {
-        let (left, per_s) = (self.total?.saturating_sub(self.done), self.per_s());
-        (per_s > 0.0).then(|| left as f64 / per_s)
-    }
-
     /// Renders a line of at most this many columns: the bar, and the words after it.
     fn line(&self, words: &str, columns: usize) -> String {
         let words: String = printable(words).chars().take(columns).collect();
@@ -59,14 +45,7 @@ pub(crate) struct ProgressBar {
 impl ProgressBar {
     /// Makes a bar, with the text after it.
     pub(crate) fn new(total: Option<u64>, words: fn(&Progress) -> String) -> Self {
-        let progress = Progress {
-            done: 0,
-            total,
-            before: 0,
-            message: String::new(),
-            begun: Instant::now(),
-            drawn: None,
-        };
+        let progress = Progress { done: 0, total, message: String::new(), drawn: None };
         Self { progress: Mutex::new(progress), words, shown: std::io::stderr().is_terminal() }
     }
 
@@ -79,12 +58,9 @@ impl ProgressBar {
         }
     }
 
-    /// Counts units that were done before.
-    pub(crate) fn skip(&self, count: u64) {
-        self.update(|progress| {
-            progress.done += count;
-            progress.before += count;
-        });
+    /// Returns whether the bar is shown: stderr is a terminal.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.shown
     }
 
     /// Prints a line on stderr, above the bar.
@@ -143,8 +119,7 @@ mod tests {
     use super::*;
 
     fn progress(done: u64, total: Option<u64>) -> Progress {
-        let begun = Instant::now() - Duration::from_secs(10);
-        Progress { done, total, before: 0, message: String::new(), begun, drawn: None }
+        Progress { done, total, message: String::new(), drawn: None }
     }
 
     #[test]
@@ -157,17 +132,5 @@ mod tests {
         assert_eq!(line(1, None, 15), "1 of 4");
         assert_eq!(line(1, Some(4), 3), "1 o");
         assert_eq!(progress(1, Some(4)).line("a\u{1b}b", 40).matches('\u{1b}').count(), 0);
-    }
-
-    #[test]
-    fn the_time_left_follows_from_the_speed_of_this_work() {
-        let mut half = progress(60, Some(100));
-        half.before = 20;
-        // 40 in 10 s; 40 are left.
-        assert!((half.per_s() - 4.0).abs() < 0.1, "{}", half.per_s());
-        let left_s = half.left_s().expect("has a speed");
-        assert!((left_s - 10.0).abs() < 0.3, "{left_s}");
-        assert_eq!(progress(0, Some(4)).left_s(), None);
-        assert_eq!(progress(2, None).left_s(), None);
     }
 }

@@ -2,6 +2,7 @@
 //! alone.
 
 use super::evidenced::{execute, prepare};
+use super::progress::Follower;
 use crate::failure::Failure;
 use crate::terminal::note;
 use octant_base::number::counted;
@@ -134,7 +135,8 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     let twins = !manifest.command_line.iter().any(|word| word == "--no-twin");
     let place = tempfile::tempdir()
         .map_err(|error| Failure::bench(format!("failed to create a folder: {error}")))?;
-    let mut runs = execute(&prepare(&scenario, seed, twins)?, &scenario, place.path())?.into_iter();
+    let prepared = prepare(&scenario, seed, twins)?;
+    let mut runs = execute(&prepared, &scenario, place.path(), &Follower::Terminal)?.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
     };

@@ -4,6 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
+use octant_base::display::UnitChoice;
+use octant_calibration::table::CalibrationTable;
 use octant_campaign::keep;
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::Dispositions;
@@ -13,12 +15,12 @@ use octant_evidence::{Manifest, ManifestError, discrepancy};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
-use octant_report::{ReportData, ReportProvenance};
+use octant_report::{ReportData, ReportProvenance, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_run::done::PlannedWork;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
-use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::Scenario;
 use octant_score::numerics::differs;
 use octant_score::rederive;
@@ -26,9 +28,14 @@ use octant_score::summary::Summary;
 use octant_source::Epoch;
 use std::path::{Path, PathBuf};
 
+/// Recording of the baseline, in the folder of a run.
+const BASELINE: &str = "baseline.mcap";
+/// Calibration table, in the folder of a run.
+const TABLE: &str = "calibration.octcal";
+
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder of a run.
+    /// Folder of a run, or its recording.
     #[arg(value_name = "RUN")]
     run: PathBuf,
     /// File for the report; by default report.html in the current folder, because the manifest of
@@ -39,22 +46,27 @@ pub(super) struct Arguments {
     /// existing entries and the run's own files don't change.
     #[arg(long, value_name = "FILE")]
     dispositions: Option<PathBuf>,
+    /// Units of errors in the report, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if !arguments.run.join(MANIFEST).exists() {
-        let run = arguments.run.display();
+    let folder = crate::run_folder::folder_of(&arguments.run);
+    if !folder.join(MANIFEST).exists() {
+        let run = folder.display();
         return Err(Failure::input(format!(
             "found no {MANIFEST} in {run}, expected the folder of a run"
         )));
     }
     // Only files that the manifest confirms are shown: the summary, the scenario and the recording
     // must be those of the run.
-    let manifest = Manifest::read(&arguments.run)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let manifest =
+        Manifest::read(folder).map_err(|error| Failure::input(format!("failed to {error}")))?;
     let failed = |error: ManifestError| Failure::input(error).failed();
-    let path = arguments.run.join(SUMMARY);
-    let bytes = manifest.read_file(&arguments.run, SUMMARY).map_err(failed)?;
+    let path = folder.join(SUMMARY);
+    let bytes = manifest.read_file(folder, SUMMARY).map_err(failed)?;
     let wrong =
         |reason: String| Failure::input(format!("failed to read {}: {reason}", path.display()));
     let text = String::from_utf8(bytes).map_err(|_| wrong("it isn't UTF-8 text".to_owned()))?;
@@ -68,24 +80,39 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         note!("octant: {}: {told}; octant rejudge derives the verdict again", path.display());
     }
     for name in ["scenario.toml", "recording.mcap"] {
-        manifest.check_file(&arguments.run, name).map_err(failed)?;
+        manifest.check_file(folder, name).map_err(failed)?;
     }
-    let scenario_path = arguments.run.join("scenario.toml");
+    let scenario_path = folder.join("scenario.toml");
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
     let dispositions = match &arguments.dispositions {
         None => Dispositions::default(),
-        Some(path) => disposed(&summary, path, &arguments.run)?,
+        Some(path) => disposed(&summary, path, folder)?,
     };
-    let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let (watcher, _) = watch(&folder.join("recording.mcap"), &scenario)?;
+    let baseline = folder.join(BASELINE);
+    let baseline_solution = if baseline.exists() {
+        manifest.check_file(folder, BASELINE).map_err(failed)?;
+        watch(&baseline, &scenario)?.0.solution
+    } else {
+        SolutionSeries::default()
+    };
     let data = ReportData {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
         events: watcher.events(),
+        navigation_start_h: watcher.navigation_start_h(),
+        solution: watcher.solution,
+        baseline_solution,
+        latitude_rad: Some(scenario.site.latitude_rad),
+        sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
+        covariance: covariance(&manifest, folder)?,
+        requirement_texts: octant_run::assemble::requirement_texts(&scenario),
         convergence: watcher.convergence,
         nis: watcher.nis,
         gimbals: watcher.gimbals,
         provenance: provenance(&manifest),
         dispositions,
+        units: scenario.display.with(arguments.units.unwrap_or_default()),
         summary,
     };
     let html = octant_report::run::render(&data);
@@ -103,6 +130,21 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     write(&arguments.out, html)?;
     print(&format!("{}\n", arguments.out.display()))?;
     Ok(Verdict::Pass)
+}
+
+/// Reads the covariance of the run's calibration table; `None` for a run without one.
+fn covariance(
+    manifest: &Manifest,
+    run: &Path,
+) -> Result<Option<Box<[[f64; PARAMETER_COUNT]; PARAMETER_COUNT]>>, Failure> {
+    if !run.join(TABLE).exists() {
+        return Ok(None);
+    }
+    let bytes = manifest.read_file(run, TABLE).map_err(|error| Failure::input(error).failed())?;
+    let table = CalibrationTable::from_bytes(&bytes).map_err(|error| {
+        Failure::input(format!("failed to read {}: {error}", run.join(TABLE).display()))
+    })?;
+    Ok(Some(Box::new(table.covariance)))
 }
 
 /// Reads the dispositions of a run's discrepancies, and adds an entry for each that had none.
@@ -125,9 +167,10 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
-    let mut epochs = Epochs::new(recording);
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
     let mut watcher = Watcher::new(PlannedWork::lasting(scenario));
+    watcher.recorded(&recording.info().run);
+    let mut epochs = Epochs::new(recording);
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };

@@ -1,10 +1,11 @@
 //! `octant run`.
 
-use super::evidenced::{self, Request};
+use super::evidenced::{self, RunRequest};
 use super::run_folder::{free_name, in_the_way};
 use crate::arguments::ScenarioArguments;
 use crate::failure::Failure;
 use clap::Args;
+use octant_base::display::UnitChoice;
 use octant_evidence::{Existing, RunFolder};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
@@ -20,7 +21,7 @@ pub(super) struct Arguments {
     #[arg(long, requires = "out")]
     force: bool,
     /// Seed of all random draws, instead of the scenario's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Source of the samples, instead of the scenario's source.uri.
     #[arg(long, value_name = "URI")]
@@ -53,6 +54,10 @@ pub(super) struct Arguments {
         default_missing_value = super::live::DEFAULT_ADDRESS
     )]
     live: Option<String>,
+    /// Units of errors in report and terminal: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
     /// Print summary.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -74,10 +79,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 impl Arguments {
-    fn request(&self) -> Request {
-        Request {
+    fn request(&self) -> RunRequest {
+        let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
+        RunRequest {
             scenario: self.scenario.scenario.clone(),
-            set: self.scenario.set.clone(),
+            text: None,
+            set: [self.scenario.set.clone(), chosen].concat(),
             out: self.out.clone(),
             force: self.force,
             seed: self.seed,
@@ -91,6 +98,7 @@ impl Arguments {
             no_twin: self.no_twin,
             live: self.live.clone(),
             json: self.json,
+            call: None,
         }
     }
 }
@@ -100,6 +108,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
     let path = &arguments.scenario.scenario;
     let given = [
         ("--source", arguments.source.is_some()),
+        ("--units", arguments.units.is_some()),
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),

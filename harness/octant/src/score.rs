@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
+use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_recorder::Event;
 use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
@@ -17,9 +18,13 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The recording, an MCAP file of a run.
-    #[arg(value_name = "RECORDING")]
-    recording: PathBuf,
+    /// Folder of a run, or a recording, an MCAP file.
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
+    /// Units of errors on the terminal, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -40,7 +45,7 @@ struct Scores {
 }
 
 /// Returns whether the instrument of a recording had the errors that its scenario draws.
-fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
+pub(super) fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
     let recording = Recording::open(path)
         .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
     // Recordings from before FMUs don't state it.
@@ -65,7 +70,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = &arguments.recording;
+    let path = &crate::run_folder::recording_of(&arguments.run)?;
     let (scenario, method, seed) = scenario_of(path)?;
     let (watcher, last_event) = super::report::watch(path, &scenario)?;
     let navigation = match watcher.drift() {
@@ -112,12 +117,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.json {
         print_json(&scores)?;
     } else {
-        print(&text(&scores))?;
+        print(&text(&scores, &scenario.display.with(arguments.units.unwrap_or_default())))?;
     }
     Ok(if scores.misbehaved.is_some() { Verdict::Fail } else { Verdict::Pass })
 }
 
-fn text(scores: &Scores) -> String {
+fn text(scores: &Scores, units: &DisplayUnits) -> String {
     use std::fmt::Write as _;
     let mut out = format!("{}: {}\n", scores.scenario, scores.method);
     if let Some(misbehaved) = &scores.misbehaved {
@@ -133,24 +138,33 @@ fn text(scores: &Scores) -> String {
         out += &octant_run::assemble::parameter_lines(&scores.parameters);
     }
     if let Some(navigation) = &scores.navigation {
-        let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
-        let radial = &navigation.radial_error_nmi;
+        let (score, radial) = (&navigation.radial_error_nmi, units.radial());
         let _ = writeln!(
             out,
             "  navigation {} h, height held",
             octant_base::number::plain(navigation.duration_h, 4)
         );
-        for (name, error) in [("latitude", lat), ("longitude", lon)] {
+        for (name, _, error) in navigation.errors() {
+            let Some(error) = error else { continue };
+            let unit = units.of(name);
+            let digits = unit.decimals;
             let _ = writeln!(
                 out,
-                "    {name:10} max {:.3}, rms {:.3}, final {:+.3} arcmin",
-                error.max, error.rms, error.r#final
+                "    {name:10} max {:.digits$}, rms {:.digits$}, final {:+.digits$} {}",
+                unit.of(error.max),
+                unit.of(error.rms),
+                unit.of(error.r#final),
+                unit.name
             );
         }
+        let (digits, finer) = (radial.decimals, radial.decimals + 1);
         let _ = writeln!(
             out,
-            "    radial     max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
-            radial.max, radial.rms, radial.rate_per_h
+            "    radial     max {:.digits$}, rms {:.digits$} {name}, {:.finer$} {name}/h",
+            radial.of(score.max),
+            radial.of(score.rms),
+            radial.of(score.rate_per_h),
+            name = radial.name
         );
     }
     out

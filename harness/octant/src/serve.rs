@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "URI")]
     endpoint: String,
     /// Seed of the harness's run, instead of the scenario's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Seconds without a message after which the harness counts as gone; 0: never.
     #[arg(long, value_name = "S", default_value_t = 5.0)]

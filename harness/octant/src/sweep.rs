@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ID")]
     fault: Option<String>,
     /// Seed of all runs, instead of the scenario's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Number of parallel runs; by default the number of processors.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

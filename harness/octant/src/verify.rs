@@ -147,7 +147,7 @@ struct Found {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let folder = &arguments.folder;
+    let folder = crate::run_folder::folder_of(&arguments.folder);
     let mut differences = Vec::new();
     let path = folder.join(manifest::FILE_NAME);
     let mut signed_by = None;
@@ -245,7 +245,7 @@ fn second(
     manifest: &Manifest,
     differences: &mut Vec<String>,
 ) -> Result<Second, Failure> {
-    let folder = &arguments.folder;
+    let folder = crate::run_folder::folder_of(&arguments.folder);
     let there = std::fs::symlink_metadata(folder.join(signature::SECOND)).is_ok();
     // A signature with a given key is reported by the result of its check.
     let ignored = there && arguments.second_key.is_none();

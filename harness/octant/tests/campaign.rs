@@ -6,6 +6,7 @@ use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute};
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Plan, PlanWritten};
+use octant_campaign::selection::CaseSelection;
 use octant_campaign::table::{ColumnValue, ExistingTable};
 use octant_campaign::{results, status};
 use octant_requirements::Verdict;
@@ -99,8 +100,16 @@ fn begin(
     again: bool,
 ) -> Result<ExecutionSummary, String> {
     let program = Path::new(OCTANT);
-    let options =
-        ExecuteOptions { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
+    let options = ExecuteOptions {
+        folder,
+        program,
+        jobs,
+        shard,
+        end: plan.cases.len(),
+        again,
+        selection: CaseSelection::default(),
+        cancel,
+    };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
 }
 
@@ -140,6 +149,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
             shard: Shard::WHOLE,
             end: plan.cases.len(),
             again: false,
+            selection: CaseSelection::default(),
             cancel: &cancel,
         };
         let tell = |event: &ExecutionEvent| {
@@ -408,10 +418,12 @@ fn every_case_is_told_once() {
         shard: Shard::WHOLE,
         end: plan.cases.len(),
         again: false,
+        selection: CaseSelection::default(),
         cancel: &cancel,
     };
     let tell = |event: &ExecutionEvent| match event {
         ExecutionEvent::There(count) => _ = there.fetch_add(*count, Ordering::Relaxed),
+        ExecutionEvent::Begun(_) => {}
         ExecutionEvent::Done(one) => done.lock().unwrap().push(one.index),
     };
     execute(&plan, &options, &tell).unwrap();

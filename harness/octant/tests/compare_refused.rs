@@ -57,7 +57,7 @@ fn refused_seeds_are_a_rate_and_the_rest_is_compared() {
     ] {
         assert!(words.contains(&part), "{part}: {words}");
     }
-    let html = page::render(&found, &[]);
+    let html = page::render(&found, &[], &octant_base::display::DisplayUnits::default());
     assert!(html.contains("Refused calibrations") && html.contains(">refused<"));
 }
 

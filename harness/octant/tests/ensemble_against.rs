@@ -82,7 +82,13 @@ impl Bench {
                 longitude.mean + longitude.sigma * east,
             ]
         });
-        let score = ErrorScore { max: 0.0, rms: 0.0, r#final: 0.0, slope_per_day: None };
+        let score = ErrorScore {
+            max: 0.0,
+            rms: 0.0,
+            r#final: 0.0,
+            slope_per_day: None,
+            schuler_amplitude: None,
+        };
         Summary {
             schema: SCHEMA,
             octant: "0.1.0".to_owned(),
@@ -100,6 +106,8 @@ impl Bench {
             altered_streams: None,
             method: "eight".to_owned(),
             calibration: Some(CalibrationScore {
+                reference: None,
+                solution: None,
                 positions: "eight".to_owned(),
                 estimator: "kalman".to_owned(),
                 duration_h: 0.4,
@@ -116,10 +124,16 @@ impl Bench {
                 latitude_error_arcmin: score,
                 longitude_error_arcmin: score,
                 radial_error_nmi: RadialScore { max: 0.0, rms: 0.0, r#final: 0.0, rate_per_h: 0.0 },
+                heading_error_arcmin: None,
+                pitch_error_arcmin: None,
+                roll_error_arcmin: None,
+                velocity_north_error_mps: None,
+                velocity_east_error_mps: None,
                 slope_window: None,
                 marks: BTreeMap::new(),
                 series_hours: std::iter::once([0.0; 3]).chain(series).collect(),
             }),
+            alignment: None,
             counterfactual: None,
             baseline: None,
             reference: None,

@@ -12,6 +12,7 @@ use octant_plant::Plant;
 use octant_plant::config::{AidingKind, PlantConfig};
 use octant_sample::{GimbalCommand, Mode};
 use octant_scenario::{Method, Scenario};
+use octant_score::attitude::CaseAngles;
 use octant_source::configure::configurations;
 use octant_statistics::sample::{mean, percentile, rms};
 use std::path::Path;
@@ -39,6 +40,8 @@ struct Run {
     errors: [f64; STATE_COUNT],
     /// Latitude and longitude error, arcmin, and radial error, nmi, at equal times.
     drift: Vec<[f64; 3]>,
+    /// Heading, pitch and roll error, arcmin, and velocity error north and east, m/s, at these times.
+    motion: Vec<[f64; 5]>,
 }
 
 fn attitude(q: [f64; 4]) -> UnitQuaternion<f64> {
@@ -66,7 +69,7 @@ fn run_every(
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let metres = [earth.meridian_radius_m, earth.transverse_radius_m * earth.cos_latitude];
     let mut command = GimbalCommand::default();
-    let mut run = Run { errors: [f64::NAN; STATE_COUNT], drift: Vec::new() };
+    let mut run = Run { errors: [f64::NAN; STATE_COUNT], drift: Vec::new(), motion: Vec::new() };
     for sample in 1..=scenario.samples().unwrap() {
         let step = plant.step(&command);
         let output = core.step(&step.sample, step.aiding.as_ref());
@@ -99,6 +102,12 @@ fn run_every(
             let east = output.navigation.longitude_rad - truth.longitude_rad;
             let radial = libm::hypot(north * metres[0], east * metres[1]) / NAUTICAL_MILE_M;
             run.drift.push([north / ARCMIN, east / ARCMIN, radial]);
+            let at = &output.navigation;
+            let case = CaseAngles::error(at.q_nb, truth.q_nb, truth.gimbal_rad);
+            let [heading, pitch, roll] =
+                [case.heading_rad, case.pitch_rad, case.roll_rad].map(|angle| angle / ARCMIN);
+            let [vn, ve] = [0, 1].map(|axis| at.velocity_mps[axis] - truth.velocity_mps[axis]);
+            run.motion.push([heading, pitch, roll, vn, ve]);
         }
     }
     run
@@ -159,9 +168,32 @@ fn assert_same(predicted: &Ensemble, run: &Run, part: f64) {
     }
     let largest = |axis: usize| run.drift.iter().map(|d| d[axis].abs()).fold(0.0, f64::max);
     let largest = [largest(0), largest(1)];
+    // A start within `part` of its σ adds to the error of the growth, and so do samples at 20 Hz, which
+    // stand for those at 200 Hz as well as that; a tilt φ swings the velocity by g φ/ω.
+    let believed = |name: &str| {
+        let state = predicted.states.iter().find(|state| state.name == name).unwrap();
+        state.believed.unwrap() / 60.0
+    };
+    let earth = Ellipsoid::at(30.5f64.to_radians(), 0.0);
+    let schuler = 2.0 * std::f64::consts::PI / earth.schuler_period_s();
+    let tilt = believed("phi_north").max(believed("phi_east"));
+    let swing = earth.gravity_mps2 * tilt * ARCMIN / schuler;
+    let at_start = [believed("phi_down"), tilt, tilt, swing, swing];
+    let fastest: [f64; 5] = std::array::from_fn(|axis| {
+        run.motion.iter().map(|motion| motion[axis].abs()).fold(0.0, f64::max)
+    });
     for (hour, drift) in run.drift.iter().enumerate() {
         let band =
             predicted.drift.iter().find(|b| (b.hours - hour as f64 - 1.0).abs() < 1e-6).unwrap();
+        let bands = band.solution.unwrap().all();
+        for (axis, (band, found)) in bands.iter().zip(run.motion[hour]).enumerate() {
+            assert!(
+                (band.mean - found).abs() < part * (fastest[axis] + 2.0 * at_start[axis]),
+                "attitude or velocity {axis} at {} h: {} predicted, {found} run",
+                hour + 1,
+                band.mean
+            );
+        }
         let means = [band.latitude_arcmin.mean, band.longitude_arcmin.mean];
         println!("{:3} h {means:9.5?} {drift:9.5?}", hour + 1);
         for axis in 0..2 {
@@ -234,6 +266,15 @@ fn slow_samples_make_the_same_run() {
         let difference = (slow - fast).abs();
         assert!(difference < 0.05 * state.believed.unwrap(), "{}: {difference}", state.name);
     }
+    let motion = slow.motion.iter().zip(&fast.motion);
+    let apart: [f64; 5] = std::array::from_fn(|axis| {
+        motion.clone().map(|(slow, fast)| (slow[axis] - fast[axis]).abs()).fold(0.0, f64::max)
+    });
+    println!("heading, pitch, roll (arcmin), velocity (m/s) differ by {apart:.6?}");
+    // A tenth of the σ of the attitude after this calibration, 0.15 and 0.012 arcmin, and what that tilt
+    // swings the velocity by, 0.027 m/s.
+    let limits = [0.015, 0.0012, 0.0012, 0.0027, 0.0027];
+    assert!(apart.iter().zip(limits).all(|(apart, limit)| *apart < limit), "{apart:?}");
     for (slow, fast) in slow.drift.iter().zip(&fast.drift) {
         // The drift over the following day is some tenths of an arc minute.
         assert!((0..2).all(|axis| (slow[axis] - fast[axis]).abs() < 2e-3), "{slow:?} {fast:?}");
@@ -318,6 +359,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     }
     let mut worst = [0.0f64; 6];
     let mut sums = [0.0f64; 6];
+    let mut motion_worst = [0.0f64; 5];
     let hours = drift_hours.clone().count() as f64;
     for hour in drift_hours {
         let band = predicted.drift.iter().find(|b| (b.hours - hour as f64).abs() < 1e-6).unwrap();
@@ -330,6 +372,15 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
             let about: Vec<f64> = values.iter().map(|v| v - band.mean).collect();
             found.push(band.sigma / rms(&about).unwrap());
             found.push((band.p95 - band.p5) / (of(&values, 0.95) - of(&values, 0.05)));
+        }
+        for (axis, band) in band.solution.unwrap().all().into_iter().enumerate() {
+            let about: Vec<f64> =
+                runs.iter().map(|run| run.motion[hour - 1][axis] - band.mean).collect();
+            let ratio = band.sigma / rms(&about).unwrap();
+            motion_worst[axis] = motion_worst[axis].max((ratio - 1.0).abs());
+            if !((ratio - 1.0).abs() <= 0.25) {
+                wrong.push(format!("attitude or velocity {axis} at {hour} h: {ratio:.3}"));
+            }
         }
         let radial = column(2);
         found.push(band.radial_nmi.p50 / of(&radial, 0.5));
@@ -347,6 +398,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     }
     println!("drift (latitude σ, 5-95 %; longitude σ, 5-95 %; radial 50 %, 95 %):");
     println!("  mean {sums:.3?}, largest deviation {worst:.3?}");
+    println!("σ of heading, pitch, roll, velocity: largest deviation {motion_worst:.3?}");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

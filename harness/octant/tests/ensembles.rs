@@ -137,7 +137,10 @@ fn claim(scenario: &str) -> octant_score::compare::MethodComparison {
     let controls: Vec<Control> = (0..40).map(|_| Control::default()).collect();
     let comparison =
         paired(&side(Method::Baseline), &side(Method::Primary), &seeds, &controls).unwrap();
-    println!("{}", octant_report::compare::table(&comparison));
+    println!(
+        "{}",
+        octant_report::compare::table(&comparison, &octant_base::display::DisplayUnits::default())
+    );
     comparison
 }
 

@@ -230,7 +230,7 @@ fn tables() {
 
     // The version is text in the footer of a Parquet file, which has no checksum.
     let mut bytes = std::fs::read(path("cases")).unwrap();
-    patch(&mut bytes, b"octant.schema\x18\x011", b'2');
+    patch(&mut bytes, b"octant.schema\x18\x011", b'3');
     let folder = tempfile::tempdir().unwrap();
     let newer = folder.path().join("cases.parquet");
     std::fs::write(&newer, bytes).unwrap();

@@ -1,4 +1,4 @@
-//! A core at the other end of a wire: over pseudo terminals, UDP and adapters, driven by the
+//! A core at the other end of a wire: over pseudo terminals, UDP, TCP, pipes and adapters, driven by the
 //! program and served by it, the answers are those of the core in process to the last bit; and
 //! however a device ends, the bench reports it.
 
@@ -115,7 +115,7 @@ impl Bench {
 fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
     let bench = Bench::new(&std::fs::read_to_string(LOCKSTEP).unwrap());
     let expected = bench.hash("in-process", &[]);
-    for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
+    for (i, endpoint) in ["pty:", "udp:0", "tcp:0"].into_iter().enumerate() {
         let served = Served::new(endpoint, &bench.scenario);
         let out = format!("live-{i}");
         // Long time limits, so that a busy host causes no repeats: only real losses are counted.
@@ -128,11 +128,32 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
         assert!(said.contains("120000 steps, 0 repeated, 0 skipped, 0 damaged"), "{said}");
         assert!(said.contains("octant: stopped"), "{said}");
     }
+    // A program that the harness starts, and ends.
+    let device = format!("exec:{OCTANT} serve --endpoint stdio: {}", bench.scenario.display());
+    assert_eq!(bench.hash("exec", &["--endpoint", &device]), expected);
     // The device's answers are those of the core in process on the recording.
     let recording = bench.folder.path().join("live-0/recording.mcap");
     let replayed = Command::new(OCTANT).arg("replay").arg(recording).output().unwrap();
     let said = String::from_utf8_lossy(&replayed.stdout);
     assert!(replayed.status.success() && said.contains("bit for bit"), "{said}");
+}
+
+#[test]
+fn a_program_that_ends_or_is_not_there_ends_the_run() {
+    let bench = Bench::new(SHORT);
+    let tried = [
+        ("exec:true", "the program ended: exit status: 0"),
+        ("exec:./no-such-program --fast", "expected a program"),
+        ("stdio:", "possible: in-process"),
+        ("tcp:127.0.0.1:1", "refused"),
+    ];
+    for (i, (device, reason)) in tried.into_iter().enumerate() {
+        let output = bench.run(&bench.scenario, &format!("gone-{i}"), &["--endpoint", device]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(reason), "{device}: {said}");
+        let expected = if device == "stdio:" { 2 } else { 4 };
+        assert_eq!(output.status.code(), Some(expected), "{device}: {said}");
+    }
 }
 
 #[test]
@@ -290,7 +311,7 @@ fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     let output = bench.run(Path::new(quick), "quick", &["--endpoint", &served.uri]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("the second method of the scenario's [baseline]"), "{said}");
+    assert!(said.contains("[baseline] on the device"), "{said}");
     assert!(!bench.folder.path().join("quick.partial").exists(), "nothing was begun");
     let nobody = ["--endpoint", "udp:127.0.0.1:9", "--set", "endpoint.link.hello=300 ms"];
     let output = bench.run(&bench.scenario, "nobody", &nobody);

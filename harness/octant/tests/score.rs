@@ -24,6 +24,8 @@ fn scored(hours: f64, dt_s: f64, f: impl Fn(f64) -> [f64; 2]) -> NavigationScore
             t_s,
             latitude_error_rad: latitude * ARCMIN,
             longitude_error_rad: longitude * ARCMIN,
+            attitude_error: None,
+            velocity_error_mps: None,
             latitude_rad: LATITUDE,
             height_m: 0.0,
         });
@@ -119,6 +121,8 @@ fn what_is_not_a_drift_is_told() {
         t_s,
         latitude_error_rad,
         longitude_error_rad: 0.0,
+        attitude_error: None,
+        velocity_error_mps: None,
         latitude_rad: LATITUDE,
         height_m: 0.0,
     };

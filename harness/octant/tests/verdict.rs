@@ -19,7 +19,13 @@ use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn summary() -> Summary {
-    let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day: None };
+    let score = ErrorScore {
+        max: 0.75,
+        rms: 0.4,
+        r#final: -0.6,
+        slope_per_day: None,
+        schuler_amplitude: None,
+    };
     Summary {
         schema: SCHEMA,
         octant: "0.1.0".to_owned(),
@@ -36,6 +42,8 @@ fn summary() -> Summary {
         faults: vec![],
         method: "eight".to_owned(),
         calibration: Some(CalibrationScore {
+            reference: None,
+            solution: None,
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -52,6 +60,11 @@ fn summary() -> Summary {
             latitude_error_arcmin: score,
             longitude_error_arcmin: score,
             radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
+            heading_error_arcmin: None,
+            pitch_error_arcmin: None,
+            roll_error_arcmin: None,
+            velocity_north_error_mps: None,
+            velocity_east_error_mps: None,
             slope_window: None,
             marks: BTreeMap::new(),
             series_hours: vec![[0.0, 0.0, 0.0], [1.0, 0.1, -0.6]],
@@ -59,6 +72,7 @@ fn summary() -> Summary {
         baseline: None,
         reference: None,
         altered_streams: None,
+        alignment: None,
         counterfactual: None,
         pacing: None,
         stream_hash: "00".to_owned(),
@@ -151,7 +165,7 @@ fn a_measure_that_is_not_there_is_inconclusive_and_says_what_is() {
     for (path, reason) in [
         (
             "navigation.latitude_error_arcmin.maximum",
-            "navigation.latitude_error_arcmin has no `maximum`; it has final, max, rms, slope_per_day",
+            "navigation.latitude_error_arcmin has no `maximum`; it has final, max, rms, schuler_amplitude, slope_per_day",
         ),
         (
             "navigation.latitude_error_arcmin.slope_per_day",

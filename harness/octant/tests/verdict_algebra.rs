@@ -133,6 +133,8 @@ impl Parts {
             faulted_crc32: None,
         };
         let calibration = |refused: bool| CalibrationScore {
+            reference: None,
+            solution: None,
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
@@ -144,7 +146,13 @@ impl Parts {
             health: HealthCounts::default(),
         };
         let slope_per_day = Some(f64::NAN);
-        let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day };
+        let score = ErrorScore {
+            max: 0.75,
+            rms: 0.4,
+            r#final: -0.6,
+            slope_per_day,
+            schuler_amplitude: None,
+        };
         let mut summary = Summary {
             schema: octant_score::summary::SCHEMA,
             octant: "0.1.0".to_owned(),
@@ -168,10 +176,16 @@ impl Parts {
                 latitude_error_arcmin: score,
                 longitude_error_arcmin: score,
                 radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
+                heading_error_arcmin: None,
+                pitch_error_arcmin: None,
+                roll_error_arcmin: None,
+                velocity_north_error_mps: None,
+                velocity_east_error_mps: None,
                 slope_window: None,
                 marks: BTreeMap::new(),
                 series_hours: Vec::new(),
             }),
+            alignment: None,
             counterfactual: None,
             baseline: self.baseline.as_ref().map(|(fired, refused)| BaselineMethod {
                 planned: None,
@@ -179,6 +193,7 @@ impl Parts {
                 label: "six".to_owned(),
                 calibration: Some(calibration(*refused)),
                 navigation: None,
+                alignment: None,
                 counterfactual: None,
                 stream_hash: "00".to_owned(),
                 faults: fired.iter().map(fault).collect(),

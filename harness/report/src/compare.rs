@@ -3,17 +3,18 @@
 use super::chart::{Chart, ChartLine, ChartRole};
 use super::page::page;
 use maud::{Markup, html};
+use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_score::compare::{Claim, MeasureCell, MethodComparison, Refusals, interval, percent};
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Renders the comparison as text for a terminal.
 #[must_use]
-pub fn table(comparison: &MethodComparison) -> String {
+pub fn table(comparison: &MethodComparison, units: &DisplayUnits) -> String {
     let width = comparison.first.len().max(comparison.second.len()).max(8);
     let mut text = format!(
-        "{:<20}{:>w$}{:>w$}{:>8}{:>13}  90 % interval\n",
-        "rms of maxima, arcmin",
+        "{:<27}{:>w$}{:>w$}{:>8}{:>13}  90 % interval\n",
+        "rms of maxima",
         comparison.first,
         comparison.second,
         "floor",
@@ -21,12 +22,14 @@ pub fn table(comparison: &MethodComparison) -> String {
         w = width + 2
     );
     for cell in &comparison.cells {
+        let unit = units.of(cell.measure.error());
+        let d = unit.decimals;
         text.push_str(&format!(
-            "{:<21}{:>w$.3}{:>w2$.3}{:>8}{:>11} %  {}\n",
-            cell.measure.name(),
-            cell.first,
-            cell.second,
-            cell.floor.map_or_else(|| "–".to_owned(), |f| format!("{f:.3}")),
+            "{:<27}{:>w$.d$}{:>w2$.d$}{:>8}{:>11} %  {}\n",
+            format!("{}, {}", cell.measure.name(), unit.name),
+            unit.of(cell.first),
+            unit.of(cell.second),
+            cell.floor.map_or_else(|| "–".to_owned(), |f| format!("{:.d$}", unit.of(f))),
             percent(cell.improvement.value),
             interval(&cell.improvement),
             w = width + 2,
@@ -43,7 +46,11 @@ pub fn table(comparison: &MethodComparison) -> String {
 
 /// Renders the comparison as one HTML file.
 #[must_use]
-pub fn render(comparison: &MethodComparison, provenance: &[(String, String)]) -> String {
+pub fn render(
+    comparison: &MethodComparison,
+    provenance: &[(String, String)],
+    units: &DisplayUnits,
+) -> String {
     let claim = comparison.cells.iter().rfind(|c| c.measure.is_longitude()).map(|c| c.claim);
     let class = match claim {
         Some(Claim::Holds) => "pass",
@@ -68,10 +75,10 @@ pub fn render(comparison: &MethodComparison, provenance: &[(String, String)]) ->
             with its 90 % interval by Student's distribution, of the logarithm of the ratio, with the standard error \
             of the jackknife. Floor: exact parameters and attitude, \
             noise of the sensors alone." }
-        (cells(comparison))
+        (cells(comparison, units))
         h2 { "Every pair" }
-        div.pairs { @for cell in &comparison.cells { (pairs(comparison, cell)) } }
-        (runs(comparison))
+        div.pairs { @for cell in &comparison.cells { (pairs(comparison, cell, units)) } }
+        (runs(comparison, units))
         h2 { "Provenance" }
         table { tbody {
             tr { td { "octant" } td.mono { (comparison.octant) } }
@@ -109,11 +116,11 @@ fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }
 
-fn cells(comparison: &MethodComparison) -> Markup {
+fn cells(comparison: &MethodComparison, units: &DisplayUnits) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "Largest error, arcmin" }
+                th { "Largest error" }
                 th.n { span.baseline-text { (comparison.first) } }
                 th.n { span.primary-text { (comparison.second) } }
                 th.n { "Floor" } th.n { "Improvement" } th.n { "90 % interval" }
@@ -124,11 +131,12 @@ fn cells(comparison: &MethodComparison) -> Markup {
                 } }
             } }
             tbody { @for cell in &comparison.cells {
+                @let unit = units.of(cell.measure.error());
                 tr {
-                    td { (capital(cell.measure.name())) }
-                    td.n { (number::fixed(cell.first, 3)) }
-                    td.n { (number::fixed(cell.second, 3)) }
-                    td.n { (number::optional(cell.floor, 3)) }
+                    td { (capital(cell.measure.name())) ", " (unit.name) }
+                    td.n { (number::fixed(unit.of(cell.first), unit.decimals)) }
+                    td.n { (number::fixed(unit.of(cell.second), unit.decimals)) }
+                    td.n { (number::optional(cell.floor.map(|f| unit.of(f)), unit.decimals)) }
                     td.n { strong { (percent(cell.improvement.value)) " %" } }
                     td.n { (percent(cell.improvement.low)) " to " (percent(cell.improvement.high)) " %" }
                     td.strip { (whisker(cell)) }
@@ -156,17 +164,19 @@ fn whisker(cell: &MeasureCell) -> Markup {
 }
 
 /// Draws both methods seed by seed, sorted by the first, so that the pairs are visible.
-fn pairs(comparison: &MethodComparison, cell: &MeasureCell) -> Markup {
+fn pairs(comparison: &MethodComparison, cell: &MeasureCell, units: &DisplayUnits) -> Markup {
+    let unit = units.of(cell.measure.error());
     let mut values: Vec<(f64, f64)> = comparison
         .runs
         .iter()
         .filter_map(|r| r.first.get(cell.measure).zip(r.second.get(cell.measure)))
+        .map(|(first, second)| (unit.of(first), unit.of(second)))
         .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let series = |f: &dyn Fn(&(f64, f64)) -> f64| {
         values.iter().enumerate().map(|(i, v)| [1.0 + i as f64, f(v)]).collect::<Vec<_>>()
     };
-    let title = format!("Largest error, {}, arcmin", cell.measure.name());
+    let title = format!("Largest error, {}, {}", cell.measure.name(), unit.name);
     let mut chart = Chart::new(&title, "pairs, in the order of the first method", &title);
     chart.hours = false;
     chart.paired = true;
@@ -174,7 +184,7 @@ fn pairs(comparison: &MethodComparison, cell: &MeasureCell) -> Markup {
     let highest = values.iter().map(|v| v.0.max(v.1)).fold(0.0, f64::max);
     chart.y_range = Some([0.0, 1.08 * highest]);
     if let Some(floor) = cell.floor {
-        chart.levels.push((floor, "floor".to_owned()));
+        chart.levels.push((unit.of(floor), "floor".to_owned()));
     }
     chart.lines.push(ChartLine {
         label: comparison.first.clone(),
@@ -189,17 +199,18 @@ fn pairs(comparison: &MethodComparison, cell: &MeasureCell) -> Markup {
     chart.render()
 }
 
-fn runs(comparison: &MethodComparison) -> Markup {
+fn runs(comparison: &MethodComparison, units: &DisplayUnits) -> Markup {
+    let unit = |cell: &MeasureCell| units.of(cell.measure.error());
     html! {
         table {
             thead { tr { th { "Seed" } @for cell in &comparison.cells {
-                th.n { (cell.measure.name()) " " span.baseline-text { (comparison.first) } }
+                th.n { (cell.measure.name()) ", " (unit(cell).name) " " span.baseline-text { (comparison.first) } }
                 th.n { span.primary-text { (comparison.second) } }
             } } }
             tbody { @for run in &comparison.runs {
                 tr { td.mono { (run.seed) } @for cell in &comparison.cells {
-                    (one(run.first.get(cell.measure), run.first_refused.as_deref()))
-                    (one(run.second.get(cell.measure), run.second_refused.as_deref()))
+                    (one(run.first.get(cell.measure), unit(cell), run.first_refused.as_deref()))
+                    (one(run.second.get(cell.measure), unit(cell), run.second_refused.as_deref()))
                 } }
             } }
         }
@@ -207,9 +218,9 @@ fn runs(comparison: &MethodComparison) -> Markup {
 }
 
 /// Renders an error, or that the calibration was refused.
-fn one(value: Option<f64>, refused: Option<&str>) -> Markup {
+fn one(value: Option<f64>, unit: ShownUnit, refused: Option<&str>) -> Markup {
     html! { @match refused {
         Some(reason) => td.n title=(reason) { "refused" },
-        None => td.n { (number::optional(value, 3)) },
+        None => td.n { (number::optional(value.map(|v| unit.of(v)), unit.decimals)) },
     } }
 }

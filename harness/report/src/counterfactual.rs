@@ -1,16 +1,18 @@
 //! Effects of the faults: the run compared with its twin without them.
 
 use super::chart::{Chart, ChartLine, ChartRole};
+use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_sample::parameters::NAMES;
 use octant_score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
-use octant_score::summary::{CalibrationScore, Summary};
+use octant_score::summary::CalibrationScore;
 
 /// Maximum number of parameters listed: those that moved most.
 const LISTED: usize = 12;
 
-pub(super) fn counterfactual(summary: &Summary) -> Markup {
+pub(super) fn counterfactual(data: &ReportData) -> Markup {
+    let summary = &data.summary;
     let primary = summary
         .counterfactual
         .as_ref()
@@ -23,7 +25,6 @@ pub(super) fn counterfactual(summary: &Summary) -> Markup {
     }
     let both = primary.is_some() && baseline.is_some();
     html! {
-        h2 { "What the faults did" }
         p.hint { "Every difference to the twin is the faults' doing: the twin met the same instrument and \
             the same noise without them." }
         @for (label, c, calibration) in primary.into_iter().chain(baseline) {
@@ -31,7 +32,7 @@ pub(super) fn counterfactual(summary: &Summary) -> Markup {
             p { (in_words(c)) }
             (noticed(c))
             (shifts(c, calibration))
-            @if let Some(difference) = &c.navigation { (drift(difference)) }
+            @if let Some(difference) = &c.navigation { (drift(difference, data.navigation_start_h)) }
         }
     }
 }
@@ -122,13 +123,14 @@ fn shifts(c: &Counterfactual, calibration: Option<&CalibrationScore>) -> Markup 
     }
 }
 
-fn drift(difference: &DriftDifference) -> Markup {
+fn drift(difference: &DriftDifference, navigation_start_h: Option<f64>) -> Markup {
     let mut chart = Chart::new(
         "Difference to the twin",
         "hours of navigation",
         "Navigation, faulted minus twin, arcmin",
     );
     chart.height = 200.0;
+    chart.run_offset_h = navigation_start_h;
     for (label, role, column) in
         [("latitude", ChartRole::Primary, 1), ("longitude", ChartRole::Baseline, 2)]
     {

@@ -1,9 +1,12 @@
 //! Content of the report of one run.
 
+use super::series::SolutionSeries;
+use octant_base::display::DisplayUnits;
 use octant_evidence::disposition::Dispositions;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_score::summary::Summary;
+use std::collections::BTreeMap;
 
 /// Content of the report. Missing parts are left out of the page, or reported as missing.
 #[derive(Clone, Debug)]
@@ -21,10 +24,27 @@ pub struct ReportData {
     pub nis: Vec<NisPoint>,
     /// Gimbal angles of the whole run; any rate that shows the moves.
     pub gimbals: Vec<GimbalPoint>,
+    /// Errors of attitude and velocity over the navigation.
+    pub solution: SolutionSeries,
+    /// The same of the baseline; empty without one.
+    pub baseline_solution: SolutionSeries,
+    /// Time of the run at which the navigation began, h; `None` without one.
+    pub navigation_start_h: Option<f64>,
+    /// Latitude of the site, rad; `None` if it isn't known.
+    pub latitude_rad: Option<f64>,
+    /// Interval of the samples, s; `None` if it isn't known.
+    pub sample_period_s: Option<f64>,
+    /// Covariance of the parameters at the end of the calibration, SI, in the order of
+    /// [`octant_sample::parameters::NAMES`]; parameters that were not estimated have variance NaN.
+    pub covariance: Option<Box<[[f64; PARAMETER_COUNT]; PARAMETER_COUNT]>>,
+    /// Texts of the requirements by their ids.
+    pub requirement_texts: BTreeMap<String, String>,
     /// Health events, in order of time.
     pub events: Vec<HealthEvent>,
     /// Dispositions of the discrepancies.
     pub dispositions: Dispositions,
+    /// Units of errors.
+    pub units: DisplayUnits,
     /// Provenance of the numbers.
     pub provenance: ReportProvenance,
 }

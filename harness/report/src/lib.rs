@@ -2,18 +2,32 @@
 //!
 //! - [`run`] renders `report.html` of one run
 //! - [`compare`] renders `compare.html` and the plain text of `octant compare`
-//! - [`chart`] draws lines as inline SVG in the colours of the page
+//! - [`chart`] draws lines as inline SVG in the colours of the page; `script/` draws them again for the
+//!   reader's width and range, with one cursor for all of them
+//! - [`page`] is the frame of every page: style, script, contents
+//! - [`series`] collects errors of any number of samples in bounded memory
 
 mod calibration;
 pub mod chart;
 pub mod compare;
+mod convergence;
+mod correlation;
 pub mod counterfactual;
 mod data;
 pub mod discrepancies;
 mod drift;
+mod gimbals;
+mod innovations;
+mod marks;
 mod pacing;
 pub mod page;
 mod parameters;
+mod requirements;
 pub mod run;
+mod scores;
+pub mod series;
+mod solution;
+pub mod units;
 
 pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance};
+pub use series::SolutionSeries;

@@ -18,7 +18,6 @@ pub(super) fn pacing(summary: &Summary) -> Markup {
         }
     };
     html! {
-        h2 { "Against the clock" }
         p.hint {
             (number::counted(pacing.frames, "sample", "samples")) ", one every " (number::plain(pacing.period_us, 6)) " µs. "
             (pacing.overruns) " of them left more than " (number::plain(pacing.overrun_us, 6))

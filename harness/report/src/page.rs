@@ -3,8 +3,25 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use octant_requirements::Verdict;
 
-/// Renders a whole page. The script shows chart values under the pointer; without it no content is
-/// missing.
+/// Parts of the script, in the order in which they need each other.
+const SCRIPT: [&str; 6] = [
+    include_str!("script/pyramid.js"),
+    include_str!("script/axis.js"),
+    include_str!("script/plot.js"),
+    include_str!("script/marks.js"),
+    include_str!("script/linked.js"),
+    include_str!("script/page.js"),
+];
+
+/// Parts of the style sheet.
+const STYLE: [&str; 3] = [
+    include_str!("style/page.css"),
+    include_str!("style/plot.css"),
+    include_str!("style/narrow.css"),
+];
+
+/// Renders a whole page. The script adds zoom, cursor and switches to the charts; without it no content
+/// is missing.
 pub fn page(title: &str, body: &Markup) -> String {
     html! {
         (DOCTYPE)
@@ -14,15 +31,56 @@ pub fn page(title: &str, body: &Markup) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (title) }
-                style { (PreEscaped(include_str!("style.css"))) }
+                style { @for part in STYLE { (PreEscaped(part)) } }
             }
             body {
                 main { (body) }
-                script { (PreEscaped(include_str!("hover.js"))) }
+                // Characters of XML are plain text in here, so that tools for XML read the page too.
+                script {
+                    (PreEscaped("//<![CDATA[\n(() => {\n\"use strict\";\n"))
+                    @for part in SCRIPT { (PreEscaped(part)) }
+                    (PreEscaped("})();\n//]]>"))
+                }
             }
         }
     }
     .into_string()
+}
+
+/// A section of a page, with an anchor and an entry in the contents.
+#[derive(Debug)]
+pub struct PageSection {
+    /// Anchor.
+    pub id: &'static str,
+    /// Heading.
+    pub title: String,
+    /// Content; a section without content is left out.
+    pub body: Markup,
+}
+
+impl PageSection {
+    /// Makes a section.
+    #[must_use]
+    pub fn new(id: &'static str, title: &str, body: Markup) -> Self {
+        Self { id, title: title.to_owned(), body }
+    }
+}
+
+/// Renders contents and sections; sections without content are left out.
+#[must_use]
+pub fn sections(all: &[PageSection]) -> Markup {
+    let present = || all.iter().filter(|section| !section.body.0.is_empty());
+    html! {
+        nav.contents aria-label="Contents" {
+            @for section in present() { a href={ "#" (section.id) } { (section.title) } " " }
+        }
+        @for section in present() {
+            section {
+                h2 id=(section.id) { (section.title) " " a.anchor href={ "#" (section.id) } aria-label="Link to this section" { "#" } }
+                (section.body)
+            }
+        }
+    }
 }
 
 /// Renders a verdict as a small label: colour, word and sign, so that none is needed alone.

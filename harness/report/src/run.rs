@@ -5,12 +5,16 @@ pub use super::data::{
 };
 
 use super::calibration::calibration;
-use super::chart::{Chart, ChartLine, ChartRole};
 use super::counterfactual::counterfactual;
 use super::drift::drift;
+use super::gimbals::gimbals;
+use super::marks::marks;
 use super::pacing::pacing;
-use super::page::{badge, page};
+use super::page::{PageSection, badge, page, sections};
+use super::requirements::requirements;
+use super::scores::alignment;
 use maud::{Markup, html};
+use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_evidence::discrepancy;
 use octant_requirements::Verdict;
@@ -21,20 +25,28 @@ use octant_score::work::duration;
 #[must_use]
 pub fn render(data: &ReportData) -> String {
     let summary = &data.summary;
+    let all = [
+        PageSection::new(
+            "requirements",
+            "Requirements",
+            html! { (requirements(data)) (planned_and_done(summary)) },
+        ),
+        PageSection::new("faults", "Faults", faults(summary)),
+        PageSection::new("effects", "What the faults did", counterfactual(data)),
+        PageSection::new("navigation", "Navigation", drift(data)),
+        PageSection::new("alignment", "Alignment", alignment(summary, &data.units)),
+        PageSection::new("calibration", "Calibrated parameters", calibration(data)),
+        PageSection::new("gimbals", "Gimbals", gimbals(data)),
+        PageSection::new("health", "Health", events(data)),
+        PageSection::new("pacing", "Against the clock", pacing(summary)),
+        PageSection::new("discrepancies", "Discrepancies", discrepancies(data)),
+        PageSection::new("provenance", "Provenance", provenance(data)),
+    ];
     let body = html! {
         (header(data))
-        (figures(summary))
-        (requirements(summary))
-        (planned_and_done(summary))
-        (faults(summary))
-        (counterfactual(summary))
-        (drift(summary))
-        (calibration(data))
-        (gimbals(data))
-        (events(data))
-        (pacing(summary))
-        (discrepancies(data))
-        (provenance(data))
+        (figures(summary, &data.units))
+        (sections(&all))
+        (marks(data))
     };
     page(&format!("{}: {}", summary.scenario, summary.verdict.name()), &body)
 }
@@ -47,7 +59,7 @@ fn header(data: &ReportData) -> Markup {
                 div {
                     div.eyebrow { "Self-calibration run" }
                     h1 { (summary.scenario) }
-                    p.lead { (what_was_done(summary)) }
+                    p.lead { (what_was_done(summary, &data.units)) }
                 }
                 (badge(summary.verdict))
             }
@@ -75,14 +87,18 @@ fn discrepancies(data: &ReportData) -> Markup {
     let hint = "What is said of them stands in a file of its own, beside the run: octant report RUN \
         --dispositions FILE makes it, people fill it in. It changes no verdict.";
     html! {
-        h2 { "Discrepancies" }
         (super::discrepancies::table(&all, &data.dispositions, hint, &|_| html! {}))
     }
 }
 
 /// Describes the run and its result in two sentences.
 #[must_use]
-pub fn what_was_done(summary: &Summary) -> String {
+pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
+    let in_unit = |value: f64, unit: ShownUnit| {
+        let value = number::significant(unit.of(value), 3);
+        if unit.name == "arcmin" { format!("{value}′") } else { format!("{value} {}", unit.name) }
+    };
+    let (latitude, longitude) = (units.latitude(), units.longitude());
     let first = match (&summary.calibration, &summary.navigation) {
         (Some(c), Some(n)) => format!(
             "The instrument was calibrated for {} h through the {} positions and then navigated \
@@ -107,15 +123,15 @@ pub fn what_was_done(summary: &Summary) -> String {
     };
     let second = match (&summary.navigation, &summary.calibration) {
         (Some(n), _) => format!(
-            " Its largest errors were {}′ in latitude and {}′ in longitude{}.",
-            number::significant(n.latitude_error_arcmin.max, 3),
-            number::significant(n.longitude_error_arcmin.max, 3),
+            " Its largest errors were {} in latitude and {} in longitude{}.",
+            in_unit(n.latitude_error_arcmin.max, latitude),
+            in_unit(n.longitude_error_arcmin.max, longitude),
             summary.baseline.as_ref().and_then(|b| b.navigation.as_ref().map(|m| (b, m))).map_or(
                 String::new(),
                 |(b, m)| format!(
-                    ", against {}′ and {}′ for {} on the same instrument with the same noise",
-                    number::significant(m.latitude_error_arcmin.max, 3),
-                    number::significant(m.longitude_error_arcmin.max, 3),
+                    ", against {} and {} for {} on the same instrument with the same noise",
+                    in_unit(m.latitude_error_arcmin.max, latitude),
+                    in_unit(m.longitude_error_arcmin.max, longitude),
                     b.label
                 )
             )
@@ -136,7 +152,7 @@ const fn height(channel: HeightChannel) -> &'static str {
     }
 }
 
-fn figures(summary: &Summary) -> Markup {
+fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
     let baseline = summary.baseline.as_ref();
     let label = baseline.map_or("", |b| b.label.as_str());
     let other_navigation = baseline.and_then(|b| b.navigation.as_ref());
@@ -155,12 +171,19 @@ fn figures(summary: &Summary) -> Markup {
     html! {
         div.figures {
             @if let Some(n) = &summary.navigation {
-                (figure("Latitude error, largest", "arcmin", n.latitude_error_arcmin.max, 3,
-                    other_navigation.map(|o| o.latitude_error_arcmin.max)))
-                (figure("Longitude error, largest", "arcmin", n.longitude_error_arcmin.max, 3,
-                    other_navigation.map(|o| o.longitude_error_arcmin.max)))
-                (figure("Radial error rate", "nmi/h", n.radial_error_nmi.rate_per_h, 2,
-                    other_navigation.map(|o| o.radial_error_nmi.rate_per_h)))
+                @let (latitude, longitude, radial) = (units.latitude(), units.longitude(), units.radial());
+                @let rate = format!("{}/h", radial.name);
+                (figure("Latitude error, largest", latitude.name, latitude.of(n.latitude_error_arcmin.max), 3,
+                    other_navigation.map(|o| latitude.of(o.latitude_error_arcmin.max))))
+                (figure("Longitude error, largest", longitude.name, longitude.of(n.longitude_error_arcmin.max), 3,
+                    other_navigation.map(|o| longitude.of(o.longitude_error_arcmin.max))))
+                (figure("Radial error rate", &rate, radial.of(n.radial_error_nmi.rate_per_h), 2,
+                    other_navigation.map(|o| radial.of(o.radial_error_nmi.rate_per_h))))
+                @if let Some(heading) = n.heading_error_arcmin {
+                    @let unit = units.attitude();
+                    (figure("Heading error, largest", unit.name, unit.of(heading.max), 3,
+                        other_navigation.and_then(|o| Some(unit.of(o.heading_error_arcmin?.max)))))
+                }
             }
             @if let Some(c) = &summary.calibration {
                 @if let Some(nis) = c.nis_mean {
@@ -206,39 +229,6 @@ fn planned_and_done(summary: &Summary) -> Markup {
     }
 }
 
-fn requirements(summary: &Summary) -> Markup {
-    html! {
-        h2 { "Requirements" }
-        @if let Some(decided) = &summary.decision {
-            p.hint { (decided.text) "." }
-        }
-        @if summary.requirements.is_empty() {
-            p.empty { "No requirement was checked: the run shows what happened, and asks nothing of it." }
-        } @else {
-            table {
-                thead { tr {
-                    th { "Requirement" } th { "Measure" } th.n { "Limit" } th.n { "Value" }
-                    th.n { "Margin" } th.n { "Verdict" }
-                } }
-                tbody {
-                    @for r in &summary.requirements {
-                        tr {
-                            td { strong { (r.id) } }
-                            td { span.mono { (r.measure) }
-                                @if let Some(reason) = &r.reason { div.reason { (reason) } } }
-                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
-                                @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) } }
-                            td.n { (r.value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 4))) }
-                            td.n { (r.margin.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3))) }
-                            td.n { (badge(r.verdict)) }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// Renders the receipts of the faults; empty if none was injected.
 fn faults(summary: &Summary) -> Markup {
     if summary.faults.is_empty() {
@@ -248,7 +238,6 @@ fn faults(summary: &Summary) -> Markup {
     let sum = |sum: &Option<String>| sum.clone().unwrap_or_else(|| "–".to_owned());
     let verdict = |fired: bool| if fired { Verdict::Pass } else { Verdict::Inconclusive };
     html! {
-        h2 { "Faults" }
         p.hint { "What each fault altered, found by comparing samples before and after it. The \
             checksums (CRC-32) are over the altered samples, as they were and as they became." }
         table {
@@ -276,56 +265,9 @@ fn faults(summary: &Summary) -> Markup {
     }
 }
 
-fn sign(sign: &str) -> &str {
-    match sign {
-        "<=" => "≤",
-        ">=" => "≥",
-        other => other,
-    }
-}
-
-fn gimbals(data: &ReportData) -> Markup {
-    if data.gimbals.len() < 2 {
-        return html! {};
-    }
-    let mut chart = Chart::new("Gimbal angles", "hours of the run", "Gimbal angles, deg");
-    chart.height = 200.0;
-    let angle = |f: &dyn Fn(&GimbalPoint) -> f64| {
-        data.gimbals.iter().map(|p| [p.hours, f(p)]).collect::<Vec<_>>()
-    };
-    chart.y_step = {
-        let all = data.gimbals.iter().flat_map(|p| [p.azimuth_deg, p.roll_deg]);
-        let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
-        Some(if high - low > 500.0 { 180.0 } else { 90.0 })
-    };
-    chart.lines.push(ChartLine {
-        label: "azimuth (inner)".to_owned(),
-        role: ChartRole::Primary,
-        points: angle(&|p| p.azimuth_deg),
-    });
-    chart.lines.push(ChartLine {
-        label: "roll (outer)".to_owned(),
-        role: ChartRole::Second,
-        points: angle(&|p| p.roll_deg),
-    });
-    let steps = || data.gimbals.windows(2);
-    let moves = steps().filter(|w| !w[0].moving && w[1].moving).count();
-    let moving_h: f64 = steps().filter(|w| w[1].moving).map(|w| w[1].hours - w[0].hours).sum();
-    let still =
-        1.0 - moving_h / (data.gimbals[data.gimbals.len() - 1].hours - data.gimbals[0].hours);
-    html! {
-        h2 { "Gimbals" }
-        p.hint { (moves) " moves; the gimbals stood still "
-            (number::fixed(100.0 * still, 1))
-            " % of the time shown." }
-        (chart.render())
-    }
-}
-
 fn events(data: &ReportData) -> Markup {
     const SHOWN: usize = 40;
     html! {
-        h2 { "Health" }
         @if data.events.is_empty() {
             p { "The core reported nothing: no rejected measurement, no recovery, no gap, no stuck sensor." }
         } @else {
@@ -351,7 +293,6 @@ fn events(data: &ReportData) -> Markup {
 fn provenance(data: &ReportData) -> Markup {
     let summary = &data.summary;
     html! {
-        h2 { "Provenance" }
         table {
             tbody {
                 tr { td { "octant" } td.mono { (summary.octant) } }

@@ -64,8 +64,8 @@ pub struct Decided {
 /// A reference whose uncertainty isn't stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "nobody says how uncertain its reference is: expected decision.position, an uncertainty of the \
-     measure in [[decision.uncertainties]], or decision.rule = \"simple-acceptance\""
+    "nobody says how uncertain its reference is: expected decision.position for a position, an \
+     uncertainty of the measure in [[decision.uncertainties]], or decision.rule = \"simple-acceptance\""
 )]
 pub struct UnknownUncertainty;
 
@@ -87,7 +87,7 @@ impl Decision {
             return Ok(0.0);
         }
         match self.position_m {
-            Some(position_m) if bare.contains("navigation.") => {
+            Some(position_m) if bare.contains("navigation.") && is_of_position(bare) => {
                 Ok(of_position(bare, position_m, against))
             }
             _ if against.simulated || self.rule == Some(DecisionRule::SimpleAcceptance) => Ok(0.0),
@@ -138,12 +138,18 @@ fn is_referred(bare: &str) -> bool {
     let name = own.rsplit('.').next().unwrap_or(own);
     match own.split('.').next() {
         Some("navigation") => !own.contains("slope_window") && name != "duration_h",
+        Some("alignment") => matches!(name, "error" | "normalized"),
         Some("calibration") => {
             matches!(name, "error" | "estimate" | "normalized" | "worst_normalized_error")
                 || own.contains(".nees.")
         }
         _ => false,
     }
+}
+
+/// True if the reference of a measure of the navigation is a position.
+fn is_of_position(bare: &str) -> bool {
+    !["heading", "pitch", "roll", "velocity"].iter().any(|kind| bare.contains(kind))
 }
 
 /// Uncertainty of a measure of the navigation that follows from that of the position.
@@ -204,6 +210,9 @@ mod tests {
         let slope = uncertainty("navigation.latitude_error_arcmin.slope_per_day");
         assert!((slope - 2.0 * latitude).abs() < 1e-12);
         assert_eq!(uncertainty("baseline.navigation.marks.24h.radial_nmi"), 1.0);
+        // At worst the reference oscillates too.
+        let schuler = uncertainty("navigation.latitude_error_arcmin.schuler_amplitude");
+        assert_eq!(schuler, latitude);
         // Measures without a position as reference don't get a band.
         assert_eq!(uncertainty("calibration.nis_mean"), 0.0);
         assert_eq!(uncertainty("counterfactual.navigation.radial_max_nmi"), 0.0);
@@ -216,6 +225,12 @@ mod tests {
         assert_eq!(decision(None).uncertainty(measure, &simulated), Ok(0.0));
         let error = decision(None).uncertainty(measure, &HERE).unwrap_err().to_string();
         assert!(error.contains("decision.position") && error.contains("simple-acceptance"));
+        // The position's uncertainty says nothing of other references.
+        for other in ["heading_error_arcmin.max", "velocity_east_error_mps.rms"] {
+            let measure = format!("navigation.{other}");
+            assert_eq!(decision(Some(1.0)).uncertainty(&measure, &simulated), Ok(0.0));
+            assert!(decision(Some(1.0)).uncertainty(&measure, &HERE).is_err(), "{measure}");
+        }
         let simple = Decision { rule: Some(DecisionRule::SimpleAcceptance), ..Decision::default() };
         assert_eq!(simple.uncertainty(measure, &HERE), Ok(0.0));
         assert_eq!(decision(None).uncertainty("calibration.nis_mean", &HERE), Ok(0.0));

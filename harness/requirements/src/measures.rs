@@ -34,10 +34,11 @@ pub fn check(path: &str) -> Result<(), (String, Option<String>, Vec<&'static str
 
 /// Content at an existing place.
 fn shape(path: &[&str]) -> Shape {
-    let error = ["max", "rms", "final", "slope_per_day"];
+    let error = ["max", "rms", "final", "slope_per_day", "schuler_amplitude"];
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
     match path {
         [] => table(&[
+            "alignment",
             "calibration",
             "navigation",
             "counterfactual",
@@ -66,7 +67,26 @@ fn shape(path: &[&str]) -> Shape {
         ["pacing", "lateness_us" | "answer_us"] => table(&["p50", "p99", "p999", "max"]),
         ["pacing", "device_clock"] => table(&["offset_us", "bound_us", "skew_ppm", "exchanges"]),
         ["planned" | "done"] => table(&["stops", "calibration_s", "references", "navigation_s"]),
-        ["baseline"] => table(&["calibration", "navigation", "counterfactual", "planned", "done"]),
+        ["alignment"] => table(&["duration_s", "solution"]),
+        ["alignment" | "calibration", "solution"] => table(&[
+            "heading_deg",
+            "pitch_deg",
+            "roll_deg",
+            "heading_arcmin",
+            "pitch_arcmin",
+            "roll_arcmin",
+            "velocity_north_mps",
+            "velocity_east_mps",
+        ]),
+        [
+            "alignment" | "calibration",
+            "solution",
+            "heading_arcmin" | "pitch_arcmin" | "roll_arcmin" | "velocity_north_mps"
+            | "velocity_east_mps",
+        ] => table(&["error", "sigma", "normalized"]),
+        ["baseline"] => {
+            table(&["alignment", "calibration", "navigation", "counterfactual", "planned", "done"])
+        }
         ["baseline", rest @ ..] => shape(rest),
         ["counterfactual"] => table(&[
             "outputs_differ_after_s",
@@ -87,6 +107,7 @@ fn shape(path: &[&str]) -> Shape {
         ]),
         ["calibration"] => table(&[
             "duration_h",
+            "solution",
             "parameters",
             "nis_mean",
             "nees",
@@ -123,10 +144,24 @@ fn shape(path: &[&str]) -> Shape {
             "latitude_error_arcmin",
             "longitude_error_arcmin",
             "radial_error_nmi",
+            "heading_error_arcmin",
+            "pitch_error_arcmin",
+            "roll_error_arcmin",
+            "velocity_north_error_mps",
+            "velocity_east_error_mps",
             "slope_window",
             "marks",
         ]),
-        ["navigation", "latitude_error_arcmin" | "longitude_error_arcmin"] => table(&error),
+        [
+            "navigation",
+            "latitude_error_arcmin"
+            | "longitude_error_arcmin"
+            | "heading_error_arcmin"
+            | "pitch_error_arcmin"
+            | "roll_error_arcmin"
+            | "velocity_north_error_mps"
+            | "velocity_east_error_mps",
+        ] => table(&error),
         ["navigation", "radial_error_nmi"] => table(&["max", "rms", "final", "rate_per_h"]),
         ["navigation", "slope_window"] => table(&["periods", "hours"]),
         ["navigation", "marks"] => table(&["24h", "72h"]),
@@ -156,7 +191,16 @@ fn shape(path: &[&str]) -> Shape {
             "latitude_rms_arcmin",
             "longitude_rms_arcmin",
             "radial_rms_nmi",
+            "solution",
         ]),
+        ["reference", "random_walk", "solution"] => table(&[
+            "heading_arcmin",
+            "pitch_arcmin",
+            "roll_arcmin",
+            "velocity_north_mps",
+            "velocity_east_mps",
+        ]),
+        ["reference", "random_walk", "solution", _] => table(&["rms", "final"]),
         _ => Shape::Number,
     }
 }

@@ -9,8 +9,11 @@ pub fn is_signed(path: &str) -> bool {
     let name = parts.next().unwrap_or(path);
     match name {
         // Distances have no sign, and `radial_error_nmi.final` is one.
-        "final" | "slope_per_day" => !path.contains("radial"),
-        "error" | "estimate" | "true" | "normalized" | "shift" => path.contains("parameters"),
+        "final" | "slope_per_day" => !path.contains("radial") && !path.contains("reference"),
+        "error" | "estimate" | "true" | "normalized" | "shift" => {
+            path.contains("parameters") || path.contains(".solution.")
+        }
+        "heading_deg" | "pitch_deg" | "roll_deg" => true,
         "latitude_arcmin" | "longitude_arcmin" => path.contains(".marks."),
         "g_zz_deg_per_h_per_g" | "longitude_arcmin_per_day" => path.contains("reference"),
         _ => false,
@@ -52,7 +55,12 @@ mod tests {
             "navigation.latitude_error_arcmin.final",
             "navigation.longitude_error_arcmin.slope_per_day",
             "baseline.navigation.longitude_error_arcmin.final",
+            "navigation.heading_error_arcmin.final",
+            "navigation.velocity_north_error_mps.slope_per_day",
             "navigation.marks.24h.longitude_arcmin",
+            "alignment.solution.heading_arcmin.error",
+            "calibration.solution.roll_arcmin.normalized",
+            "alignment.solution.heading_deg",
             "calibration.parameters.g_zz.error",
             "calibration.parameters.g_zz.normalized",
             "counterfactual.parameters.g_zz.shift",
@@ -63,11 +71,14 @@ mod tests {
         for magnitude in [
             "navigation.latitude_error_arcmin.max",
             "navigation.radial_error_nmi.final",
+            "navigation.heading_error_arcmin.schuler_amplitude",
             "navigation.marks.24h.longitude_max_arcmin",
             "calibration.parameters.g_zz.sigma",
+            "calibration.solution.heading_arcmin.sigma",
             "calibration.nis_mean",
             "counterfactual.worst_shift_sigma",
             "reference.random_walk.latitude_final_arcmin",
+            "reference.random_walk.solution.heading_arcmin.final",
         ] {
             assert!(!is_signed(magnitude), "{magnitude}");
         }

@@ -2,12 +2,14 @@
 
 use super::findings::findings;
 use super::method::MethodRun;
+use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
+use octant_base::display::DisplayUnits;
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
-use octant_report::{ReportData, ReportProvenance};
+use octant_report::{ReportData, ReportProvenance, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_requirements::decision::{DecisionRule, NavigationContext};
 use octant_requirements::equipment::Day;
@@ -96,6 +98,10 @@ pub fn assemble_with(
     let references = reference(&ReferenceInput {
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
+        heading_rad: match &scenario.motion {
+            MotionSpec::Static(mean) => mean.heading_rad,
+            MotionSpec::Dockside(ship) => ship.mean.heading_rad,
+        },
         angle_random_walk: scenario.imu.angle_random_walk,
         velocity_random_walk: scenario.imu.velocity_random_walk,
         calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
@@ -116,6 +122,8 @@ pub fn assemble_with(
     };
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
+    let baseline_solution =
+        baseline.as_ref().map_or_else(SolutionSeries::default, |run| run.watcher.solution.clone());
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -132,12 +140,14 @@ pub fn assemble_with(
         faults: results(&primary.receipts),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreamSummary::from),
         method: primary.label.clone(),
+        alignment: primary.alignment,
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
         baseline: baseline.map(|run| BaselineMethod {
             planned: Some(run.watcher.work().0),
             done: Some(run.watcher.work().1),
             label: run.label,
+            alignment: run.alignment,
             calibration: run.calibration,
             navigation: run.navigation,
             counterfactual: baseline_counterfactual,
@@ -157,8 +167,16 @@ pub fn assemble_with(
         scenario.decision.uncertainty(measure, &against)
     })?;
     let report = ReportData {
+        solution: primary.watcher.solution.clone(),
+        baseline_solution,
+        navigation_start_h: primary.watcher.navigation_start_h(),
+        latitude_rad: Some(scenario.site.latitude_rad),
+        sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
+        covariance: primary.table.as_ref().map(|table| Box::new(table.covariance)),
+        requirement_texts: requirement_texts(scenario),
         summary: summary.clone(),
         facts: facts(scenario),
+        units: scenario.display,
         truth: primary.truth,
         events: primary.watcher.events(),
         convergence: primary.watcher.convergence,
@@ -168,6 +186,12 @@ pub fn assemble_with(
         provenance: ReportProvenance::default(),
     };
     Ok(Run { summary, report })
+}
+
+/// Lists the texts of a scenario's requirements by their ids.
+#[must_use]
+pub fn requirement_texts(scenario: &Scenario) -> BTreeMap<String, String> {
+    scenario.requirements.iter().map(|r| (r.check.id.clone(), r.text.clone())).collect()
 }
 
 /// Lists the setting of a run for the head of the report.
@@ -228,7 +252,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
 
 /// Renders the text for the terminal at the end of a run.
 #[must_use]
-pub fn text(summary: &Summary) -> String {
+pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
     use std::fmt::Write as _;
     let mut out = String::new();
     let mut line = |text: String| {
@@ -245,10 +269,13 @@ pub fn text(summary: &Summary) -> String {
     for fault in &summary.faults {
         line(format!("  {}", fault.sentence()));
     }
-    let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
-        .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
-    for (label, calibration, navigation) in methods {
+    let primary = (&summary.method, &summary.alignment, &summary.calibration, &summary.navigation);
+    let baseline = summary.baseline.as_ref();
+    let methods = std::iter::once(primary)
+        .chain(baseline.map(|b| (&b.label, &b.alignment, &b.calibration, &b.navigation)));
+    for (label, alignment, calibration, navigation) in methods {
         line(format!("{label}, seed {}", summary.seed));
+        alignment.iter().map(|alignment| alignment_line(alignment, units)).for_each(&mut line);
         if let Some(calibration) = calibration {
             let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
             let worst = calibration
@@ -261,20 +288,12 @@ pub fn text(summary: &Summary) -> String {
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
             }
+            let solution = calibration.solution.iter();
+            solution.filter_map(|solution| solution_line(solution, units)).for_each(&mut line);
         }
         if let Some(n) = navigation {
-            let error = |e: &octant_score::summary::ErrorScore| {
-                let slope =
-                    e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
-                format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
-            };
             line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
-            line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
-            line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
-            line(format!(
-                "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
-                n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
-            ));
+            navigation_lines(n, units).into_iter().for_each(&mut line);
         }
     }
     let differences = std::iter::once((&summary.method, &summary.counterfactual))

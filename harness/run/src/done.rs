@@ -168,6 +168,14 @@ impl Done {
         self.plan.work
     }
 
+    /// Returns the duration of the alignment, s: from the first sample to the first answer after it; 0
+    /// for a unit that is given its attitude. `None` as long as the unit aligns.
+    #[must_use]
+    pub fn alignment_s(&self) -> Option<f64> {
+        let until = self.began.calibrating.or(self.began.navigating)?;
+        Some(until.saturating_sub(self.first_ns?) as f64 * 1e-9)
+    }
+
     /// Begins anew after a restart of the unit.
     pub fn restarted(&mut self) {
         let plan = std::mem::take(&mut self.plan);

@@ -3,16 +3,14 @@
 //! `drive` is the only loop over samples. Its type parameters are the choices, so that each
 //! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
 //! between them (nothing, faults, events of a recording); `Keeps` for the results and the pace: in
-//! time (`InTime`), by the clock ([`realtime`](super::realtime)), compared with a recording
+//! time ([`in_time`](super::in_time)), by the clock ([`realtime`](super::realtime)), compared with a recording
 //! ([`replayed`](super::replayed)) or dropped ([`passes`](super::passes)).
 
 pub use super::ended::{Ended, RunError};
 
-use super::ended::over;
 use super::faulted::{Behind, Faulted, occurrence_event};
 use super::unit;
 use super::watch::Watcher;
-use octant_base::control::Control;
 use octant_endpoint::{Endpoint, Sent};
 use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
@@ -22,9 +20,6 @@ use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
 use octant_source::{Epoch, Source};
-
-/// Epochs between two checks of the control: about a millisecond of wall time.
-const CONTROL_EPOCHS: u64 = 8192;
 
 /// Parts of a run that its samples go through.
 #[derive(Debug)]
@@ -50,42 +45,99 @@ where
     E: Endpoint + ?Sized,
     K: Keeps<S, E>,
 {
-    let (mut epoch, mut output) = (Epoch::default(), Output::default());
-    let mut powered = true;
-    let total = source.samples_total().filter(|_| F::INJECTS || K::PACED).unwrap_or(u64::MAX);
-    let mut number = 0;
+    let total = source.samples_total().filter(|_| F::INJECTS || K::PACED);
+    let mut steps = Steps::new(total);
     loop {
+        if let Some(ended) = steps.step(source, faults, endpoint, keeper)? {
+            return Ok(ended);
+        }
+    }
+}
+
+/// State of the loop between two steps.
+#[derive(Debug)]
+pub(super) struct Steps {
+    epoch: Epoch,
+    output: Output,
+    powered: bool,
+    /// Number of steps after which the loop ends before it asks the source.
+    total: u64,
+    number: u64,
+}
+
+impl Steps {
+    /// Creates the state before the first step.
+    pub(super) fn new(total: Option<u64>) -> Self {
+        Self {
+            epoch: Epoch::default(),
+            output: Output::default(),
+            powered: true,
+            total: total.unwrap_or(u64::MAX),
+            number: 0,
+        }
+    }
+
+    /// Epoch that the source delivered in the last step.
+    pub(super) fn epoch(&self) -> &Epoch {
+        &self.epoch
+    }
+
+    /// Last answer of the endpoint.
+    pub(super) fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// Number of steps so far.
+    pub(super) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Takes one step of the source; returns the end of the run, where this was the last one.
+    #[inline(always)]
+    pub(super) fn step<S, F, E, K>(
+        &mut self,
+        source: &mut S,
+        faults: &mut F,
+        endpoint: &mut E,
+        keeper: &mut K,
+    ) -> Result<Option<Ended>, RunError>
+    where
+        S: Source + ?Sized,
+        F: Injects<S, E>,
+        E: Endpoint + ?Sized,
+        K: Keeps<S, E>,
+    {
+        let Self { epoch, output, powered, total, number } = self;
         // No fault sets in after the last sample, and no frame begins.
         if number == total {
-            return keeper.drain(endpoint, &mut output);
+            return keeper.drain(endpoint, output).map(Some);
         }
-        if keeper.begin(number) {
-            return Ok(Ended::Cancelled);
+        if keeper.begin(*number) {
+            return Ok(Some(Ended::Cancelled));
         }
-        number += 1;
+        *number += 1;
         // The turntable keeps the command of the last output while the core gives no answer.
         let mut command = output.gimbal_command;
-        faults.before(number, &mut command, &output, (source, endpoint));
-        if !source.next(&command, &mut epoch)? {
-            return Ok(Ended::SourceEnded);
+        faults.before(*number, &mut command, output, (source, endpoint));
+        if !source.next(&command, epoch)? {
+            return Ok(Some(Ended::SourceEnded));
         }
+        let epoch = &*epoch;
         for event in faults.unit_events(source)? {
             unit::happen(event, endpoint)?;
-            powered = *event != UnitEvent::PowerOff;
-            keeper.unit(event, number);
+            *powered = *event != UnitEvent::PowerOff;
+            keeper.unit(event, *number);
         }
-        let these = match faults.after(&epoch, &output) {
-            _ if !powered => &[],
-            Delivered::Untouched => std::slice::from_ref(&epoch),
+        let these = match faults.after(epoch, output) {
+            _ if !*powered => &[],
+            Delivered::Untouched => std::slice::from_ref(epoch),
             Delivered::These(these) => these,
         };
-        let delivered = deliver(source, (&epoch, these), endpoint, &mut output, keeper);
+        let delivered = deliver(source, (epoch, these), endpoint, output, keeper);
         faults.exchanged(endpoint);
         let ended = delivered?;
         faults.tell(|occurrence| keeper.occurrence(occurrence));
-        if let Some(ended) = ended {
-            return Ok(ended);
-        }
+        Ok(ended)
     }
 }
 
@@ -386,77 +438,4 @@ impl<'a> Books<'a> {
             self.recorder.event(occurrence_event(id, kind, begins, epoch));
         }
     }
-}
-
-/// Keeps the results of a run in simulated time, which waits for nothing.
-#[derive(Debug)]
-struct InTime<'a> {
-    /// Recorder and watcher.
-    books: Books<'a>,
-    /// Control of the run.
-    control: &'a Control,
-    /// Number of epochs between two checks of the control.
-    look_every: u64,
-    /// Revision of the last parameters.
-    revision: u32,
-}
-
-impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
-    fn begin(&mut self, done: u64) -> bool {
-        done != 0 && done.is_multiple_of(self.look_every) && self.control.look(done)
-    }
-
-    #[inline(always)]
-    fn answered(
-        &mut self,
-        source: &S,
-        endpoint: &E,
-        (step, sent): (InStep<'_>, &Epoch),
-        output: &Output,
-    ) -> Result<Option<Ended>, RunError> {
-        let is_new = output.parameters_revision != self.revision;
-        self.revision = output.parameters_revision;
-        let estimate = is_new.then(|| endpoint.parameters());
-        let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
-        let answered = (step, sent, !untouched);
-        self.books.answered(answered, output, estimate.as_ref(), || source.truth())?;
-        let misbehaved = self.books.watcher.misbehaved.is_some();
-        Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
-    }
-
-    fn lost(&mut self, source: &S, clean: &Epoch) -> Result<(), RunError> {
-        Ok(self.books.lost(clean, || source.truth())?)
-    }
-
-    fn unit(&mut self, event: &UnitEvent, number: u64) {
-        self.books.unit(event, number);
-    }
-
-    fn occurrence(&mut self, occurrence: &Occurrence) {
-        self.books.occurrence(occurrence);
-    }
-}
-
-/// Drives in simulated time. Receipts of faults are recorded at the end, also after a failure.
-///
-/// # Errors
-/// If source, endpoint or recorder fail; epochs recorded before stay readable.
-pub fn drive_in_time<S, E>(
-    line: Line<'_, S, E>,
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
-    control: &Control,
-) -> Result<Ended, RunError>
-where
-    S: Source + ?Sized,
-    E: Endpoint + ?Sized,
-{
-    let Line { source, faulted, endpoint } = line;
-    let books = Books::new(recorder, watcher, faulted.as_deref());
-    let look_every = if source.is_live() { 1 } else { CONTROL_EPOCHS };
-    let mut keeper = InTime { books, control, look_every, revision: 0 };
-    let Some(faulted) = faulted else { return drive(source, &mut NoFaults, endpoint, &mut keeper) };
-    let ended = drive(source, faulted, endpoint, &mut keeper);
-    faulted.last_words().into_iter().for_each(|event| keeper.books.recorder.event(event));
-    ended
 }

@@ -1,13 +1,15 @@
 //! A run: epochs driven from source to endpoint to recorder, observed on the way, then scored.
 //!
-//! [`drive`] has the loop, the only one over samples; [`realtime`] runs it by the clock,
+//! [`drive`] has the loop, the only one over samples; [`in_time`] runs it in simulated time, [`realtime`] by the clock,
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
 //! from its scenario to its scores; [`concluded`] stores a calibration that ended with the stream;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
-//! summary and report of a run of one or two methods.
+//! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
+//! [`stepped`] runs one method a step at a time, with parts that others made.
 
+mod aligned;
 pub mod assemble;
 pub mod concluded;
 pub mod done;
@@ -18,6 +20,8 @@ pub mod faulted;
 pub mod findings;
 pub mod follow;
 pub mod host;
+pub mod in_time;
+mod interfere;
 pub mod method;
 pub mod minimise;
 pub mod paired;
@@ -27,14 +31,19 @@ pub mod raw_counts;
 pub mod realtime;
 mod recording;
 pub mod replayed;
+pub mod scores_text;
+pub mod stepped;
 pub mod twin;
 pub mod unit;
 pub mod watch;
 
 pub use assemble::{Run, assemble};
-pub use drive::{Ended, Line, RunError, drive_in_time};
+pub use drive::{Ended, Line, RunError};
 pub use faulted::Faulted;
 pub use host::RunHost;
+pub use in_time::drive_in_time;
+pub use interfere::Interferes;
 pub use method::{MethodRun, StreamKeeping, run_method};
 pub use prepared::{Prepared, PreparedError};
+pub use stepped::{Parts, SteppedRun};
 pub use watch::Watcher;

@@ -3,13 +3,15 @@
 pub use super::error::{MethodError, SetupError, core_problem};
 pub use super::recording::StreamKeeping;
 
+use super::aligned::{self, uncertainty_of};
 use super::concluded;
 use super::done::PlannedWork;
-use super::drive::{Ended, Line, RunError, drive_in_time};
+use super::drive::{Ended, Line, RunError};
 use super::faulted::Faulted;
 use super::host::RunHost;
+use super::in_time::drive_in_time;
 use super::realtime::{TimeKeeping, drive_by_clock};
-use super::watch::Watcher;
+use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY, Watcher};
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
 use octant_calibration::config as core;
@@ -27,7 +29,9 @@ use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{self as scenario, Method, Realtime, Scenario};
 use octant_score::parameters::{nees, score, worst_normalized_error};
-use octant_score::summary::{CalibrationScore, HeightChannel, NavigationScore};
+use octant_score::summary::{
+    AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
+};
 use octant_score::trace::RunTrace;
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source, SourceError};
@@ -41,6 +45,8 @@ pub struct MethodRun {
     pub label: String,
     /// End of the loop.
     pub ended: Ended,
+    /// Result of the alignment; `None` if the unit never had an attitude.
+    pub alignment: Option<AlignmentResult>,
     /// Result of the calibration.
     pub calibration: Option<CalibrationScore>,
     /// Result of the navigation.
@@ -153,19 +159,11 @@ pub fn run_as_far_as_it_goes(
     let opened = octant_source::open(scenario, &plant).map_err(SetupError::Source)?;
     let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
     let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
-    let options = RecorderOptions {
-        trouble,
-        ..recorder_options(scenario, seed, &draws, method, true_parameters)
-    };
-    let mut recorder = match recording {
-        StreamKeeping::File(path) => {
-            Recorder::to_file(path, &options).map_err(SetupError::Recorder)?
-        }
-        StreamKeeping::Hash => Recorder::hash_only(&options),
-        StreamKeeping::HashAlone => Recorder::stream_hash_only(&options),
-        StreamKeeping::None => Recorder::none(),
-    };
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
+    let told = (true_parameters, tells);
+    let options =
+        RecorderOptions { trouble, ..recorder_options(scenario, seed, &draws, method, told) };
+    let mut recorder = recording.start(&options).map_err(SetupError::Recorder)?;
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
     let plan = PlannedWork::of(scenario, method, &core, tells, recorded);
     let mut watcher = Watcher::new(plan);
@@ -208,7 +206,7 @@ pub fn run_as_far_as_it_goes(
 }
 
 /// State at the end of a loop.
-struct Closed {
+pub(super) struct Closed {
     ended: Ended,
     broken: Option<RunError>,
     /// Answer to the end of the source.
@@ -239,6 +237,17 @@ fn to_the_end<S: Source, E: Endpoint>(
             (driven, Some(kept))
         }
     };
+    close((driven, kept), source, endpoint, (recorder, watcher), control)
+}
+
+/// Ends source and endpoint after the loop, and asks the core for its conclusion.
+pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
+    (driven, kept): (Result<Ended, RunError>, Option<TimeKeeping>),
+    source: &mut S,
+    endpoint: &mut E,
+    (recorder, watcher): (&mut Recorder, &mut Watcher),
+    control: &Control,
+) -> Result<Closed, RunError> {
     // Moving equipment is stopped first.
     let broken = driven.as_ref().err().map(ToString::to_string);
     let (bench, stopped) = source.conclude(broken.as_deref());
@@ -296,7 +305,7 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
 /// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
 /// initial parameters, and a real instrument's errors can be large: the samples are passed
 /// repeatedly until the parameters settle, and the recorded run is one more pass.
-fn settle(
+pub(super) fn settle(
     scenario: &Scenario,
     plant: &octant_plant::config::PlantConfig,
     core: &mut core::CoreConfig,
@@ -325,13 +334,14 @@ fn settle(
     Ok(())
 }
 
-/// Returns the recorder's options of a method, from the scenario.
-fn recorder_options(
+/// Returns the recorder's options of a method, from the scenario, and from what source and endpoint tell:
+/// whether the true parameters are known, and the parts of an output.
+pub(super) fn recorder_options(
     scenario: &Scenario,
     seed: u64,
     draws: &DrawnValues,
     method: Method,
-    true_parameters: bool,
+    (true_parameters, tells): (bool, Tells),
 ) -> RecorderOptions {
     let record = &scenario.record;
     let method = match method {
@@ -349,6 +359,8 @@ fn recorder_options(
             ("method", method.to_owned()),
             ("seed", seed.to_string()),
             ("true_parameters", true_parameters.to_string()),
+            (TELLS_VELOCITY, tells.velocity.to_string()),
+            (TELLS_ATTITUDE, tells.attitude.to_string()),
         ]
         .map(|(key, value)| (key.to_owned(), value))
         .into(),
@@ -357,7 +369,7 @@ fn recorder_options(
 }
 
 /// Scores the observations and closes the recording.
-fn finish(
+pub(super) fn finish(
     scenario: &Scenario,
     method: Method,
     closed: Closed,
@@ -392,7 +404,13 @@ fn finish(
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
+        let uncertainty = conclusion.solution.as_ref().map(uncertainty_of);
         CalibrationScore {
+            reference: Some(aligned::calibration_reference(scenario, &plan.estimator)),
+            solution: watcher
+                .calibrated
+                .as_ref()
+                .map(|point| SolutionScore::of(point, uncertainty.as_ref())),
             positions: plan.name.clone(),
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
@@ -422,6 +440,7 @@ fn finish(
     Ok(MethodRun {
         label: label(scenario, method),
         ended,
+        alignment: aligned::alignment(scenario, method, &watcher),
         calibration,
         navigation,
         recorder,

@@ -1,5 +1,6 @@
 //! Parts of a run's stream that are kept.
 
+use octant_recorder::{Recorder, RecorderError, RecorderOptions};
 use std::path::Path;
 
 /// Parts of a method's stream that are kept.
@@ -14,4 +15,16 @@ pub enum StreamKeeping<'a> {
     HashAlone,
     /// Nothing, for ensembles.
     None,
+}
+
+impl StreamKeeping<'_> {
+    /// Starts the recorder.
+    pub(super) fn start(self, options: &RecorderOptions) -> Result<Recorder, RecorderError> {
+        Ok(match self {
+            Self::File(path) => Recorder::to_file(path, options)?,
+            Self::Hash => Recorder::hash_only(options),
+            Self::HashAlone => Recorder::stream_hash_only(options),
+            Self::None => Recorder::none(),
+        })
+    }
 }

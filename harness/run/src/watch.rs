@@ -6,16 +6,21 @@
 
 use super::done::{Done, PlannedWork};
 use super::follow::RunFollower;
+use octant_earth::units::ARCMIN;
+use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
-use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
+use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, SolutionSeries};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Health, Mode, Output};
+use octant_sample::{DeviceTime, Health, Mode, Output, Status};
+use octant_score::alignment::SolutionPoint;
+use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::health::HealthMonitor;
 use octant_score::trace::RunTrace;
 use octant_score::work::Work;
 use octant_source::Epoch;
+use std::collections::BTreeMap;
 
 /// Interval at which truth is compared with the navigation solution, ns.
 const SCORE_PERIOD_NS: u64 = 1_000_000_000;
@@ -27,6 +32,11 @@ const STANDING_PERIOD_NS: u64 = 60_000_000_000;
 const NIS_POINTS_MAX: usize = 50_000;
 /// Maximum number of gimbal points: days of rotation in navigation are all alike.
 const GIMBAL_POINTS_MAX: usize = 40_000;
+
+/// Key of a recording's metadata: whether the unit tells its velocity.
+pub(crate) const TELLS_VELOCITY: &str = "tells_velocity";
+/// Key of a recording's metadata: whether the unit tells its attitude.
+pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
 
 /// Observes one run.
 #[derive(Debug)]
@@ -44,11 +54,18 @@ pub struct Watcher {
     /// Device time of the last sample of the drift.
     scored_ns: Option<u64>,
     last_ns: u64,
+    tells: Tells,
     check: AnswerCheck,
     follow: RunFollower,
     done: Done,
     drift: DriftScorer,
     drift_samples: u64,
+    /// Moment of which the solution is to be noted with the next truth.
+    moment: Option<Moment>,
+    /// Solution at the end of the alignment.
+    pub aligned: Option<SolutionPoint>,
+    /// Solution at the end of the calibration.
+    pub calibrated: Option<SolutionPoint>,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<RunTrace>,
     /// Health and NIS over the run.
@@ -59,6 +76,8 @@ pub struct Watcher {
     pub convergence: Vec<ParameterPoint>,
     /// NIS of the measurements.
     pub nis: Vec<NisPoint>,
+    /// Errors of attitude and velocity over the last navigation.
+    pub solution: SolutionSeries,
     /// Gimbal angles.
     pub gimbals: Vec<GimbalPoint>,
     /// Parameters as last reported.
@@ -69,6 +88,13 @@ pub struct Watcher {
     pub misbehaved: Option<Misbehaviour>,
     /// First real-time limit that the bench violated: nothing after it counts.
     pub bench_broke: Option<BenchBroke>,
+}
+
+/// End of a part of a run, at which the solution is noted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    Aligned,
+    Calibrated,
 }
 
 /// First violation of a real-time limit by the bench.
@@ -97,22 +123,35 @@ impl Watcher {
             navigation_start_ns: None,
             scored_ns: None,
             last_ns: 0,
+            tells: plan.tells().unwrap_or(Tells::ALL),
             check: AnswerCheck::new(),
             follow: RunFollower::new(plan.tells()),
             done: Done::towards(plan),
             drift: DriftScorer::new(),
             drift_samples: 0,
+            moment: None,
+            aligned: None,
+            calibrated: None,
             trace: None,
             health: HealthMonitor::new(),
             source_time: None,
             convergence: Vec::new(),
             nis: Vec::new(),
+            solution: SolutionSeries::default(),
             gimbals: Vec::new(),
             last_parameters: None,
             last_mode: Mode::default(),
             misbehaved: None,
             bench_broke: None,
         }
+    }
+
+    /// Sets which quantities the unit of a recording tells, from the recording's metadata. A recording
+    /// without a statement has all of them.
+    pub fn recorded(&mut self, run: &BTreeMap<String, String>) {
+        let told = |key: &str| run.get(key).is_none_or(|text| text != "false");
+        self.tells.velocity = told(TELLS_VELOCITY);
+        self.tells.attitude = told(TELLS_ATTITUDE);
     }
 
     /// Takes the source's epoch, before faults alter it.
@@ -158,7 +197,11 @@ impl Watcher {
         if !altered {
             self.follow.epoch(now_ns, output);
         }
-        self.epoch(output)
+        let due = self.epoch(output);
+        if due && self.moment.is_some() {
+            self.note(sent, output);
+        }
+        due
     }
 
     /// Takes an output that answers no sample, or one that isn't known any more; returns true if
@@ -194,6 +237,7 @@ impl Watcher {
         if output.mode == Mode::Navigating {
             // A restarted core navigates anew: the last navigation is the one that is scored.
             (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
+            self.solution = SolutionSeries::default();
             self.trace.iter_mut().for_each(RunTrace::navigation_begins);
             self.navigation_start_ns = Some(output.device_time.ns);
             self.scored_ns = None;
@@ -202,7 +246,45 @@ impl Watcher {
         if output.mode == Mode::Done {
             self.next_score_ns = 0;
         }
+        self.moment = match (self.last_mode, output.mode) {
+            (_, Mode::Calibrating) => Some(Moment::Aligned),
+            (Mode::Calibrating, Mode::Navigating | Mode::Done) => Some(Moment::Calibrated),
+            (_, Mode::Navigating) => Some(Moment::Aligned),
+            _ => None,
+        };
+        if self.moment.is_some() {
+            self.next_score_ns = output.device_time.ns;
+        }
         self.last_mode = output.mode;
+    }
+
+    /// Notes the solution at the end of an alignment or calibration, with the gimbals of its sample.
+    #[cold]
+    fn note(&mut self, sent: &Epoch, output: &Output) {
+        let sample = &sent.sample;
+        let known = self.tells.attitude && !sample.status.contains(Status::GIMBAL_INVALID);
+        let gimbal_rad = [sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()];
+        let attitude = known.then(|| CaseAngles::of(output.navigation.q_nb, gimbal_rad));
+        let point = Some(SolutionPoint { attitude, ..SolutionPoint::default() });
+        match self.moment {
+            Some(Moment::Aligned) => self.aligned = point,
+            Some(Moment::Calibrated) => self.calibrated = point,
+            None => {}
+        }
+    }
+
+    /// Adds the errors to the noted solution.
+    #[cold]
+    fn note_errors(&mut self, moment: Moment, output: &Output, truth: &Truth) {
+        let attitude_error = self.attitude_error(output, truth);
+        let velocity_error_mps = self.velocity_error(output, truth);
+        let point = match moment {
+            Moment::Aligned => &mut self.aligned,
+            Moment::Calibrated => &mut self.calibrated,
+        };
+        if let Some(point) = point {
+            (point.attitude_error, point.velocity_error_mps) = (attitude_error, velocity_error_mps);
+        }
     }
 
     #[inline(never)]
@@ -269,6 +351,9 @@ impl Watcher {
 
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
+        if let Some(moment) = self.moment.take() {
+            self.note_errors(moment, output, truth);
+        }
         let Some(start_ns) = self.navigation_start_ns else { return };
         let now_ns = output.device_time.ns;
         // A drift is a function of time: stamps that a fault puts before the last scored one are
@@ -285,6 +370,8 @@ impl Watcher {
             t_s: (now_ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
+            attitude_error: self.attitude_error(output, truth),
+            velocity_error_mps: self.velocity_error(output, truth),
             latitude_rad: truth.latitude_rad,
             height_m: truth.height_m,
         };
@@ -292,7 +379,24 @@ impl Watcher {
             let (north, east) = (sample.latitude_error_rad, sample.longitude_error_rad);
             trace.drift(sample.t_s, north, east);
         }
+        self.solution.push(sample.t_s / 3600.0, errors(&sample));
         self.drift.push(&sample);
+    }
+
+    /// Attitude error of the case; `None` where unit or source don't tell an attitude.
+    fn attitude_error(&self, output: &Output, truth: &Truth) -> Option<CaseAngles> {
+        let known = self.tells.attitude && truth.q_nb.iter().all(|q| q.is_finite());
+        let computed = output.navigation.q_nb;
+        known.then(|| CaseAngles::error(computed, truth.q_nb, truth.gimbal_rad))
+    }
+
+    /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a
+    /// velocity.
+    fn velocity_error(&self, output: &Output, truth: &Truth) -> Option<[f64; 2]> {
+        let [north, east, _] = truth.velocity_mps;
+        let known = self.tells.velocity && north.is_finite() && east.is_finite();
+        let [computed_north, computed_east, _] = output.navigation.velocity_mps;
+        known.then_some([computed_north - north, computed_east - east])
     }
 
     /// Returns the drift so far; `None` without navigation or without truth.
@@ -301,10 +405,22 @@ impl Watcher {
         (self.drift_samples >= 2).then_some(&self.drift)
     }
 
+    /// Returns the time at which the last navigation began, h; `None` without one.
+    #[must_use]
+    pub fn navigation_start_h(&self) -> Option<f64> {
+        self.navigation_start_ns.map(|ns| ns as f64 / 3.6e12)
+    }
+
     /// Returns the planned and the completed work.
     #[must_use]
     pub fn work(&self) -> (Work, Work) {
         (self.done.planned(), self.done.work())
+    }
+
+    /// Returns the duration of the alignment, s; `None` as long as the unit aligns.
+    #[must_use]
+    pub fn alignment_s(&self) -> Option<f64> {
+        self.done.alignment_s()
     }
 
     /// Describes the answers that don't follow the unit's input.
@@ -340,4 +456,12 @@ impl Watcher {
 
 fn hours(output: &Output) -> f64 {
     output.device_time.seconds() / 3600.0
+}
+
+/// Errors of attitude, arcmin, and velocity, m/s, in the order of [`SolutionSeries::push`].
+fn errors(sample: &DriftSample) -> [f64; 5] {
+    let attitude = sample.attitude_error;
+    let arcmin = |of: fn(&CaseAngles) -> f64| attitude.as_ref().map_or(f64::NAN, of) / ARCMIN;
+    let [north, east] = sample.velocity_error_mps.unwrap_or([f64::NAN; 2]);
+    [arcmin(|a| a.heading_rad), arcmin(|a| a.pitch_rad), arcmin(|a| a.roll_rad), north, east]
 }

@@ -25,6 +25,7 @@ use crate::error::{Problem, ScenarioError};
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
 };
+use crate::other_format;
 use octant_base::names::suggestion;
 use std::path::{Path, PathBuf};
 
@@ -200,6 +201,7 @@ impl Campaign {
     /// # Errors
     /// If it isn't TOML or isn't a campaign: every problem with its place.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        other_format::refuse(text, file, "a campaign")?;
         let read = |keys| read(keys, folder);
         CampaignKeys::parse(text, file, |_, _| (), read)
     }

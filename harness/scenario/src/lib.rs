@@ -17,6 +17,7 @@ pub mod error;
 mod keys;
 mod load;
 mod model;
+mod other_format;
 mod ports;
 pub mod quantity;
 pub mod read;

@@ -4,7 +4,7 @@ use super::arguments::{fire, override_set};
 use super::complete::complete;
 use super::error::{Place, ScenarioError};
 use super::model::Scenario;
-use super::{derive, document, keys, read};
+use super::{derive, document, keys, other_format, read};
 use std::path::Path;
 
 impl Scenario {
@@ -46,13 +46,19 @@ impl Scenario {
         Self::parse_fired(text, file, folder, overrides, &[])
     }
 
-    fn parse_fired(
+    /// Checks a text as [`Scenario::parse`] does, with `--fire` arguments applied as
+    /// [`Scenario::load_fired`] does.
+    ///
+    /// # Errors
+    /// As both.
+    pub fn parse_fired(
         text: &str,
         file: &str,
         folder: &Path,
         overrides: &[String],
         fires: &[String],
     ) -> Result<Self, ScenarioError> {
+        other_format::refuse(text, file, "a scenario")?;
         let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
         let mut document = document::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();

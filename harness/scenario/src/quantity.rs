@@ -39,6 +39,8 @@ macro_rules! dimensions {
 dimensions! {
     /// Duration or period.
     TIME = [0, 2, 0, 0, 0], "a time", "12 h", "s", "s";
+    /// Duration much shorter than a run.
+    SHORT_TIME = [0, 2, 0, 0, 0], "a time", "500 us", "s", "s";
     /// Number of samples, distinguished from a ratio: `"20 samples"`.
     SAMPLES = [0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples";
     /// Frequency or rate of samples.

@@ -52,6 +52,7 @@ impl Suite {
     /// # Errors
     /// If it isn't TOML or not a suite: every problem with its place.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        crate::other_format::refuse(text, file, "a suite")?;
         SuiteKeys::parse(text, file, |_, _| (), |keys| cases(keys, folder))
     }
 }

@@ -268,7 +268,9 @@ fn example(kind: &Kind) -> String {
         Kind::Lists => "[[]]".to_owned(),
         Kind::Codes => "1".to_owned(),
         Kind::Table(section) | Kind::Tables(section, ..) => {
-            let keys = section.keys.iter().take(if section.one_of { 1 } else { usize::MAX });
+            let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
+            let keys = section.keys.iter().filter(possible);
+            let keys = keys.take(if section.one_of { 1 } else { usize::MAX });
             let each = keys.map(|key| match key.default {
                 Default::Value(text) => format!("{} = {}", key.name, written(text)),
                 _ => format!("{} = {}", key.name, example(&key.kind)),

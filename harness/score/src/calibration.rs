@@ -1,5 +1,6 @@
 //! Results of a calibration.
 
+use super::alignment::{AlignmentReference, SolutionScore};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -12,6 +13,12 @@ pub struct CalibrationScore {
     pub estimator: String,
     /// Duration, h.
     pub duration_h: f64,
+    /// Reference that the attitude was found from.
+    #[serde(default)]
+    pub reference: Option<AlignmentReference>,
+    /// Solution at its end, with which a navigation begins; null for a calibration without an end.
+    #[serde(default)]
+    pub solution: Option<SolutionScore>,
     /// Every parameter by its name.
     pub parameters: BTreeMap<String, ParameterScore>,
     /// Mean normalized innovation squared; expected: 3 for three axes.

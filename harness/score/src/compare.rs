@@ -15,7 +15,7 @@ pub const SCHEMA: u32 = 1;
 /// Improvement of the published claim, 1.
 pub const CLAIM: f64 = 0.5;
 
-/// Largest errors of one navigation, arcmin; a mark that the run did not reach is null.
+/// Largest errors of one navigation, arcmin and m/s; a mark that the run did not reach is null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Maxima {
     /// Largest latitude error to 24 h.
@@ -26,6 +26,21 @@ pub struct Maxima {
     pub latitude_72h: Option<f64>,
     /// Largest longitude error to 72 h.
     pub longitude_72h: Option<f64>,
+    /// Largest heading error of the case over the navigation.
+    #[serde(default)]
+    pub heading: Option<f64>,
+    /// Largest pitch error of the case over the navigation.
+    #[serde(default)]
+    pub pitch: Option<f64>,
+    /// Largest roll error of the case over the navigation.
+    #[serde(default)]
+    pub roll: Option<f64>,
+    /// Largest error of the velocity to the north over the navigation, m/s.
+    #[serde(default)]
+    pub velocity_north_mps: Option<f64>,
+    /// Largest error of the velocity to the east over the navigation, m/s.
+    #[serde(default)]
+    pub velocity_east_mps: Option<f64>,
 }
 
 impl Maxima {
@@ -38,6 +53,11 @@ impl Maxima {
             longitude_24h: mark("24h").map(|m| m.longitude_max_arcmin),
             latitude_72h: mark("72h").map(|m| m.latitude_max_arcmin),
             longitude_72h: mark("72h").map(|m| m.longitude_max_arcmin),
+            heading: navigation.heading_error_arcmin.map(|e| e.max),
+            pitch: navigation.pitch_error_arcmin.map(|e| e.max),
+            roll: navigation.roll_error_arcmin.map(|e| e.max),
+            velocity_north_mps: navigation.velocity_north_error_mps.map(|e| e.max),
+            velocity_east_mps: navigation.velocity_east_error_mps.map(|e| e.max),
         }
     }
 
@@ -49,11 +69,16 @@ impl Maxima {
             Measure::Longitude24h => self.longitude_24h,
             Measure::Latitude72h => self.latitude_72h,
             Measure::Longitude72h => self.longitude_72h,
+            Measure::Heading => self.heading,
+            Measure::Pitch => self.pitch,
+            Measure::Roll => self.roll,
+            Measure::VelocityNorth => self.velocity_north_mps,
+            Measure::VelocityEast => self.velocity_east_mps,
         }
     }
 }
 
-/// Measure of a comparison: the largest error of a run up to a mark.
+/// Measure of a comparison: the largest error of a run, of the position up to a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -69,12 +94,31 @@ pub enum Measure {
     /// Largest longitude error to 72 h.
     #[serde(rename = "longitude_72h")]
     Longitude72h,
+    /// Largest heading error.
+    Heading,
+    /// Largest pitch error.
+    Pitch,
+    /// Largest roll error.
+    Roll,
+    /// Largest error of the velocity to the north.
+    VelocityNorth,
+    /// Largest error of the velocity to the east.
+    VelocityEast,
 }
 
 impl Measure {
     /// All measures.
-    pub const ALL: [Self; 4] =
-        [Self::Latitude24h, Self::Longitude24h, Self::Latitude72h, Self::Longitude72h];
+    pub const ALL: [Self; 9] = [
+        Self::Latitude24h,
+        Self::Longitude24h,
+        Self::Latitude72h,
+        Self::Longitude72h,
+        Self::Heading,
+        Self::Pitch,
+        Self::Roll,
+        Self::VelocityNorth,
+        Self::VelocityEast,
+    ];
 
     /// Name of the measure.
     #[must_use]
@@ -84,6 +128,25 @@ impl Measure {
             Self::Longitude24h => "longitude to 24 h",
             Self::Latitude72h => "latitude to 72 h",
             Self::Longitude72h => "longitude to 72 h",
+            Self::Heading => "heading",
+            Self::Pitch => "pitch",
+            Self::Roll => "roll",
+            Self::VelocityNorth => "velocity north",
+            Self::VelocityEast => "velocity east",
+        }
+    }
+
+    /// Name of the error, as in [`NavigationScore::errors`].
+    #[must_use]
+    pub const fn error(self) -> &'static str {
+        match self {
+            Self::Latitude24h | Self::Latitude72h => "latitude",
+            Self::Longitude24h | Self::Longitude72h => "longitude",
+            Self::Heading => "heading",
+            Self::Pitch => "pitch",
+            Self::Roll => "roll",
+            Self::VelocityNorth => "north",
+            Self::VelocityEast => "east",
         }
     }
 
@@ -93,10 +156,12 @@ impl Measure {
         matches!(self, Self::Longitude24h | Self::Longitude72h)
     }
 
-    const fn hours(self) -> f64 {
+    /// Mark of a position error, h; `None`: over the whole navigation.
+    const fn hours(self) -> Option<f64> {
         match self {
-            Self::Latitude24h | Self::Longitude24h => 24.0,
-            Self::Latitude72h | Self::Longitude72h => 72.0,
+            Self::Latitude24h | Self::Longitude24h => Some(24.0),
+            Self::Latitude72h | Self::Longitude72h => Some(72.0),
+            _ => None,
         }
     }
 }
@@ -214,14 +279,15 @@ pub struct MeasureCell {
     pub measure: Measure,
     /// Number of pairs that have it.
     pub runs: u32,
-    /// Root mean square over seeds of the first method, arcmin.
+    /// Root mean square over seeds of the first method, arcmin or m/s.
     pub first: f64,
-    /// Root mean square over seeds of the second method, arcmin.
+    /// Root mean square over seeds of the second method, in the same unit.
     pub second: f64,
     /// Improvement 1 − second/first with its 90 % interval, and the smallest that so many pairs detect
     /// with a probability of 90 %.
     pub improvement: Improvement,
-    /// Root mean square from the random walk alone, with exact parameters and attitude, arcmin.
+    /// Root mean square from the random walk alone, with exact parameters and attitude, arcmin; null for
+    /// attitude and velocity.
     pub floor: Option<f64>,
     /// Verdict on the claim.
     pub claim: Claim,
@@ -328,7 +394,7 @@ fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<
         improvement,
         floor: floor
             .iter()
-            .find(|f| f.hours == measure.hours())
+            .find(|f| Some(f.hours) == measure.hours())
             .map(|f| if measure.is_longitude() { f.longitude_arcmin } else { f.latitude_arcmin }),
         claim: Claim::of(&improvement),
     })
@@ -356,7 +422,9 @@ fn words(
 ) -> Vec<String> {
     let told = refusals.map(|refusals| refusals.words([first, second])).unwrap_or_default();
     // A g-dependent bias changes the longitude at the latest mark most.
-    let main = cells.iter().rfind(|c| c.measure.is_longitude()).or_else(|| cells.last());
+    let of_position = |cell: &&MeasureCell| cell.measure.hours().is_some();
+    let main = cells.iter().rfind(|c| c.measure.is_longitude());
+    let main = main.or_else(|| cells.iter().rfind(of_position)).or_else(|| cells.last());
     let Some(main) = main else {
         let nothing = format!(
             "nothing to compare: {seeds} pairs of runs, and at least 2 with 24 h of navigation are needed"

@@ -278,6 +278,8 @@ mod tests {
             unit: "deg/h".to_owned(),
         };
         CalibrationScore {
+            reference: None,
+            solution: None,
             positions: "eight".to_owned(),
             estimator: "kalman".to_owned(),
             duration_h: 4.0,

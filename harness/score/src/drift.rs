@@ -1,5 +1,7 @@
-//! Drift of a navigation solution: maximum, rms, final value, secular slope, radial error.
+//! Drift of a navigation solution (position, attitude, velocity): maximum, rms, final value, secular
+//! slope and Schuler oscillation, radial error.
 
+use super::attitude::CaseAngles;
 use super::regression::{SecularSlope, Slopes};
 use super::series::Series;
 use super::summary::{ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow};
@@ -19,6 +21,10 @@ pub struct DriftSample {
     pub latitude_error_rad: f64,
     /// Longitude error, rad.
     pub longitude_error_rad: f64,
+    /// Attitude error of the case; `None` if it isn't known.
+    pub attitude_error: Option<CaseAngles>,
+    /// Error of the velocity over ground, north and east, m/s; `None` if it isn't known.
+    pub velocity_error_mps: Option<[f64; 2]>,
     /// True geodetic latitude, rad.
     pub latitude_rad: f64,
     /// True height above the ellipsoid, m.
@@ -51,12 +57,22 @@ pub enum DriftError {
     },
 }
 
+/// Number of errors with a score each.
+const ERRORS: usize = 7;
+/// Place of each error in the unit of its score: arcmin, and m/s for the velocity.
+const LATITUDE: usize = 0;
+const LONGITUDE: usize = 1;
+const HEADING: usize = 2;
+const PITCH: usize = 3;
+const ROLL: usize = 4;
+const NORTH: usize = 5;
+const EAST: usize = 6;
+
 /// Errors at one time, in the units of the scores.
 #[derive(Clone, Copy, Debug)]
 struct Errors {
     t_s: f64,
-    latitude_arcmin: f64,
-    longitude_arcmin: f64,
+    each: [f64; ERRORS],
     radial_nmi: f64,
 }
 
@@ -89,13 +105,16 @@ pub struct DriftScorer {
     samples: u64,
     first_s: f64,
     previous: Option<Errors>,
-    latitude: Extent,
-    longitude: Extent,
+    extents: [Extent; ERRORS],
+    /// True as long as every sample has had an attitude error.
+    attitude: bool,
+    /// True as long as every sample has had a velocity error.
+    velocity: bool,
     radial: Extent,
     /// Sums Σ r t and Σ t² of the regression through the origin.
     radial_time: f64,
     time_square: f64,
-    slope: Option<SecularSlope>,
+    slope: Option<SecularSlope<ERRORS>>,
     marks: BTreeMap<String, Mark>,
     series: Series,
     broken: Option<DriftError>,
@@ -115,8 +134,9 @@ impl DriftScorer {
             samples: 0,
             first_s: 0.0,
             previous: None,
-            latitude: Extent::default(),
-            longitude: Extent::default(),
+            extents: [Extent::default(); ERRORS],
+            attitude: true,
+            velocity: true,
             radial: Extent::default(),
             radial_time: 0.0,
             time_square: 0.0,
@@ -136,14 +156,24 @@ impl DriftScorer {
         let earth = Ellipsoid::at(sample.latitude_rad, sample.height_m);
         let north_m = sample.latitude_error_rad * earth.meridian_radius_m;
         let east_m = sample.longitude_error_rad * earth.transverse_radius_m * earth.cos_latitude;
+        let attitude = sample.attitude_error.unwrap_or_default();
+        let [north_mps, east_mps] = sample.velocity_error_mps.unwrap_or_default();
+        let mut each = [0.0; ERRORS];
+        each[LATITUDE] = sample.latitude_error_rad / ARCMIN;
+        each[LONGITUDE] = sample.longitude_error_rad / ARCMIN;
+        each[HEADING] = attitude.heading_rad / ARCMIN;
+        each[PITCH] = attitude.pitch_rad / ARCMIN;
+        each[ROLL] = attitude.roll_rad / ARCMIN;
+        (each[NORTH], each[EAST]) = (north_mps, east_mps);
         let now = Errors {
             t_s: sample.t_s,
-            latitude_arcmin: sample.latitude_error_rad / ARCMIN,
-            longitude_arcmin: sample.longitude_error_rad / ARCMIN,
+            each,
             radial_nmi: libm::sqrt(north_m * north_m + east_m * east_m) / NAUTICAL_MILE_M,
         };
-        let finite = [now.t_s, now.latitude_arcmin, now.longitude_arcmin, now.radial_nmi];
-        if !finite.iter().all(|x| x.is_finite()) {
+        if !(now.t_s.is_finite()
+            && now.radial_nmi.is_finite()
+            && each.iter().all(|x| x.is_finite()))
+        {
             self.broken = Some(DriftError::NotFinite { sample: self.samples, t_s: now.t_s });
             return;
         }
@@ -160,15 +190,18 @@ impl DriftScorer {
             }
         }
         self.samples += 1;
-        self.latitude.take(now.latitude_arcmin);
-        self.longitude.take(now.longitude_arcmin);
+        self.attitude &= sample.attitude_error.is_some();
+        self.velocity &= sample.velocity_error_mps.is_some();
+        for (extent, error) in self.extents.iter_mut().zip(&each) {
+            extent.take(*error);
+        }
         self.radial.take(now.radial_nmi);
         self.radial_time += now.radial_nmi * now.t_s;
         self.time_square += now.t_s * now.t_s;
         self.slope
             .get_or_insert_with(|| SecularSlope::new(sample.latitude_rad, sample.height_m))
-            .push(now.t_s, now.latitude_arcmin, now.longitude_arcmin);
-        self.series.push([now.t_s / 3600.0, now.latitude_arcmin, now.longitude_arcmin]);
+            .push(now.t_s, &each);
+        self.series.push([now.t_s / 3600.0, each[LATITUDE], each[LONGITUDE]]);
         self.previous = Some(now);
     }
 
@@ -180,8 +213,8 @@ impl DriftScorer {
             if before.t_s < mark_s && mark_s <= now.t_s {
                 let part = (mark_s - before.t_s) / dt_s;
                 let at = |a: f64, b: f64| a + part * (b - a);
-                let latitude = at(before.latitude_arcmin, now.latitude_arcmin);
-                let longitude = at(before.longitude_arcmin, now.longitude_arcmin);
+                let latitude = at(before.each[LATITUDE], now.each[LATITUDE]);
+                let longitude = at(before.each[LONGITUDE], now.each[LONGITUDE]);
                 let radial = at(before.radial_nmi, now.radial_nmi);
                 self.marks.insert(
                     format!("{hour}h"),
@@ -189,15 +222,16 @@ impl DriftScorer {
                         latitude_arcmin: latitude,
                         longitude_arcmin: longitude,
                         radial_nmi: radial,
-                        latitude_max_arcmin: self.latitude.max.max(latitude.abs()),
-                        longitude_max_arcmin: self.longitude.max.max(longitude.abs()),
+                        latitude_max_arcmin: self.extents[LATITUDE].max.max(latitude.abs()),
+                        longitude_max_arcmin: self.extents[LONGITUDE].max.max(longitude.abs()),
                         radial_max_nmi: self.radial.max.max(radial),
                     },
                 );
             }
         }
-        self.latitude.integrate(before.latitude_arcmin, now.latitude_arcmin, dt_s);
-        self.longitude.integrate(before.longitude_arcmin, now.longitude_arcmin, dt_s);
+        for (i, extent) in self.extents.iter_mut().enumerate() {
+            extent.integrate(before.each[i], now.each[i], dt_s);
+        }
         self.radial.integrate(before.radial_nmi, now.radial_nmi, dt_s);
     }
 
@@ -214,26 +248,26 @@ impl DriftScorer {
         }
         let last = self.previous.filter(|_| self.samples > 1).ok_or(DriftError::Empty)?;
         let duration_s = last.t_s - self.first_s;
-        let slopes: Option<Slopes> = self.slope.as_ref().and_then(SecularSlope::slopes);
-        let score = |extent: &Extent, last: f64, slope_per_day: Option<f64>| ErrorScore {
-            max: extent.max,
-            rms: extent.rms(duration_s),
-            r#final: last,
-            slope_per_day,
+        let slopes: Option<Slopes<ERRORS>> = self.slope.as_ref().and_then(SecularSlope::slopes);
+        let score = |error: usize| ErrorScore {
+            max: self.extents[error].max,
+            rms: self.extents[error].rms(duration_s),
+            r#final: last.each[error],
+            slope_per_day: slopes.map(|s| s.per_day[error]),
+            schuler_amplitude: slopes.and_then(|s| Some(s.schuler?[error])),
         };
+        let attitude = |error: usize| self.attitude.then(|| score(error));
+        let velocity = |error: usize| self.velocity.then(|| score(error));
         Ok(NavigationScore {
             duration_h: duration_s / 3600.0,
             height,
-            latitude_error_arcmin: score(
-                &self.latitude,
-                last.latitude_arcmin,
-                slopes.map(|s| s.latitude_per_day),
-            ),
-            longitude_error_arcmin: score(
-                &self.longitude,
-                last.longitude_arcmin,
-                slopes.map(|s| s.longitude_per_day),
-            ),
+            latitude_error_arcmin: score(LATITUDE),
+            longitude_error_arcmin: score(LONGITUDE),
+            heading_error_arcmin: attitude(HEADING),
+            pitch_error_arcmin: attitude(PITCH),
+            roll_error_arcmin: attitude(ROLL),
+            velocity_north_error_mps: velocity(NORTH),
+            velocity_east_error_mps: velocity(EAST),
             radial_error_nmi: RadialScore {
                 max: self.radial.max,
                 rms: self.radial.rms(duration_s),

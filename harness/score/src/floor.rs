@@ -39,6 +39,8 @@ pub struct Floor {
     noise: Matrix,
     angle_random_walk: f64,
     velocity_random_walk: f64,
+    /// Heading of the case, rad.
+    heading_rad: f64,
     /// North and east distance of one radian of latitude and longitude, m.
     metres_per_rad: [f64; 2],
 }
@@ -67,8 +69,50 @@ pub struct FloorSummary {
     pub longitude_rms_arcmin: f64,
     /// Expected time-RMS of the radial error, nmi.
     pub radial_rms_nmi: f64,
+    /// Attitude of a level case, and velocity; null in files from before they were scored.
+    #[serde(default)]
+    pub solution: Option<SolutionFloor>,
     /// σ over time, about 150 points.
     pub sigma: Vec<FloorPoint>,
+}
+
+/// Floor of attitude and velocity over one navigation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SolutionFloor {
+    /// Heading error, arcmin.
+    pub heading_arcmin: FloorValue,
+    /// Pitch error, arcmin.
+    pub pitch_arcmin: FloorValue,
+    /// Roll error, arcmin.
+    pub roll_arcmin: FloorValue,
+    /// Error of the velocity to the north, m/s.
+    pub velocity_north_mps: FloorValue,
+    /// Error of the velocity to the east, m/s.
+    pub velocity_east_mps: FloorValue,
+}
+
+impl SolutionFloor {
+    /// Value of an error by the name that [`crate::summary::NavigationScore::errors`] gives it.
+    #[must_use]
+    pub fn of(&self, name: &str) -> Option<FloorValue> {
+        match name {
+            "heading" => Some(self.heading_arcmin),
+            "pitch" => Some(self.pitch_arcmin),
+            "roll" => Some(self.roll_arcmin),
+            "north" => Some(self.velocity_north_mps),
+            "east" => Some(self.velocity_east_mps),
+            _ => None,
+        }
+    }
+}
+
+/// Floor of one error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FloorValue {
+    /// Expected time-RMS, √(1/T ∫ σ² dt).
+    pub rms: f64,
+    /// 1σ at the end.
+    pub r#final: f64,
 }
 
 /// Root mean square over many runs of the largest error, arcmin.
@@ -123,7 +167,34 @@ impl Floor {
             noise,
             angle_random_walk,
             velocity_random_walk,
+            heading_rad: 0.0,
             metres_per_rad: [rm, rn * c],
+        }
+    }
+
+    /// Sets the heading of the case, rad, which tells pitch from roll; 0 without it.
+    #[must_use]
+    pub fn at_heading(self, heading_rad: f64) -> Self {
+        Self { heading_rad, ..self }
+    }
+
+    /// Floor of attitude and velocity: from the mean covariance over the navigation, and the last one.
+    fn solution(&self, mean: &Matrix, last: &Matrix) -> SolutionFloor {
+        let (s, c) = libm::sincos(self.heading_rad);
+        // Roll is about the bow (c, s), pitch about starboard (−s, c).
+        let about = |p: &Matrix, [north, east]: [f64; 2]| {
+            north * north * p[(0, 0)] + 2.0 * north * east * p[(0, 1)] + east * east * p[(1, 1)]
+        };
+        let value = |of: &dyn Fn(&Matrix) -> f64, unit: f64| FloorValue {
+            rms: libm::sqrt(of(mean).max(0.0)) / unit,
+            r#final: libm::sqrt(of(last).max(0.0)) / unit,
+        };
+        SolutionFloor {
+            heading_arcmin: value(&|p| p[(2, 2)], ARCMIN),
+            pitch_arcmin: value(&|p| about(p, [-s, c]), ARCMIN),
+            roll_arcmin: value(&|p| about(p, [c, s]), ARCMIN),
+            velocity_north_mps: value(&|p| p[(3, 3)], 1.0),
+            velocity_east_mps: value(&|p| p[(4, 4)], 1.0),
         }
     }
 
@@ -135,11 +206,12 @@ impl Floor {
         let mut p = Matrix::zeros();
         let mut sigma =
             vec![FloorPoint { hours: 0.0, latitude_arcmin: 0.0, longitude_arcmin: 0.0 }];
-        let (mut latitude, mut longitude) = (0.0, 0.0);
+        let (mut latitude, mut longitude, mut sum) = (0.0, 0.0, Matrix::zeros());
         for k in 1..=steps {
             p = self.transition * p * self.transition.transpose() + self.noise;
             latitude += p[(5, 5)];
             longitude += p[(6, 6)];
+            sum += p;
             if k % every == 0 || k == steps {
                 sigma.push(FloorPoint {
                     hours: f64::from(k) * STEP_S / 3600.0,
@@ -157,6 +229,7 @@ impl Floor {
             longitude_rms_arcmin: libm::sqrt(longitude) / ARCMIN,
             radial_rms_nmi: libm::sqrt(latitude * north * north + longitude * east * east)
                 / NAUTICAL_MILE_M,
+            solution: Some(self.solution(&(sum / f64::from(steps)), &p)),
             sigma,
         }
     }
@@ -211,6 +284,19 @@ impl Floor {
     /// noise.
     #[must_use]
     pub fn propagate(&self, initial: [f64; STATES], error: &SensorError, t_s: f64) -> [f64; 2] {
+        let [.., latitude_rad, longitude_rad] = self.propagate_states(initial, error, t_s);
+        [latitude_rad, longitude_rad]
+    }
+
+    /// All states after `t_s`, from errors that are constant in n, without noise: φ north, east, down
+    /// (rad), velocity north and east (m/s), latitude and longitude (rad).
+    #[must_use]
+    pub fn propagate_states(
+        &self,
+        initial: [f64; STATES],
+        error: &SensorError,
+        t_s: f64,
+    ) -> [f64; STATES] {
         let u = input(error);
         let steps = (t_s / STEP_S).ceil().max(1.0);
         let (transition, integral) = transition(&self.dynamics, t_s / steps);
@@ -219,7 +305,7 @@ impl Floor {
         for _ in 0..steps as u32 {
             x = transition * x + drive;
         }
-        [x[5], x[6]]
+        x.into()
     }
 }
 

@@ -1,6 +1,8 @@
 //! Scores of a run: drift of the navigation, accuracy of the parameters, verdict.
 //!
-//! - [`drift`] scores the errors of the navigation solution, streamed at 1 Hz or slower
+//! - [`drift`] scores the errors of the navigation solution, streamed at 1 Hz or slower;
+//!   [`mod@attitude`] has heading, pitch and roll of the case, [`mod@alignment`] attitude and velocity at one
+//!   time with their σ
 //! - [`parameters`] compares estimates with truth, normalized by their σ
 //! - [`mod@reference`] and [`floor`] give the physical limits of the scores
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
@@ -11,6 +13,8 @@
 //! - [`rederive`] checks a stored summary for contradictions, [`numerics`] tells which programs give
 //!   the same bits, [`equipment`] finds expired certificates
 
+pub mod alignment;
+pub mod attitude;
 mod calibration;
 pub mod compare;
 pub mod counterfactual;

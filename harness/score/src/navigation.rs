@@ -28,6 +28,23 @@ pub struct NavigationScore {
     pub longitude_error_arcmin: ErrorScore,
     /// Horizontal distance from the true position, nmi.
     pub radial_error_nmi: RadialScore,
+    /// Heading error of the case, arcmin; null without a true attitude, and where the unit doesn't
+    /// tell its attitude. Pitch and roll likewise.
+    #[serde(default)]
+    pub heading_error_arcmin: Option<ErrorScore>,
+    /// Pitch error of the case, arcmin.
+    #[serde(default)]
+    pub pitch_error_arcmin: Option<ErrorScore>,
+    /// Roll error of the case, arcmin.
+    #[serde(default)]
+    pub roll_error_arcmin: Option<ErrorScore>,
+    /// Error of the velocity over ground to the north, m/s; null without a true velocity, and where
+    /// the unit doesn't tell its velocity.
+    #[serde(default)]
+    pub velocity_north_error_mps: Option<ErrorScore>,
+    /// Error of the velocity over ground to the east, m/s.
+    #[serde(default)]
+    pub velocity_east_error_mps: Option<ErrorScore>,
     /// Window of the slopes; null for runs shorter than a Schuler period.
     pub slope_window: Option<SlopeWindow>,
     /// Scores at 24 h and 72 h, for runs that got there, with the keys "24h" and "72h".
@@ -35,6 +52,23 @@ pub struct NavigationScore {
     /// Rows of time (h), latitude error, longitude error (arcmin): at most 2002, including every
     /// extreme.
     pub series_hours: Vec<[f64; 3]>,
+}
+
+impl NavigationScore {
+    /// Scores of the errors with a sign, with name and unit: position, attitude, velocity. `None`: the
+    /// run doesn't have it.
+    #[must_use]
+    pub fn errors(&self) -> [(&'static str, &'static str, Option<ErrorScore>); 7] {
+        [
+            ("latitude", "arcmin", Some(self.latitude_error_arcmin)),
+            ("longitude", "arcmin", Some(self.longitude_error_arcmin)),
+            ("heading", "arcmin", self.heading_error_arcmin),
+            ("pitch", "arcmin", self.pitch_error_arcmin),
+            ("roll", "arcmin", self.roll_error_arcmin),
+            ("north", "m/s", self.velocity_north_error_mps),
+            ("east", "m/s", self.velocity_east_error_mps),
+        ]
+    }
 }
 
 /// Score of one error.
@@ -48,6 +82,10 @@ pub struct ErrorScore {
     pub r#final: f64,
     /// Secular slope per day; null for runs shorter than a Schuler period.
     pub slope_per_day: Option<f64>,
+    /// Amplitude of the Schuler oscillation, root mean square over whole Schuler periods; null for runs
+    /// shorter than one.
+    #[serde(default)]
+    pub schuler_amplitude: Option<f64>,
 }
 
 /// Score of the radial error.

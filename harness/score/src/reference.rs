@@ -83,6 +83,8 @@ pub struct ReferenceInput {
     pub latitude_rad: f64,
     /// Height above the ellipsoid, m.
     pub height_m: f64,
+    /// Heading of the case, rad.
+    pub heading_rad: f64,
     /// Angle random walk of the gyros, rad/√s.
     pub angle_random_walk: f64,
     /// Noise density of the accelerometers, (m/s²)/√Hz.
@@ -125,6 +127,7 @@ pub fn reference(input: &ReferenceInput) -> AnalyticReference {
                 input.angle_random_walk,
                 input.velocity_random_walk,
             )
+            .at_heading(input.heading_rad)
             .summary(t)
         }),
     }

@@ -2,6 +2,7 @@
 //!
 //! The file contains nothing about host or clock: the same scenario, seed and core give the same bytes.
 
+pub use super::alignment::{AlignmentReference, AlignmentResult, PointScore, SolutionScore};
 pub use super::calibration::{CalibrationScore, HealthCounts, ParameterScore};
 pub use super::navigation::{
     ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
@@ -63,6 +64,9 @@ pub struct Summary {
     pub altered_streams: Option<AlteredStreamSummary>,
     /// Name of the method of `calibration` and `navigation`.
     pub method: String,
+    /// Alignment: the first attitude; null if the run ended before it.
+    #[serde(default)]
+    pub alignment: Option<AlignmentResult>,
     /// Calibration; null if the run had none.
     pub calibration: Option<CalibrationScore>,
     /// Navigation; null if the run had none, or no truth to compare it with.
@@ -207,6 +211,9 @@ impl From<&octant_recorder::AlteredStreams> for AlteredStreamSummary {
 pub struct BaselineMethod {
     /// Name of the method.
     pub label: String,
+    /// Alignment.
+    #[serde(default)]
+    pub alignment: Option<AlignmentResult>,
     /// Calibration.
     pub calibration: Option<CalibrationScore>,
     /// Navigation.

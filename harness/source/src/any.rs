@@ -82,6 +82,10 @@ impl Source for AnySource {
         each!(&mut self.0, source => source.conclude(broken))
     }
 
+    fn ahead(&self) -> Option<Box<dyn Source + Send>> {
+        each!(&self.0, source => source.ahead())
+    }
+
     fn has_true_parameters(&self) -> bool {
         each!(&self.0, source => source.has_true_parameters())
     }

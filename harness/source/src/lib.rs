@@ -82,6 +82,11 @@ pub trait Source {
         (None, None)
     }
 
+    /// Returns a copy that goes on from here by itself, where the source is a simulation of its own.
+    fn ahead(&self) -> Option<Box<dyn Source + Send>> {
+        None
+    }
+
     /// True if the instrument has the errors that the scenario gives or draws.
     fn has_true_parameters(&self) -> bool {
         false

@@ -54,6 +54,10 @@ impl Source for PlantSource {
         Some(&mut self.plant)
     }
 
+    fn ahead(&self) -> Option<Box<dyn Source + Send>> {
+        Some(Box::new(self.clone()))
+    }
+
     fn has_true_parameters(&self) -> bool {
         true
     }

@@ -32,6 +32,8 @@ pub struct About {
     pub length_ns: Option<u64>,
     /// Stops of the calibration, over all passes.
     pub stops: usize,
+    /// Positions of the sequence: the stops of one pass.
+    pub positions: usize,
     /// True if the run goes by the clock.
     pub by_clock: bool,
     /// Lateness from which a sample is an overrun, µs, in a run by the clock.
@@ -69,6 +71,7 @@ impl About {
             stops: calibration
                 .as_ref()
                 .map_or(0, |c| c.sequence.stops().len() * c.sequence.passes() as usize),
+            positions: calibration.as_ref().map_or(0, |c| c.sequence.stops().len()),
             by_clock: scenario.realtime.by_clock,
             overrun_us: (scenario.realtime.by_clock)
                 .then(|| scenario.realtime.overrun_ns as f64 / 1e3),

@@ -50,7 +50,13 @@ pub fn mode(state: &RunState) -> String {
     if matches!(output.mode, Mode::Calibrating | Mode::Navigating) {
         let _ = write!(text, ", stop {}", output.stop + 1);
         if output.mode == Mode::Calibrating && state.about.stops > 0 {
-            let _ = write!(text, " of {}", state.about.stops);
+            let (stops, positions) = (state.about.stops, state.about.positions);
+            let _ = write!(text, " of {stops}");
+            // With several passes the stop isn't the position of the sequence.
+            if (1..stops).contains(&positions) {
+                let position = usize::from(output.stop) % positions + 1;
+                let _ = write!(text, " (position {position} of {positions})");
+            }
         }
         if output.moving {
             text += ", moving";

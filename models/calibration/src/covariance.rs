@@ -80,6 +80,15 @@ impl Transition {
     }
 }
 
+/// Covariance of attitude and velocity at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolutionCovariance {
+    /// Covariance of φ in n (north, east, down), rad².
+    pub phi: [[f64; 3]; 3],
+    /// Standard deviation of the velocity in n (north, east, down), m/s.
+    pub velocity_mps: [f64; 3],
+}
+
 /// Symmetric covariance, stored in full.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariance {
@@ -122,6 +131,15 @@ impl Covariance {
     #[must_use]
     pub fn sigma(&self, i: usize) -> f64 {
         libm::sqrt(self.p[i][i].max(0.0))
+    }
+
+    /// Covariance of attitude and velocity.
+    #[must_use]
+    pub fn solution(&self) -> SolutionCovariance {
+        SolutionCovariance {
+            phi: core::array::from_fn(|i| core::array::from_fn(|j| self.at(PHI + i, PHI + j))),
+            velocity_mps: core::array::from_fn(|i| self.sigma(DV + i)),
+        }
     }
 
     /// Adds to elements (i, j) and (j, i).

@@ -183,8 +183,17 @@ fn every_state_is_read_back() {
         assert_eq!(reframed(payload(&saved)), saved, "the frame is as the test thinks");
         let loaded = Core::load(&saved).unwrap();
         assert_eq!(bytes(&loaded), saved, "{name}");
-        assert_eq!(format!("{loaded:?}"), format!("{core:?}"), "{name}");
+        assert!(loaded.concluded().is_none(), "a stored state has no covariance of the past");
+        assert_eq!(shown(&loaded), shown(&core), "{name}");
     }
+}
+
+/// Every field of a core but the covariance at the end of its calibration.
+fn shown(core: &Core) -> String {
+    let text = format!("{core:?}");
+    let (before, rest) = text.split_once("concluded: ").unwrap();
+    let (_, after) = rest.split_once(", gimbals: ").unwrap();
+    format!("{before}{after}")
 }
 
 #[test]

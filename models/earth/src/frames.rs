@@ -33,6 +33,29 @@ pub fn euler_of(c: &Matrix3<f64>) -> (f64, f64, f64) {
     )
 }
 
+/// Matrix that takes a small misalignment φ (rad, in n) of a computed attitude into the errors (computed
+/// minus true) of heading, pitch and roll of the case, at this heading and pitch (rad).
+///
+/// The computed frame is turned by −φ: `δheading = −φ_D − tan p·a`, `δpitch = −b`, `δroll = −a/cos p`,
+/// where a and b are the horizontal parts of φ along the bow and to starboard of it.
+#[must_use]
+pub fn case_of_phi(heading_rad: f64, pitch_rad: f64) -> Matrix3<f64> {
+    let (s, c) = libm::sincos(heading_rad);
+    let (sin_pitch, cos_pitch) = libm::sincos(pitch_rad);
+    let tan_pitch = sin_pitch / cos_pitch;
+    Matrix3::new(
+        -tan_pitch * c,
+        -tan_pitch * s,
+        -1.0,
+        s,
+        -c,
+        0.0,
+        -c / cos_pitch,
+        -s / cos_pitch,
+        0.0,
+    )
+}
+
 /// Attitude error φ (rad, in n) of a computed attitude against the true one:
 /// `c_nb(computed) = (I − [φ×]) c_nb(true)`.
 #[must_use]

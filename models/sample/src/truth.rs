@@ -2,7 +2,7 @@
 
 /// Truth at one instant, at the centre of rotation of the gimbals. While a fault shakes the sensor
 /// block against the gimballed body, position, velocity and attitude are those of the block: of the
-/// motion that the sensors feel.
+/// motion that the sensors feel. A source that doesn't know velocity or attitude gives NaN.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Simulated time, ns since the start.

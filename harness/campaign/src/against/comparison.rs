@@ -32,7 +32,7 @@ pub struct EnsembleComparison {
     pub detects: Option<Detects>,
     /// Parameters at the end of the calibration.
     pub states: Vec<ErrorRow>,
-    /// Position errors in navigation.
+    /// Position errors in navigation, and attitude and velocity errors at its end.
     pub drift: Vec<ErrorRow>,
     /// Mean over the parameters of predicted over simulated σ; null where there is none.
     pub mean_ratio: Option<f64>,

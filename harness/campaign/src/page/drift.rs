@@ -46,6 +46,7 @@ pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
                 p.hint { "Rows of a whole scenario have no interval: the same instruments are in all of its combinations." }
             }
             (marks(report))
+            (solution(report))
         }
     }
 }
@@ -110,6 +111,25 @@ fn marks(report: &CampaignReport<'_>) -> Markup {
     }
 }
 
+/// Renders the largest errors of attitude and velocity.
+fn solution(report: &CampaignReport<'_>) -> Markup {
+    let all = || report.combinations.iter().zip(&report.statistics.combinations);
+    if all().all(|(_, figures)| figures.solution.is_empty()) {
+        return html! {};
+    }
+    html! {
+        h3 { "Attitude and velocity" }
+        p.hint { "Largest error of each navigation: heading, pitch and roll of the case, velocity to the north and east." }
+        table {
+            thead { tr { th { "Combination" } th { "Largest error" } th.n { "50 %" } th.n { "95 %" } } }
+            tbody { @for (combination, figures) in all() { @for (name, spread) in &figures.solution { tr {
+                td { (combination.name()) } td { (name) }
+                td.n { (with_bounds(&spread.p50)) } td.n { (with_bounds(&spread.p95)) }
+            } } } }
+        }
+    }
+}
+
 /// Draws percentiles of the errors over time. Curves of a prediction belong into the same charts.
 pub(super) fn envelopes(report: &CampaignReport<'_>) -> Markup {
     let all = || {
@@ -143,6 +163,8 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
     let mut chart =
         Chart::new(&format!("{name}, {of}"), "hours of navigation", &format!("{name}, arcmin"));
     (chart.width, chart.height) = (480.0, 200.0);
+    // The envelopes of all combinations share range and cursor.
+    chart.run_offset_h = Some(0.0);
     let [least, low, middle, high, greatest] = [0, 1, 2, 3, 4];
     let value = |curve: usize, k: usize| {
         curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)

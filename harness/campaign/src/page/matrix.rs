@@ -66,17 +66,19 @@ fn missing(title: &str, ids: &[String], cases: bool) -> Markup {
 
 fn cases(report: &CampaignReport<'_>, beside: bool) -> Markup {
     let requirements = &report.statistics.requirements;
+    let mut worst_first: Vec<_> = report.rows.iter().collect();
+    worst_first.sort_by_key(|row| std::cmp::Reverse(row.outcome.as_ref().map(|o| o.verdict)));
     html! {
         details {
-            summary { (report.rows.len()) " cases" }
+            summary { (report.rows.len()) " cases, the worst first" }
             div.wide tabindex="0" role="region" aria-label="Cases" {
-                table {
+                table.filtered {
                     thead { tr {
                         th { "Case" } th { "Scenario and factors" } th.n { "Seed" } th.n { "Verdict" }
                         @for r in requirements { th.n { (r.id) } }
                         th style="padding-left:14px" { "Stream hash" }
                     } }
-                    tbody { @for row in report.rows.iter().take(ROWS_MAX) {
+                    tbody { @for row in worst_first.into_iter().take(ROWS_MAX) {
                         @let outcome = row.outcome.as_ref();
                         tr {
                             td { (case_link(&row.case.id, beside)) }

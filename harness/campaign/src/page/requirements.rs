@@ -6,6 +6,7 @@ use crate::report::{CampaignReport, POLICY};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::page::badge;
+use octant_report::units::unit;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::percent;
 use octant_requirements::trace::VerdictCounts;
@@ -32,7 +33,10 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     }
 }
 
+/// Renders the requirements, the worst first.
 fn table(all: &[RequirementFigures]) -> Markup {
+    let mut worst_first: Vec<&RequirementFigures> = all.iter().collect();
+    worst_first.sort_by_key(|r| std::cmp::Reverse(r.verdict));
     html! {
         div.wide tabindex="0" role="region" aria-label="Requirements" {
             table {
@@ -40,7 +44,7 @@ fn table(all: &[RequirementFigures]) -> Markup {
                     th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Draws" } th.n { "Bound" }
                     th.n { "Asked" } th.n { "Still needed" } th.n { "Least margin" } th.n { "Verdict" }
                 } }
-                tbody { @for r in all { tr {
+                tbody { @for r in worst_first { tr {
                     td { strong { (r.id) }
                         @if let Some(text) = &r.text { div.reason { (text) } }
                         @if let Some(clause) = &r.clause { div.reason { (clause) } } }
@@ -48,6 +52,7 @@ fn table(all: &[RequirementFigures]) -> Markup {
                         @if let Some(measure) = &r.measure {
                             span.mono { (measure) } " " (sign(r.comparison.unwrap_or(""))) " "
                             (r.limit.map_or_else(String::new, |limit| number::plain(limit, 6)))
+                            " " (unit(measure))
                         }
                         div.reason { (r.reason) }
                         @if r.asked.is_none() { @if let Some(claim) = &r.claim { div.reason { (claim) } } }
@@ -61,6 +66,7 @@ fn table(all: &[RequirementFigures]) -> Markup {
                         @match &r.nearest {
                             Some(nearest) => {
                                 (number::significant(nearest.margin, 3))
+                                @if let Some(measure) = &r.measure { " " (unit(measure)) }
                                 div.reason.mono { (nearest.case) }
                             }
                             None => "–",

@@ -91,6 +91,8 @@ pub struct CombinationFigures {
     pub at_marks: BTreeMap<String, Position>,
     /// Largest radial error, nmi.
     pub largest_nmi: Option<Spread>,
+    /// Largest errors of attitude and velocity, by name and unit, that all navigations have.
+    pub solution: BTreeMap<String, Spread>,
     /// Radial error rate, nmi/h.
     pub rate_nmi_per_h: Option<RateBounds>,
     /// Time-RMS of the radial error, nmi.
@@ -269,6 +271,7 @@ impl CombinationFigures {
             at_end: Position::of(&last),
             at_marks: marks(&sample),
             largest_nmi: Spread::of(&column(|drift| drift.max_nmi)),
+            solution: solution(&sample),
             rate_nmi_per_h: rate_bounds(&column(|drift| drift.rate_nmi_per_h), CONFIDENCE),
             time_rms_nmi: Spread::of(&column(|drift| drift.rms_nmi)),
             envelope: EnvelopeFigures::of(&curves, sample.beyond()),
@@ -279,6 +282,18 @@ impl CombinationFigures {
                 .collect(),
         }
     }
+}
+
+/// Collects the largest errors of attitude and velocity that every navigating case has.
+fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
+    let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
+    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.solution.keys()).collect();
+    let of = |name: &String| {
+        let known = drifts().all(|drift| drift.solution.contains_key(name));
+        let value = |drift: &CaseDrift| drift.solution.get(name).copied().unwrap_or(f64::INFINITY);
+        Some((name.clone(), Spread::of(&known.then(|| sample.column(value))?)?))
+    };
+    names.into_iter().filter_map(of).collect()
 }
 
 /// Collects radial errors at the marks that every navigating case reached.

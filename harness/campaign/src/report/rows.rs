@@ -67,6 +67,9 @@ pub struct CaseDrift {
     pub rate_nmi_per_h: f64,
     /// Radial error at the marks that it reached, nmi.
     pub marks_nmi: BTreeMap<String, f64>,
+    /// Largest errors of attitude and velocity that were scored, by name and unit, such as
+    /// "heading, arcmin".
+    pub solution: BTreeMap<String, f64>,
     /// Errors over time.
     pub curve: Option<Curve>,
 }
@@ -163,7 +166,12 @@ impl CaseDrift {
     fn of(navigation: &NavigationScore) -> Self {
         let radial = &navigation.radial_error_nmi;
         let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
+        // Latitude and longitude come first.
+        let solution = navigation.errors().into_iter().skip(2);
         Self {
+            solution: solution
+                .filter_map(|(name, unit, score)| Some((format!("{name}, {unit}"), score?.max)))
+                .collect(),
             duration_h: navigation.duration_h,
             final_nmi: radial.r#final,
             max_nmi: radial.max,

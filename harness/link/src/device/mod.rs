@@ -426,7 +426,7 @@ impl<'a> Device<'a> {
 }
 
 /// Serves over the port named by a URI until stopped. A port that goes away is opened again when it is
-/// back, and the session continues.
+/// back, and the session continues; standard input doesn't come back.
 ///
 /// # Errors
 /// If the port can't be opened the first time.
@@ -443,6 +443,11 @@ pub fn serve(
         Device::new(Wire::new(uri.to_string(), opened, EndRole::Device), facts, steps, notice)?;
     while let Err(error) = device.serve(stop) {
         (device.notice)(&Notice::PortGone(error.to_string()));
+        if *uri == Uri::Stdio {
+            // The harness that started this program is gone, and no other comes.
+            device.over("standard input has ended");
+            return Ok(());
+        }
         while device.wire.reopen().is_err() {
             if stop.load(Ordering::Relaxed) {
                 return Ok(());

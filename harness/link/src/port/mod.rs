@@ -1,20 +1,24 @@
 //! Open ports: lines of bytes, datagrams, CAN frames.
 
+mod exec;
 mod listen;
 mod pty;
 mod serial;
 mod slcan;
+mod tcp;
 mod udp;
 
 #[cfg(all(target_os = "linux", feature = "can"))]
 mod socket_can;
 
+pub use exec::{ExecPort, StdioPort};
 pub use listen::{HeardFrame, Listener};
 pub use pty::Pty;
 pub use serial::SerialLine;
 pub use slcan::SlcanPort;
 #[cfg(all(target_os = "linux", feature = "can"))]
 pub use socket_can::{SocketCan, interface_bus};
+pub use tcp::TcpPort;
 pub use udp::UdpPort;
 
 use crate::Uri;
@@ -177,7 +181,7 @@ pub enum Port {
     Frames(Box<dyn Frames>),
 }
 
-/// Opens a port for the end of a role. The device end of UDP listens, and only the device end creates a
+/// Opens a port for the end of a role. The device end of UDP and TCP listens, and only the device end creates a
 /// pseudo terminal.
 ///
 /// # Errors
@@ -196,6 +200,18 @@ pub fn open(uri: &Uri, role: EndRole) -> Result<Port, PortError> {
         (Uri::Slcan(slcan), _) => Ok(Port::Frames(Box::new(SlcanPort::open(slcan)?))),
         (Uri::Udp(udp), EndRole::Harness) => Ok(Port::Bytes(Box::new(UdpPort::connect(udp)?))),
         (Uri::Udp(udp), _) => Ok(Port::Bytes(Box::new(UdpPort::listen(udp)?))),
+        (Uri::Tcp(tcp), EndRole::Harness) => Ok(Port::Bytes(Box::new(TcpPort::connect(tcp)?))),
+        (Uri::Tcp(tcp), _) => Ok(Port::Bytes(Box::new(TcpPort::listen(tcp)?))),
+        (Uri::Exec(exec), EndRole::Harness) => Ok(Port::Bytes(Box::new(ExecPort::open(exec)?))),
+        (Uri::Exec(_), _) => Err(PortError::open(
+            uri,
+            "it starts a device, and this is the device end; expected stdio:, tcp:, udp:, pty: or serial:",
+        )),
+        (Uri::Stdio, EndRole::Harness) => Err(PortError::open(
+            uri,
+            "it is the device end of exec:; expected exec: with the program",
+        )),
+        (Uri::Stdio, _) => Ok(Port::Bytes(Box::new(StdioPort::open()?))),
         (Uri::Can(can), role) => open_can(can, role),
     }
 }

@@ -6,5 +6,19 @@ use std::path::Path;
 
 /// Reads the plan of a folder.
 pub(super) fn read(folder: &Path) -> Result<Plan, Failure> {
-    Ok(Plan::read(&folder.join(FILE_NAME))?)
+    let path = folder.join(FILE_NAME);
+    if folder.is_file() {
+        let folder = folder.display();
+        return Err(Failure::input(format!(
+            "found the file {folder}, expected the folder of a campaign: octant campaign plan {folder} \
+             makes one"
+        )));
+    }
+    if !path.exists() {
+        return Err(Failure::input(format!(
+            "found no {FILE_NAME} in {}, expected a folder that octant campaign plan has made",
+            folder.display()
+        )));
+    }
+    Ok(Plan::read(&path)?)
 }

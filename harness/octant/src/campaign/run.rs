@@ -1,9 +1,9 @@
 //! `octant campaign run`: the cases that have no result yet, with progress and live failures.
 
 use super::planned::read;
+use crate::case_progress::CaseBar;
 use crate::failure::Failure;
 use crate::progress::watch_interrupts;
-use crate::progress_bar::ProgressBar;
 use clap::Args;
 use octant_base::interrupt;
 use octant_base::number::counted;
@@ -11,8 +11,9 @@ use octant_campaign::execute::{
     CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
 };
 use octant_campaign::plan::Plan;
+use octant_campaign::selection::CaseSelection;
 use octant_campaign::stop::StopDecision;
-use octant_campaign::{merge, results, status};
+use octant_campaign::{case, merge, results, status};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
 
@@ -31,6 +32,14 @@ pub(super) struct Arguments {
     /// Run cases again that ended as errors.
     #[arg(long)]
     again: bool,
+    /// Run only the cases that match: PATTERN is an id, a scenario or FACTOR=VALUE, with * and ?.
+    /// Given several times, all have to match.
+    #[arg(long, value_name = "PATTERN")]
+    only: Vec<String>,
+    /// Run the cases that have failed, ended as errors or have no result. A failed case has to come
+    /// to the same result again.
+    #[arg(long)]
+    failed: bool,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -43,35 +52,44 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let mut selection = CaseSelection::of(&plan, &arguments.only).map_err(Failure::input)?;
+    if arguments.failed {
+        let repeating = selection.repeating_failed(&plan, &arguments.folder);
+        selection = repeating.map_err(|error| Failure::bench(error).failed())?;
+    }
+    let cases = 0..plan.cases.len();
+    let mine = cases.filter(|index| shard.has(*index) && selection.picks(*index)).count();
+    let may_stop = plan.stop.is_some() && shard == Shard::WHOLE && !selection.is_restricted();
     let mut options = ExecuteOptions {
         folder: &arguments.folder,
         program: &program,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
         shard,
         end: plan.cases.len(),
-        again: arguments.again,
+        again: arguments.again || arguments.failed,
+        selection,
         cancel: interrupt::flag(),
     };
-    let mine = (0..plan.cases.len()).filter(|index| shard.has(*index)).count();
-    let bar = ProgressBar::new(Some(mine as u64), |progress| {
-        let left = progress.left_s().map(|left_s| format!(", {left_s:.0} s left"));
-        let (done, total) = (progress.done, progress.total.unwrap_or_default());
-        let left = left.unwrap_or_default();
-        format!("{done} of {total} cases, {:.1} per second{left}", progress.per_s())
-    });
-    let tell = |event: &ExecutionEvent| match event {
-        ExecutionEvent::There(count) => bar.skip(*count as u64),
+    let bar = CaseBar::new("", mine, options.jobs, may_stop);
+    let tell = |event: &ExecutionEvent| show(&bar, &plan, event);
+    let name = |index: usize| plan.cases[index].id.clone();
+    let outcome = bar.during(&name, || in_rounds(&plan, &mut options, &tell))?;
+    conclude(arguments, &plan, shard, &outcome)
+}
+
+/// Shows an event of an execution on the bar, and failures above it.
+pub(crate) fn show(bar: &CaseBar, plan: &Plan, event: &ExecutionEvent) {
+    match event {
+        ExecutionEvent::There(count) => bar.there(*count),
+        ExecutionEvent::Begun(index) => bar.begun(*index),
         ExecutionEvent::Done(done) => {
-            bar.update(|progress| progress.done += 1);
-            if let Some(line) = failure(&plan.cases[done.index].id, done) {
+            bar.ended(Some(done.index), done.verdict > Verdict::Inconclusive);
+            let id = plan.cases.get(done.index).map_or("", |case| case.id.as_str());
+            if let Some(line) = failure(id, done) {
                 bar.note(&line);
             }
         }
-    };
-    let outcome = in_rounds(&plan, &mut options, &tell);
-    bar.finish();
-    let outcome = outcome?;
-    conclude(arguments, &plan, shard, &outcome)
+    }
 }
 
 /// Runs the cases up to the end that the plan's stopping rule allows. A shard doesn't know the
@@ -82,23 +100,31 @@ pub(crate) fn in_rounds(
     options: &mut ExecuteOptions<'_>,
     tell: &(dyn Fn(&ExecutionEvent) + Sync),
 ) -> Result<ExecutionSummary, ExecuteError> {
-    let Some(rule) = plan.stop.as_ref().filter(|_| options.shard == Shard::WHOLE) else {
+    let in_parts = options.shard != Shard::WHOLE || options.selection.is_restricted();
+    let Some(rule) = plan.stop.as_ref().filter(|_| !in_parts) else {
         return execute(plan, options, tell);
     };
     let mut all = ExecutionSummary::default();
     let mut told = 0;
     let decide = || status::decide(plan, options.folder, rule).map_err(ExecuteError::Result);
-    while let StopDecision::Open { next } = decide()? {
+    loop {
+        // Cases are repeated although enough is known.
+        let next = match decide()? {
+            StopDecision::Open { next } => next,
+            decision if options.selection.has_repeated() => decision.end(plan.cases.len()),
+            _ => break,
+        };
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Cases of earlier rounds were reported already.
             ExecutionEvent::There(count) => {
                 tell(&ExecutionEvent::There(count.saturating_sub(told)))
             }
-            ExecutionEvent::Done(_) => tell(event),
+            ExecutionEvent::Begun(_) | ExecutionEvent::Done(_) => tell(event),
         })?;
         // A case that ends as an error again isn't run a third time.
         options.again = false;
+        options.selection.repetitions_done();
         all.run += outcome.run;
         all.skipped += outcome.skipped.saturating_sub(told);
         all.left = outcome.left;
@@ -142,18 +168,40 @@ fn conclude(
     }
     crate::terminal::print(&(text + "\n"))?;
     let end = match &plan.stop {
-        Some(rule) if shard == Shard::WHOLE => {
+        Some(rule) if shard == Shard::WHOLE && arguments.only.is_empty() => {
             let decision = status::decide(plan, &arguments.folder, rule);
             decision.map_err(Failure::bench)?.end(plan.cases.len())
         }
         _ => plan.cases.len(),
     };
-    let cases = (0..end).filter(|index| shard.has(*index));
+    // With --only, cases that weren't selected may have no result: merging reports them as missing.
+    let is_there = |index: &usize| {
+        let id = plan.cases.get(*index).map_or("", |case| case.id.as_str());
+        arguments.only.is_empty() || case::file(&arguments.folder, id).exists()
+    };
+    let cases = (0..end).filter(|index| shard.has(*index)).filter(is_there);
     results::tables(plan, &arguments.folder, cases, |table| {
         merge::part(&arguments.folder, shard, table)
     })
     .map_err(|error| Failure::bench(error).failed())?;
     let status = status::of(plan, &arguments.folder, shard).map_err(Failure::bench)?;
-    crate::terminal::print(&status.text())?;
+    crate::terminal::print(&(status.text() + &next(arguments, &status)))?;
     Ok(status.verdict())
+}
+
+/// Lists the commands that come next.
+fn next(arguments: &Arguments, status: &status::CampaignStatus) -> String {
+    let folder = arguments.folder.display();
+    let mut text = String::new();
+    if let Some(bad) = status.bad.first() {
+        text += &format!(
+            "next: octant campaign case {folder} {}   (one failure again, with its evidence)\n",
+            bad.case
+        );
+    }
+    if status.open > 0 && !arguments.only.is_empty() {
+        let open = counted(status.open, "case", "cases");
+        return text + &format!("next: octant campaign run {folder}   ({open} without a result)\n");
+    }
+    text + &format!("next: octant campaign merge {folder}\nnext: octant campaign report {folder}\n")
 }

@@ -132,6 +132,29 @@ fn text(ensemble: &Ensemble) -> String {
             );
         }
     }
+    if let Some(solution) = ensemble.drift.last().and_then(|last| last.solution) {
+        let hours = ensemble.drift.last().map_or(0.0, |last| last.hours);
+        let _ = writeln!(
+            out,
+            "  {:24} {:>12} {:>12} {:>12} {:>12}  unit",
+            format!("attitude, velocity, {hours:.1} h"),
+            "σ",
+            "5 %",
+            "50 %",
+            "95 %"
+        );
+        let names = [
+            ("heading", "arcmin"),
+            ("pitch", "arcmin"),
+            ("roll", "arcmin"),
+            ("velocity north", "m/s"),
+            ("velocity east", "m/s"),
+        ];
+        for ((name, unit), band) in names.into_iter().zip(solution.all()) {
+            let [sigma, p5, p50, p95] = [band.sigma, band.p5, band.p50, band.p95].map(figure);
+            let _ = writeln!(out, "  {name:24} {sigma:>12} {p5:>12} {p50:>12} {p95:>12}  {unit}");
+        }
+    }
     let _ = writeln!(out, "  not modelled:");
     for what in &ensemble.not_modelled {
         let _ = writeln!(out, "    {what}");

@@ -13,6 +13,7 @@ use super::table::{
 };
 use crate::model::MotionComponent;
 use crate::quantity::UnitDimension;
+use octant_base::display::{AttitudeUnit, PositionUnit, VelocityUnit};
 use octant_earth::units::DEG;
 use octant_requirements::Comparison;
 use octant_requirements::decision::DecisionRule;
@@ -53,6 +54,34 @@ keys! {
         endpoint: EndpointKeys = table(), section, "Where the core runs.";
         realtime: RealtimeKeys = table(), section,
             "Whether the run goes by the clock, how, and what makes it too late.";
+        display: DisplayKeys = table(), section,
+            "Units of errors in report and terminal. Files for machines keep theirs.";
+    }
+}
+
+keys! {
+    /// `[display]`.
+    pub(crate) struct DisplayKeys {
+        position: PositionUnit = choice! {
+                "arcmin" => PositionUnit::ArcMinute, "minutes of arc; radial errors in nautical miles";
+                "nmi" => PositionUnit::NauticalMile, "nautical miles along the ground";
+                "m" => PositionUnit::Metre, "metres along the ground";
+                "km" => PositionUnit::Kilometre, "kilometres along the ground";
+            }, "arcmin",
+            "Unit of position errors.";
+        attitude: AttitudeUnit = choice! {
+                "arcmin" => AttitudeUnit::ArcMinute, "minutes of arc";
+                "deg" => AttitudeUnit::Degree, "degrees";
+                "arcsec" => AttitudeUnit::ArcSecond, "seconds of arc";
+                "mrad" => AttitudeUnit::Milliradian, "milliradians";
+            }, "arcmin",
+            "Unit of attitude errors.";
+        velocity: VelocityUnit = choice! {
+                "m/s" => VelocityUnit::MetrePerSecond, "metres per second";
+                "kn" => VelocityUnit::Knot, "knots";
+                "cm/s" => VelocityUnit::CentimetrePerSecond, "centimetres per second";
+            }, "m/s",
+            "Unit of velocity errors.";
     }
 }
 
@@ -244,8 +273,17 @@ keys! {
             "How the measure is compared with the limit.";
         clause: Option<String> = text(), absent("none"),
             "Where the requirement comes from: document and clause.";
+        #[expect(dead_code, reason = "it is always refused")]
+        pass: Option<String> = Of::<String>::kind(Kind::Refused(ONE_RUN)), absent("none"), ONE_RUN;
+        #[expect(dead_code, reason = "it is always refused")]
+        confidence: Option<String>
+            = Of::<String>::kind(Kind::Refused(ONE_RUN)), absent("none"), ONE_RUN;
     }
 }
+
+/// Reason why a scenario takes no probability.
+const ONE_RUN: &str = "one run shows no probability: write pass and confidence with the requirement in \
+                       the file that a campaign names (requirements = \"requirements.toml\")";
 
 keys! {
     /// `[record]`.
@@ -270,22 +308,23 @@ keys! {
                 "clock" => true, "a sample leaves when its time has come; `octant run --realtime`";
             }, "free",
             "What a run goes by. What is computed is the same.";
-        overrun: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 ms",
+        overrun: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), "1 ms",
             "A sample that leaves later than this is an overrun.";
         overruns: u64 = integer(0, i64::MAX), "0",
             "Overruns that are allowed; beyond, the run is inconclusive.";
-        lateness_p99: Option<f64> = si(&[UnitDimension::TIME], Bounds::Positive), absent("no limit"),
+        lateness_p99: Option<f64>
+            = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), absent("no limit"),
             "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.";
         late_answers: u64 = integer(0, i64::MAX), "0",
             "Periods that may end without their answer; beyond, the run is inconclusive.";
-        silence: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 s",
+        silence: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::Positive), "1 s",
             "An endpoint that owes an answer for longer is gone, which ends the run.";
         priority: u8 = integer(0, 99), "80",
             "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.";
         cpu: Option<u16> = integer::<u16>(0, 1023), absent("any"),
             "The only processor that the thread of the samples runs on.";
         lock_memory: bool = boolean(), "true", "All memory of the program stays in place.";
-        spin: f64 = si(&[UnitDimension::TIME], Bounds::NotNegative), "0 s",
+        spin: f64 = si(&[UnitDimension::SHORT_TIME], Bounds::NotNegative), "0 s",
             "The last part of each wait that is spent looking at the clock, where a real-time priority \
          was granted.";
     }

@@ -7,6 +7,7 @@ use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec};
 use super::source::SourceSpec;
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
+use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
 use octant_faults::station::FaultSpec;
@@ -68,6 +69,8 @@ pub struct Scenario {
     pub endpoint: EndpointSpec,
     /// Pacing by the clock.
     pub realtime: Realtime,
+    /// Units of errors in report and terminal, at the scenario's site.
+    pub display: DisplayUnits,
     /// Name of the scenario's file, for messages.
     pub file: String,
     /// Folder of the scenario, from which relative file names start.
@@ -138,15 +141,20 @@ pub struct Realtime {
 
 /// Error of an id that no fault of a scenario has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "no fault has the id {id:?}, {}",
-    suggestion(.id, .known.iter().map(String::as_str), "its faults")
-)]
+#[error("no fault has the id {id:?}{}", known_faults(.id, .known))]
 pub struct UnknownFault {
     /// The id.
     pub id: String,
     /// Ids of the scenario's faults.
     pub known: Vec<String>,
+}
+
+/// Ids to write instead of an unknown one, as the end of a message.
+fn known_faults(id: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return ": the scenario has no [[faults]]".to_owned();
+    }
+    format!(", {}", suggestion(id, known.iter().map(String::as_str), "its faults"))
 }
 
 impl Scenario {

@@ -13,6 +13,10 @@ pub(super) fn live(keys: &EndpointKeys) -> Result<Live, Problem> {
         let message = "found pty:, expected serial: with the terminal that octant serve announces";
         return Err(keys.uri.problem(message));
     }
+    if let Uri::Stdio = uri {
+        let message = "found stdio:, expected exec: with the program whose input and output it is";
+        return Err(keys.uri.problem(message));
+    }
     let link = keys.link.as_ref().ok_or_else(|| keys.uri.problem("endpoint.link is missing"))?;
     let live = Live {
         uri,

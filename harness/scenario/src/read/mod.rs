@@ -18,6 +18,9 @@ use super::document::DocumentTable;
 use super::error::Problem;
 use super::keys::{FromTable, RealtimeKeys, RecordKeys, ScenarioKeys};
 use super::model::{MotionSpec, Realtime, RecordSpec, Scenario, SourceSpec};
+use octant_base::display::DisplayUnits;
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::ARCMIN;
 use octant_plant::config as plant;
 use std::path::Path;
 
@@ -70,6 +73,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         source,
         endpoint,
         realtime: realtime(&keys.realtime),
+        display: display(&keys),
         motion,
         file: String::new(),
         folder: folder.to_owned(),
@@ -139,6 +143,17 @@ fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<RecordSpec, Proble
         full_samples: keys.samples,
         parameters_period_ns: ns(keys.parameters),
     })
+}
+
+fn display(keys: &ScenarioKeys) -> DisplayUnits {
+    let earth = Ellipsoid::at(keys.site.latitude, keys.site.height);
+    let across = earth.transverse_radius_m * earth.cos_latitude;
+    DisplayUnits {
+        position: keys.display.position,
+        attitude: keys.display.attitude,
+        velocity: keys.display.velocity,
+        arcmin_m: [earth.meridian_radius_m, across].map(|radius_m| radius_m * ARCMIN),
+    }
 }
 
 fn ns(time_s: f64) -> u64 {

@@ -26,7 +26,7 @@ const SUFFIXES: [(&str, &str); 9] = [
 
 pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
     let mut all: Vec<RequirementSpec> = Vec::new();
-    for RequirementKeys { id, text, measure, limit, comparison, clause } in keys {
+    for RequirementKeys { id, text, measure, limit, comparison, clause, .. } in keys {
         if id.trim().is_empty() {
             return Err(id.problem("found an empty text, expected an identifier"));
         }
@@ -237,6 +237,9 @@ pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureTextError> {
 /// Unit of a measure, from its name: that of a parameter, or the suffix of a part of the path; with
 /// `slope_per_day` and `rate_per_h` it is divided by the time.
 fn unit_of(measure: &str) -> Option<(String, Quantity)> {
+    if measure.ends_with(".normalized") {
+        return None;
+    }
     let mut unit: Option<String> = None;
     for part in measure.split('.') {
         if let Some(index) = NAMES.iter().position(|name| *name == part) {
@@ -268,6 +271,12 @@ mod tests {
         assert_eq!(slope.as_deref(), Some("arcmin/day"));
         assert_eq!(unit("navigation.radial_error_nmi.rate_per_h").as_deref(), Some("nmi/h"));
         assert_eq!(unit("calibration.parameters.g_zz.sigma").as_deref(), Some("deg/h/g"));
+        let unit_of_slope = unit("navigation.velocity_north_error_mps.slope_per_day");
+        assert_eq!(unit_of_slope.as_deref(), Some("m/s/day"));
+        assert_eq!(unit("navigation.velocity_east_error_mps.rms").as_deref(), Some("m/s"));
+        assert_eq!(limit_of("navigation.velocity_east_error_mps.max", "2 kn"), Ok(3704.0 / 3600.0));
+        assert_eq!(unit("calibration.solution.roll_arcmin.sigma").as_deref(), Some("arcmin"));
+        assert_eq!(unit("calibration.solution.roll_arcmin.normalized"), None);
         assert_eq!(unit("calibration.nis_mean"), None);
     }
 }

@@ -179,6 +179,7 @@ fn references(all: &mut Found) -> Result<(), String> {
         let found = reference(&black_box(ReferenceInput {
             latitude_rad: latitude_deg * DEG,
             height_m,
+            heading_rad: 0.0,
             angle_random_walk: 0.0007 * DEG_PER_SQRT_HOUR,
             velocity_random_walk: 50.0 * MICRO_G,
             calibration_s: Some(14_400.0),

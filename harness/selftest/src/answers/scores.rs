@@ -3,6 +3,7 @@
 use super::numbers::Found;
 use octant_campaign::report::rows::Curve;
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
 use octant_score::floor::Floor;
 use octant_score::summary::HeightChannel;
@@ -17,7 +18,7 @@ pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();
     drift(&mut all, 30)?;
     drift(&mut all, 3)?;
-    floors(&mut all);
+    floors(&mut all)?;
     curves(&mut all)?;
     Ok(all)
 }
@@ -59,19 +60,26 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
             t_s,
             latitude_error_rad: latitude * black_box(RAD_PER_ARCMIN),
             longitude_error_rad: longitude * black_box(RAD_PER_ARCMIN),
+            attitude_error: Some(CaseAngles {
+                heading_rad: 2.0 * latitude * black_box(RAD_PER_ARCMIN),
+                pitch_rad: -longitude * black_box(RAD_PER_ARCMIN),
+                roll_rad: 0.5 * longitude * black_box(RAD_PER_ARCMIN),
+            }),
+            velocity_error_mps: Some([0.1 * latitude, -0.1 * longitude]),
             latitude_rad: black_box(30.5) * (PI / 180.0),
             height_m: 120.0,
         });
     }
     let scores = scorer.finish(HeightChannel::Held).map_err(|error| error.to_string())?;
     let mut put = |name: &str, value: f64| all.insert(format!("{name}, {hours} h"), value);
-    for (axis, score) in
-        [("latitude", scores.latitude_error_arcmin), ("longitude", scores.longitude_error_arcmin)]
-    {
+    for (axis, _, score) in scores.errors() {
+        let score = score.ok_or_else(|| format!("find the score of the {axis}"))?;
         put(&format!("{axis} max"), score.max);
         put(&format!("{axis} rms"), score.rms);
         put(&format!("{axis} final"), score.r#final);
         put(&format!("{axis} slope per day"), score.slope_per_day.ok_or("find the slope")?);
+        let schuler = score.schuler_amplitude.ok_or("find the Schuler part")?;
+        put(&format!("{axis} schuler amplitude"), schuler);
     }
     let radial = scores.radial_error_nmi;
     put("radial max", radial.max);
@@ -97,11 +105,17 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
     Ok(())
 }
 
-fn floors(all: &mut Found) {
+fn floors(all: &mut Found) -> Result<(), String> {
     for (name, degrees) in black_box([("30.5 deg", 30.5), ("-60 deg", -60.0)]) {
         let noise = (0.0007 * DEG_PER_SQRT_HOUR, 50.0 * MICRO_G);
-        let floor = Floor::new(degrees * DEG, 0.0, noise.0, noise.1);
+        let floor = Floor::new(degrees * DEG, 0.0, noise.0, noise.1).at_heading(90.0 * DEG);
         let summary = floor.summary(14_400.0);
+        for what in ["heading", "pitch", "roll", "north", "east"] {
+            let value = summary.solution.and_then(|solution| solution.of(what));
+            let value = value.ok_or_else(|| format!("find the floor of the {what}"))?;
+            all.insert(format!("floor {what} final, {name}"), value.r#final);
+            all.insert(format!("floor {what} rms, {name}"), value.rms);
+        }
         for (what, value) in [
             ("latitude final", summary.latitude_final_arcmin),
             ("longitude final", summary.longitude_final_arcmin),
@@ -121,8 +135,14 @@ fn floors(all: &mut Found) {
             ("accel north", [0.0, 0.0, 0.0, 100.0 * MICRO_G, 0.0]),
         ] {
             let [latitude, longitude] = floor.propagate([0.0; 7], &of, 7200.0);
+            let states = floor.propagate_states([0.0; 7], &of, 7200.0);
+            let names = ["phi north", "phi east", "phi down", "velocity north", "velocity east"];
+            for (what, state) in names.into_iter().zip(states) {
+                all.insert(format!("{error} after 2 h, {what}, {name}"), state);
+            }
             all.insert(format!("{error} after 2 h, latitude, {name}"), latitude);
             all.insert(format!("{error} after 2 h, longitude, {name}"), longitude);
         }
     }
+    Ok(())
 }

@@ -332,8 +332,8 @@ impl FmuSource {
             latitude_rad: of.position.latitude.read(numbers),
             longitude_rad: of.position.longitude.read(numbers),
             height_m: of.position.height.read(numbers),
-            velocity_mps: of.velocity.map_or([0.0; 3], |cells| cells.read(numbers)),
-            q_nb: of.attitude.map_or([1.0, 0.0, 0.0, 0.0], |cells| cells.read(numbers)),
+            velocity_mps: of.velocity.map_or([f64::NAN; 3], |cells| cells.read(numbers)),
+            q_nb: of.attitude.map_or([f64::NAN; 4], |cells| cells.read(numbers)),
             gimbal_rad: of
                 .gimbal
                 .or(self.instrument.gives.gimbal)

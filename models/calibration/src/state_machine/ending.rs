@@ -31,6 +31,7 @@ impl Core {
             Err(refusal) => self.refuse(refusal),
             Ok(quality) => {
                 self.table = self.export(at, quality);
+                self.concluded = self.filter().map(|filter| filter.covariance().solution());
                 self.start_navigation();
             }
         }

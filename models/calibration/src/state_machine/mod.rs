@@ -26,6 +26,7 @@ use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, Site};
 use crate::continuity::{Continuity, POINTS, block_ticks};
+use crate::covariance::SolutionCovariance;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally};
 use crate::schedule::{Cursor, dwell_s};
@@ -115,6 +116,9 @@ pub struct Core {
     /// Quality of a filter that was refused.
     last_quality: Quality,
     table: Option<CalibrationTable>,
+    /// Covariance of attitude and velocity at the end of the calibration. A statement about the past:
+    /// nothing computes with it, and a stored state doesn't have it.
+    concluded: Option<SolutionCovariance>,
     /// Gimbals and stamp of the last output.
     gimbals: Gimbals,
     answered: (u64, DeviceTime),
@@ -194,6 +198,7 @@ impl Core {
             refusal: None,
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
+            concluded: None,
             gimbals: Gimbals::default(),
             answered: Default::default(),
         };
@@ -334,6 +339,13 @@ impl Core {
     #[must_use]
     pub fn table(&self) -> Option<&CalibrationTable> {
         self.table.as_ref()
+    }
+
+    /// Covariance of attitude and velocity at the end of an accepted calibration by the filter. A core
+    /// that was loaded from a state after that end doesn't have it.
+    #[must_use]
+    pub fn concluded(&self) -> Option<&SolutionCovariance> {
+        self.concluded.as_ref()
     }
 
     /// Reason why the calibration was refused, if it was.

@@ -105,6 +105,7 @@ impl State for Core {
             refusal,
             last_quality,
             table,
+            concluded: _,
             gimbals,
             answered,
         } = self;

@@ -1,0 +1,173 @@
+//! Messages of ROS 2: their definitions, and their fields as CDR.
+//!
+//! The definitions are the standard ones: `sensor_msgs/Imu`, `sensor_msgs/NavSatFix` and
+//! `geometry_msgs/Vector3Stamped` with what they contain. CDR is plain version 1, little-endian (OMG DDS-XTypes): each
+//! field is aligned to its size, counted from the end of the four bytes of encapsulation.
+
+use nalgebra::{Quaternion, UnitQuaternion};
+
+/// Type of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum RosType {
+    Imu,
+    NavSatFix,
+    Vector3Stamped,
+}
+
+/// Line between a definition and those that it contains.
+const SEPARATOR: &str =
+    "================================================================================\n";
+
+const TIME: &str = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+const HEADER: &str = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+const VECTOR3: &str = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
+const QUATERNION: &str = "MSG: geometry_msgs/Quaternion\n\
+    float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
+const NAV_SAT_STATUS: &str = "MSG: sensor_msgs/NavSatStatus\n\
+    int8 STATUS_NO_FIX = -1\nint8 STATUS_FIX = 0\nint8 STATUS_SBAS_FIX = 1\nint8 STATUS_GBAS_FIX = 2\n\
+    int8 status\nuint16 SERVICE_GPS = 1\nuint16 SERVICE_GLONASS = 2\nuint16 SERVICE_COMPASS = 4\n\
+    uint16 SERVICE_GALILEO = 8\nuint16 service\n";
+
+impl RosType {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Imu => "sensor_msgs/msg/Imu",
+            Self::NavSatFix => "sensor_msgs/msg/NavSatFix",
+            Self::Vector3Stamped => "geometry_msgs/msg/Vector3Stamped",
+        }
+    }
+
+    /// Definition in the form `ros2msg` of MCAP.
+    pub(crate) fn definition(self) -> String {
+        let (own, parts) = match self {
+            Self::Imu => (
+                "std_msgs/Header header\n\
+                 geometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n\
+                 geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n\
+                 geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n",
+                &[HEADER, TIME, QUATERNION, VECTOR3][..],
+            ),
+            Self::NavSatFix => (
+                "std_msgs/Header header\nsensor_msgs/NavSatStatus status\n\
+                 float64 latitude\nfloat64 longitude\nfloat64 altitude\nfloat64[9] position_covariance\n\
+                 uint8 COVARIANCE_TYPE_UNKNOWN = 0\nuint8 COVARIANCE_TYPE_APPROXIMATED = 1\n\
+                 uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN = 2\nuint8 COVARIANCE_TYPE_KNOWN = 3\n\
+                 uint8 position_covariance_type\n",
+                &[HEADER, TIME, NAV_SAT_STATUS][..],
+            ),
+            Self::Vector3Stamped => (
+                "std_msgs/Header header\ngeometry_msgs/Vector3 vector\n",
+                &[HEADER, TIME, VECTOR3][..],
+            ),
+        };
+        let mut text = own.to_owned();
+        for part in parts {
+            text.push_str(SEPARATOR);
+            text.push_str(part);
+        }
+        text
+    }
+}
+
+/// Message under construction.
+pub(crate) struct RosMessage(Vec<u8>);
+
+/// Encapsulation of little-endian plain CDR.
+const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
+
+impl RosMessage {
+    /// Begins a message with its header.
+    pub(crate) fn new(time_ns: u64, frame_id: &str) -> Self {
+        let mut message = Self(ENCAPSULATION.to_vec());
+        // Run time of 68 years is beyond every run; a larger one stays at the largest.
+        let seconds = i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX);
+        message.put(&seconds.to_le_bytes());
+        message.put(&((time_ns % 1_000_000_000) as u32).to_le_bytes());
+        message.put(&(frame_id.len() as u32 + 1).to_le_bytes());
+        message.0.extend_from_slice(frame_id.as_bytes());
+        message.0.push(0);
+        message
+    }
+
+    /// Appends a field at a multiple of its size.
+    pub(crate) fn put<const N: usize>(&mut self, bytes: &[u8; N]) {
+        let head = ENCAPSULATION.len();
+        let start = (self.0.len() - head).next_multiple_of(N) + head;
+        self.0.resize(start, 0);
+        self.0.extend_from_slice(bytes);
+    }
+
+    pub(crate) fn numbers(&mut self, values: &[f64]) {
+        values.iter().for_each(|value| self.put(&value.to_le_bytes()));
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// Vector of axes forward, right, down in the axes of REP 103: forward, left, up.
+pub(crate) fn flu([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x, -y, -z]
+}
+
+/// Vector of axes north, east, down in the axes of REP 103: east, north, up.
+pub(crate) fn enu([north, east, down]: [f64; 3]) -> [f64; 3] {
+    [east, north, -down]
+}
+
+/// Attitude of REP 103, x y z w: takes a vector in forward, left, up into east, north, up.
+pub(crate) fn orientation(q_nb: &UnitQuaternion<f64>) -> [f64; 4] {
+    let half = core::f64::consts::FRAC_1_SQRT_2;
+    // Half turns: about the line between north and east, and about the forward axis.
+    let enu_of_ned = Quaternion::new(0.0, half, half, 0.0);
+    let frd_of_flu = Quaternion::new(0.0, 1.0, 0.0, 0.0);
+    let q = enu_of_ned * q_nb.quaternion() * frd_of_flu;
+    [q.i, q.j, q.k, q.w]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+    use octant_earth::rotation::exp;
+
+    #[test]
+    fn fields_stand_at_multiples_of_their_size() {
+        // "abc" ends at byte 16 after the encapsulation: sec 4, nanosec 4, length 4, text 4.
+        let mut message = RosMessage::new(1_500_000_007, "abc");
+        message.numbers(&[1.0]);
+        message.put(&[7u8]);
+        message.put(&3u16.to_le_bytes());
+        let bytes = message.bytes();
+        assert_eq!(&bytes[4..12], [1, 0, 0, 0, 0x07, 0x65, 0xcd, 0x1d]);
+        assert_eq!(&bytes[12..20], [4, 0, 0, 0, b'a', b'b', b'c', 0]);
+        assert_eq!(bytes[20..28], 1f64.to_le_bytes());
+        assert_eq!(&bytes[28..], [7, 0, 3, 0]);
+        // A longer name moves the number to the next multiple of eight.
+        let mut message = RosMessage::new(0, "abcd");
+        message.numbers(&[1.0]);
+        assert_eq!(message.bytes()[28..], 1f64.to_le_bytes());
+    }
+
+    #[test]
+    fn heading_north_is_a_quarter_turn_from_east() {
+        let [x, y, z, w] = orientation(&UnitQuaternion::identity());
+        let half = core::f64::consts::FRAC_1_SQRT_2;
+        let sign = w.signum();
+        for (found, wanted) in [(x, 0.0), (y, 0.0), (z, half), (w, half)] {
+            assert!((sign * found - wanted).abs() < 1e-15, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn an_attitude_and_its_vectors_turn_alike() {
+        let q_nb = exp(&Vector3::new(0.4, -0.3, 2.0));
+        let in_b = [0.3, -1.2, 9.0];
+        let in_n: [f64; 3] = (q_nb * Vector3::from(in_b)).into();
+        let [x, y, z, w] = orientation(&q_nb);
+        let turned =
+            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) * Vector3::from(flu(in_b));
+        assert!((turned - Vector3::from(enu(in_n))).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,185 @@
+//! TCP, as a line of bytes: for programs that have sockets and no datagrams.
+
+use super::{Bytes, PortError};
+use crate::Uri;
+use crate::uri::Tcp;
+use std::io::{ErrorKind, Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
+use std::time::{Duration, Instant};
+
+/// Time in which a connection has to be made.
+const CONNECT: Duration = Duration::from_secs(5);
+/// Time between two looks for a connection at the device end.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// A TCP connection: made by the harness, accepted by the device, one at a time.
+#[derive(Debug)]
+pub struct TcpPort {
+    uri: String,
+    tcp: Tcp,
+    /// At the device end.
+    listener: Option<TcpListener>,
+    /// `None` while nobody is connected.
+    stream: Option<TcpStream>,
+    /// Present timeout of reading; `None`: not known.
+    wait: Option<Duration>,
+}
+
+impl TcpPort {
+    /// Connects the harness end.
+    ///
+    /// # Errors
+    /// If nobody listens there.
+    pub fn connect(tcp: &Tcp) -> Result<Self, PortError> {
+        let uri = Uri::Tcp(tcp.clone()).to_string();
+        let stream = connected(tcp).map_err(|reason| PortError::open(&uri, reason))?;
+        Ok(Self { uri, tcp: tcp.clone(), listener: None, stream: Some(stream), wait: None })
+    }
+
+    /// Listens at the device end.
+    ///
+    /// # Errors
+    /// If the address doesn't belong to this host, or the port is taken.
+    pub fn listen(tcp: &Tcp) -> Result<Self, PortError> {
+        let name = Uri::Tcp(tcp.clone()).to_string();
+        let refused = |error: std::io::Error| PortError::open(&name, error);
+        let address = resolve(tcp).map_err(|reason| PortError::open(&name, reason))?;
+        let listener = TcpListener::bind(address).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        let uri = format!("tcp:{}", listener.local_addr().map_err(refused)?);
+        Ok(Self { uri, tcp: tcp.clone(), listener: Some(listener), stream: None, wait: None })
+    }
+
+    fn gone(&self, reason: impl ToString) -> PortError {
+        PortError::gone(&self.uri, reason)
+    }
+
+    /// Waits for a connection at the device end; true if there is one.
+    fn accept(&mut self, wait: Duration) -> Result<bool, PortError> {
+        let until = Instant::now() + wait;
+        loop {
+            let Some(listener) = &self.listener else { return Ok(false) };
+            match listener.accept() {
+                Ok((stream, _)) => {
+                    set_up(&stream).map_err(|error| self.gone(error))?;
+                    (self.stream, self.wait) = (Some(stream), None);
+                    return Ok(true);
+                }
+                Err(error) if passes(&error) => {}
+                Err(error) => return Err(self.gone(error)),
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(false);
+            }
+            std::thread::sleep(left.min(LOOK));
+        }
+    }
+
+    /// Notes that the other end closed the connection: the device waits for the next one.
+    fn hung_up(&mut self, reason: impl ToString) -> Result<(), PortError> {
+        (self.stream, self.wait) = (None, None);
+        if self.listener.is_some() { Ok(()) } else { Err(self.gone(reason)) }
+    }
+}
+
+/// Resolves a host name; an empty one is loopback.
+fn resolve(tcp: &Tcp) -> Result<SocketAddr, String> {
+    if tcp.host.is_empty() {
+        return Ok((Ipv4Addr::LOCALHOST, tcp.port).into());
+    }
+    let mut found = (tcp.host.as_str(), tcp.port).to_socket_addrs().map_err(|e| e.to_string())?;
+    found.next().ok_or_else(|| "the name stands for no address".to_owned())
+}
+
+fn connected(tcp: &Tcp) -> Result<TcpStream, String> {
+    let address = resolve(tcp)?;
+    if address.port() == 0 {
+        return Err("nobody listens at port 0, expected 1 to 65535".to_owned());
+    }
+    let stream =
+        TcpStream::connect_timeout(&address, CONNECT).map_err(|error| error.to_string())?;
+    set_up(&stream).map_err(|error| error.to_string())?;
+    Ok(stream)
+}
+
+/// Sends small frames at once.
+fn set_up(stream: &TcpStream) -> std::io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)
+}
+
+/// True for errors that only mean that nothing came.
+fn passes(error: &std::io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
+}
+
+impl Bytes for TcpPort {
+    fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError> {
+        let Some(stream) = &mut self.stream else { return Ok(false) };
+        let sent = stream
+            .set_write_timeout(Some(wait.max(Duration::from_millis(1))))
+            .and_then(|()| stream.write_all(bytes));
+        match sent {
+            Ok(()) => Ok(true),
+            Err(error) if passes(&error) => Ok(false),
+            Err(error) => self.hung_up(error).map(|()| false),
+        }
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        if self.stream.is_none() {
+            if self.listener.is_none() {
+                return Err(self.gone("it is closed"));
+            }
+            self.accept(wait)?;
+            return Ok(0);
+        }
+        let known = self.wait == Some(wait);
+        let Some(stream) = &mut self.stream else { return Ok(0) };
+        let read = (if known {
+            Ok(())
+        } else if wait.is_zero() {
+            stream.set_nonblocking(true)
+        } else {
+            stream.set_nonblocking(false).and_then(|()| stream.set_read_timeout(Some(wait)))
+        })
+        .and_then(|()| stream.read(buffer));
+        self.wait = Some(wait);
+        if wait.is_zero()
+            && let Some(stream) = &self.stream
+        {
+            // Sending waits again.
+            stream.set_nonblocking(false).map_err(|error| self.gone(error))?;
+            self.wait = None;
+        }
+        match read {
+            Ok(0) => self.hung_up("the other end closed the connection").map(|()| 0),
+            Ok(count) => Ok(count),
+            Err(error) if passes(&error) => Ok(0),
+            Err(error) => self.hung_up(error).map(|()| 0),
+        }
+    }
+
+    fn datagrams(&self) -> bool {
+        false
+    }
+
+    fn reached_at(&self) -> String {
+        self.uri.clone()
+    }
+
+    /// A connection has only one other end.
+    fn hold_peer(&mut self, _: bool) {}
+
+    fn close(&mut self) {
+        (self.stream, self.wait) = (None, None);
+    }
+
+    fn reopen(&mut self) -> Result<(), PortError> {
+        if self.listener.is_none() {
+            *self = Self::connect(&self.tcp)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,265 @@
+//! `octant new`: a commented scenario, from flags and from questions on a terminal.
+
+use crate::failure::Failure;
+use crate::grades::InstrumentGrade;
+use crate::terminal::{print, write};
+use clap::{Args, ValueEnum};
+use octant_requirements::Verdict;
+use octant_scenario::Scenario;
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// File of the new scenario.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Instrument, by its grade.
+    #[arg(long, value_enum, value_name = "GRADE")]
+    instrument: Option<InstrumentGrade>,
+    /// Motion of the case.
+    #[arg(long, value_enum, value_name = "MOTION")]
+    motion: Option<NewMotion>,
+    /// Position sequence, such as six, eight or twenty-four.
+    #[arg(long, value_name = "NAME")]
+    positions: Option<String>,
+    /// Duration of the calibration, such as "4 h".
+    #[arg(long, value_name = "TIME")]
+    calibration: Option<String>,
+    /// Duration of the free navigation after it, such as "24 h".
+    #[arg(long, value_name = "TIME")]
+    navigation: Option<String>,
+    /// Largest radial error that a requirement allows in navigation, such as "1 nmi"; without it nothing
+    /// is required.
+    #[arg(long, value_name = "LENGTH")]
+    limit: Option<String>,
+    /// Title, by default the name of the file.
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Ask nothing: what isn't given has its default.
+    #[arg(long)]
+    defaults: bool,
+    /// Replace the file if it is there already.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Motion of the case.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum NewMotion {
+    /// Fixed to the ground.
+    Static,
+    /// On a moored ship that sways.
+    Dockside,
+}
+
+/// Answers from which a scenario is written.
+struct Answers {
+    title: String,
+    instrument: InstrumentGrade,
+    motion: NewMotion,
+    positions: String,
+    calibration: String,
+    navigation: String,
+    limit: Option<String>,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let file = &arguments.file;
+    if file.exists() && !arguments.force {
+        return Err(Failure::input(format!(
+            "found {} already, expected the name of a new file; --force replaces it",
+            file.display()
+        )));
+    }
+    let asks =
+        !arguments.defaults && std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
+    let answers = answers(arguments, asks.then(|| std::io::stdin().lock()))?;
+    let text = scenario(&answers);
+    // The text is checked as `octant run` will check it.
+    let folder = file.parent().unwrap_or(Path::new(""));
+    Scenario::parse(&text, &file.display().to_string(), folder, &[]).map_err(Failure::input)?;
+    write(file, &text)?;
+    let file = file.display();
+    print(&format!("{file}\nnext: octant observe {file}\nnext: octant run {file}\n"))?;
+    Ok(Verdict::Pass)
+}
+
+/// Collects the answers: flags, questions for the rest if there is someone to ask, and defaults.
+fn answers(arguments: &Arguments, mut input: Option<impl BufRead>) -> Result<Answers, Failure> {
+    let mut text = |name: &str, given: &Option<String>, default: &str| match given {
+        Some(given) => Ok(given.clone()),
+        None => ask(input.as_mut(), name, default, |text| Ok::<_, String>(text.to_owned())),
+    };
+    let stem = arguments.file.file_stem().map_or("new".into(), |stem| stem.to_string_lossy());
+    let title = text("title", &arguments.title, &stem)?;
+    let positions =
+        text("position sequence (six, eight, twelve, ...)", &arguments.positions, "eight")?;
+    let calibration = text("duration of the calibration", &arguments.calibration, "4 h")?;
+    let navigation = text("duration of the navigation", &arguments.navigation, "24 h")?;
+    let limit = text("limit of the radial error, or none", &arguments.limit, "none")?;
+    let instrument = match arguments.instrument {
+        Some(grade) => grade,
+        None => ask(input.as_mut(), &choice::<InstrumentGrade>("instrument"), "table-1", named)?,
+    };
+    let motion = match arguments.motion {
+        Some(motion) => motion,
+        None => ask(input.as_mut(), &choice::<NewMotion>("motion"), "static", named)?,
+    };
+    let limit = Some(limit).filter(|limit| limit != "none");
+    Ok(Answers { title, instrument, motion, positions, calibration, navigation, limit })
+}
+
+/// Question with its possible answers.
+fn choice<T: ValueEnum>(name: &str) -> String {
+    let values = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+    let names: Vec<String> = values.map(|value| value.get_name().to_owned()).collect();
+    format!("{name} ({})", names.join(", "))
+}
+
+/// Value of a name.
+fn named<T: ValueEnum>(text: &str) -> Result<T, String> {
+    T::from_str(text, false)
+}
+
+/// Asks until an answer is taken; an empty one is the default, which is taken without asking if there
+/// is nobody to ask.
+fn ask<T, E>(
+    mut input: Option<&mut impl BufRead>,
+    question: &str,
+    default: &str,
+    read: impl Fn(&str) -> Result<T, E>,
+) -> Result<T, Failure> {
+    loop {
+        let mut line = String::new();
+        if let Some(input) = input.as_mut() {
+            // A terminal that has gone is noticed by the reading.
+            let mut terminal = std::io::stderr().lock();
+            let _ = write!(terminal, "{question} [{default}]: ").and_then(|()| terminal.flush());
+            let count = input
+                .read_line(&mut line)
+                .map_err(|error| Failure::bench(format!("failed to read the answer: {error}")))?;
+            if count == 0 {
+                return Err(Failure::input("found the end of the input, expected an answer"));
+            }
+        }
+        let answer = if line.trim().is_empty() { default } else { line.trim() };
+        match read(answer) {
+            Ok(value) => return Ok(value),
+            Err(_) if input.is_some() => {}
+            Err(_) => return Err(Failure::input(format!("{question}: found {answer:?}"))),
+        }
+    }
+}
+
+/// Renders a text as a TOML string.
+fn quoted(text: &str) -> String {
+    // Strings of JSON are strings of TOML too.
+    serde_json::Value::from(text).to_string()
+}
+
+/// Renders a scenario with its comments.
+fn scenario(answers: &Answers) -> String {
+    let sheet = answers.instrument.sheet();
+    let motion = match answers.motion {
+        NewMotion::Static => "static",
+        NewMotion::Dockside => "dockside",
+    };
+    let mut text = format!(
+        "# Written by octant new. Keys that are not here have their defaults: docs/scenario.md.\n\
+         schema = 1\n\
+         title = {}\n\
+         seed = 1  # of all random draws: the same seed gives the same bytes\n\n\
+         [site]\n\
+         latitude = \"30.5 deg\"\n\n\
+         [motion]\n\
+         kind = \"{motion}\"  # \"static\", or \"dockside\": on a moored ship that sways\n\n\
+         # Source: {}.\n",
+        quoted(&answers.title),
+        sheet.source
+    );
+    for limit in sheet.limits {
+        text += &format!("# {limit}\n");
+    }
+    text += "[imu]\n";
+    for (key, value, meaning) in sheet.imu {
+        text += &format!("{key} = {value}  # {meaning}\n");
+    }
+    text += &format!(
+        "\n[procedure.calibration]\n\
+         positions = {}  # octant observe tells what a sequence can estimate\n\
+         duration = {}\n",
+        quoted(&answers.positions),
+        quoted(&answers.calibration)
+    );
+    if !sheet.prior.is_empty() {
+        text += "\n# Standard deviations that the filter starts from: those of the instrument.\n\
+                 [procedure.calibration.prior]\n";
+        for (key, value) in sheet.prior {
+            text += &format!("{key} = {value}\n");
+        }
+    }
+    text += &format!("\n[procedure.navigation]\nduration = {}\n\n", quoted(&answers.navigation));
+    let requirement = |limit: &str| {
+        format!(
+            "[[requirements]]\nid = \"NAV-1\"\ntext = \"The radial error stays within {limit}.\"\n\
+             measure = \"navigation.radial_error_nmi.max\"\nlimit = \"{limit}\"\n"
+        )
+    };
+    match &answers.limit {
+        Some(limit) => text += &requirement(&limit.replace(['"', '\\'], "")),
+        None => {
+            text += "# Without a requirement the verdict is \"none\". Take the # away to require this:\n";
+            requirement("1 nmi").lines().for_each(|line| text += &format!("# {line}\n"));
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arguments() -> Arguments {
+        Arguments {
+            file: PathBuf::from("bench.toml"),
+            instrument: None,
+            motion: None,
+            positions: None,
+            calibration: Some("2 h".to_owned()),
+            navigation: None,
+            limit: None,
+            title: None,
+            defaults: false,
+            force: false,
+        }
+    }
+
+    #[test]
+    fn what_is_not_given_is_asked_until_it_is_a_known_name() {
+        let lines = "my bench\n\n6 h\n0.5 nmi\nmems\ntactical-mems\n\n";
+        let found = answers(&arguments(), Some(lines.as_bytes())).expect("has all answers");
+        assert_eq!((found.title.as_str(), found.positions.as_str()), ("my bench", "eight"));
+        assert_eq!((found.calibration.as_str(), found.navigation.as_str()), ("2 h", "6 h"));
+        assert_eq!(found.instrument, InstrumentGrade::TacticalMems);
+        assert_eq!(found.limit.as_deref(), Some("0.5 nmi"));
+        let ended = answers(&arguments(), Some("a\n".as_bytes()));
+        assert!(ended.is_err_and(|failure| failure.message.contains("end of the input")));
+    }
+
+    #[test]
+    fn every_grade_gives_a_scenario() {
+        for grade in InstrumentGrade::value_variants() {
+            for motion in [NewMotion::Static, NewMotion::Dockside] {
+                let given =
+                    Arguments { instrument: Some(*grade), motion: Some(motion), ..arguments() };
+                let found = answers(&given, None::<&[u8]>).expect("defaults");
+                let text = scenario(&found);
+                let parsed = Scenario::parse(&text, "new.toml", Path::new(""), &[]);
+                let parsed = parsed.unwrap_or_else(|error| panic!("{grade:?}: {error}\n{text}"));
+                assert!(parsed.requirements.is_empty() && parsed.baseline.is_none());
+                assert!(text.contains("# Source: "), "{text}");
+            }
+        }
+    }
+}

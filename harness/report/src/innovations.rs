@@ -1,0 +1,174 @@
+//! Innovations of a calibration: NIS with its bounds, and whiteness.
+
+use super::chart::{Band, Chart, ChartLine, ChartRole};
+use super::data::{NisPoint, ReportData};
+use maud::{Markup, html};
+use octant_base::number;
+
+/// 2.5th and 97.5th percentile of χ² with three degrees of freedom.
+const CHI_SQUARED_3: [f64; 2] = [0.2158, 9.3484];
+/// Largest lag of the autocorrelation.
+const LAGS: usize = 50;
+
+/// Renders the innovations; empty for fewer than two.
+pub(super) fn innovations(data: &ReportData) -> Markup {
+    let finite: Vec<NisPoint> = data.nis.iter().copied().filter(|p| p.nis.is_finite()).collect();
+    if finite.len() < 2 {
+        return html! {};
+    }
+    let [low, high] = CHI_SQUARED_3;
+    let inside = finite.iter().filter(|p| (low..=high).contains(&p.nis)).count();
+    html! {
+        h3 { "Innovations" }
+        p.hint { "Normalized innovation squared (NIS) of three axes. Of a consistent filter the mean is 3, and 95 % of \
+            single values lie between 0.22 and 9.35. Here "
+            (number::fixed(100.0 * inside as f64 / finite.len() as f64, 1)) " % of "
+            (finite.len()) " values do." }
+        div.plots {
+            (means(&finite))
+            (single(&finite))
+            (whiteness(&finite))
+        }
+    }
+}
+
+/// Draws means of equal numbers of measurements with the bounds of such a mean.
+fn means(finite: &[NisPoint]) -> Markup {
+    let size = finite.len().div_ceil(240);
+    let means: Vec<[f64; 2]> = finite
+        .chunks(size)
+        .filter(|c| 2 * c.len() > size)
+        .map(|c| {
+            let n = c.len() as f64;
+            [c.iter().map(|p| p.hours).sum::<f64>() / n, c.iter().map(|p| p.nis).sum::<f64>() / n]
+        })
+        .collect();
+    // The mean of n values of χ²₃ has variance 6/n.
+    let half = 1.96 * libm::sqrt(6.0 / size as f64);
+    let ends = [means.first().map_or(0.0, |p| p[0]), means.last().map_or(1.0, |p| p[0])];
+    let mut chart = Chart::new("Mean NIS", "hours of the run", "Mean NIS, three axes");
+    chart.height = 200.0;
+    chart.run_offset_h = Some(0.0);
+    let highest = means.iter().map(|p| p[1]).fold(3.0 + half, f64::max);
+    chart.y_range = Some([0.0, (1.1 * highest).max(6.0)]);
+    chart.bands.push(Band {
+        label: "95 % interval of the mean".to_owned(),
+        role: ChartRole::Reference,
+        points: ends.iter().map(|&x| [x, (3.0 - half).max(0.0), 3.0 + half]).collect(),
+    });
+    chart.lines.push(ChartLine {
+        label: format!("mean of {size} measurements"),
+        role: ChartRole::Primary,
+        points: means,
+    });
+    chart.levels.push((3.0, String::new()));
+    chart.render()
+}
+
+/// Draws every value that was kept with the bounds of a single one.
+fn single(finite: &[NisPoint]) -> Markup {
+    let mut chart = Chart::new("NIS", "hours of the run", "NIS of single measurements");
+    chart.height = 200.0;
+    chart.run_offset_h = Some(0.0);
+    chart.logarithmic = true;
+    // Values near zero are rare and mean little; the scale is for those that are too large.
+    let highest = finite.iter().map(|p| p.nis).fold(30.0, f64::max);
+    chart.y_range = Some([0.01, highest]);
+    let ends = [finite[0].hours, finite[finite.len() - 1].hours];
+    chart.bands.push(Band {
+        label: "95 % interval of single values".to_owned(),
+        role: ChartRole::Reference,
+        points: ends.iter().map(|&x| [x, CHI_SQUARED_3[0], CHI_SQUARED_3[1]]).collect(),
+    });
+    chart.lines.push(ChartLine {
+        label: "NIS".to_owned(),
+        role: ChartRole::Primary,
+        points: finite.iter().map(|p| [p.hours, p.nis]).collect(),
+    });
+    chart.levels.push((3.0, String::new()));
+    chart.render()
+}
+
+/// Draws the autocorrelation of the NIS with the bounds of white noise.
+fn whiteness(finite: &[NisPoint]) -> Markup {
+    let values: Vec<f64> = finite.iter().map(|p| p.nis).collect();
+    let Some(correlation) = autocorrelation(&values, LAGS) else { return html! {} };
+    let bound = 1.96 / libm::sqrt(values.len() as f64);
+    let outside = correlation.iter().filter(|r| r.abs() > bound).count();
+    let mut chart = Chart::new(
+        "Autocorrelation of the NIS",
+        "lag, measurements kept",
+        "Autocorrelation of the NIS",
+    );
+    chart.height = 200.0;
+    chart.hours = false;
+    chart.dots = true;
+    let lag = |k: usize| (k + 1) as f64;
+    chart.bands.push(Band {
+        label: "95 % interval of white noise".to_owned(),
+        role: ChartRole::Reference,
+        points: [0, correlation.len() - 1].iter().map(|&k| [lag(k), -bound, bound]).collect(),
+    });
+    let count = correlation.len();
+    chart.lines.push(ChartLine {
+        label: format!(
+            "{outside} of {count} lags outside, {} expected",
+            number::fixed(0.05 * count as f64, 1)
+        ),
+        role: ChartRole::Primary,
+        points: correlation.iter().enumerate().map(|(k, r)| [lag(k), *r]).collect(),
+    });
+    chart.levels.push((0.0, String::new()));
+    chart.render()
+}
+
+/// Sample autocorrelation at lags from 1 on; `None` for series that are too short or don't vary.
+fn autocorrelation(values: &[f64], lags: usize) -> Option<Vec<f64>> {
+    let lags = lags.min(values.len() / 4);
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let variance: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    if lags < 2 || variance <= 0.0 {
+        return None;
+    }
+    let at = |lag: usize| -> f64 {
+        let products = values.iter().zip(&values[lag..]).map(|(a, b)| (a - mean) * (b - mean));
+        products.sum::<f64>() / variance
+    };
+    Some((1..=lags).map(at).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn autocorrelation_of_a_first_order_process_is_a_power_of_its_factor() {
+        // x[k+1] = 0.8 x[k] + w has correlation 0.8^lag; 1.96/√n of 40 000 values is 0.01, and the
+        // estimate of a correlated series is about (1 + 0.64)/(1 − 0.64) times as uncertain squared.
+        let mut state = 1u64;
+        let mut white = || {
+            let mut sum = -6.0;
+            for _ in 0..12 {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                sum += (state >> 11) as f64 / 9_007_199_254_740_992.0;
+            }
+            sum
+        };
+        let mut x = 0.0;
+        let series: Vec<f64> = (0..40_000)
+            .map(|_| {
+                x = 0.8 * x + white();
+                x
+            })
+            .collect();
+        let found = autocorrelation(&series, 5).unwrap_or_default();
+        for (k, r) in found.iter().enumerate() {
+            let expected = libm::pow(0.8, (k + 1) as f64);
+            assert!((r - expected).abs() < 0.04, "lag {}: found {r}, expected {expected}", k + 1);
+        }
+        assert_eq!(found.len(), 5);
+        assert_eq!(autocorrelation(&[3.0; 100], 5), None);
+    }
+}

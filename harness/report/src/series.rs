@@ -1,0 +1,109 @@
+//! Series of bounded length that keep every extreme, for the plots of a run.
+
+/// Most buckets; when they are full, neighbours are merged. A day at 1 Hz has buckets of 43 to 86 s.
+const BUCKETS_MAX: usize = 2000;
+/// Columns of a row.
+pub const COLUMNS: usize = 5;
+
+/// Smallest and largest values in a stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    hours: f64,
+    low: [f64; COLUMNS],
+    high: [f64; COLUMNS],
+}
+
+/// Errors of attitude and velocity over the navigation, as extremes of equal stretches of time. Memory
+/// doesn't grow with the length of the run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolutionSeries {
+    stretches: Vec<Stretch>,
+    per_stretch: u64,
+    in_last: u64,
+}
+
+impl SolutionSeries {
+    /// Takes the errors at one time: heading, pitch and roll of the case, arcmin, and velocity north and
+    /// east, m/s; NaN where they aren't known. `hours` is the time since the start of the navigation.
+    pub fn push(&mut self, hours: f64, errors: [f64; COLUMNS]) {
+        if self.in_last < self.per_stretch
+            && let Some(last) = self.stretches.last_mut()
+        {
+            for (column, error) in errors.into_iter().enumerate() {
+                last.low[column] = last.low[column].min(error);
+                last.high[column] = last.high[column].max(error);
+            }
+            self.in_last += 1;
+            return;
+        }
+        if self.stretches.len() == BUCKETS_MAX {
+            self.halve();
+        }
+        if self.stretches.is_empty() {
+            self.stretches.reserve_exact(BUCKETS_MAX);
+            self.per_stretch = 1;
+        }
+        self.stretches.push(Stretch { hours, low: errors, high: errors });
+        self.in_last = 1;
+    }
+
+    /// Merges every second stretch with the one before it.
+    fn halve(&mut self) {
+        for i in 0..BUCKETS_MAX / 2 {
+            let (mut merged, later) = (self.stretches[2 * i], self.stretches[2 * i + 1]);
+            for column in 0..COLUMNS {
+                merged.low[column] = merged.low[column].min(later.low[column]);
+                merged.high[column] = merged.high[column].max(later.high[column]);
+            }
+            self.stretches[i] = merged;
+        }
+        self.stretches.truncate(BUCKETS_MAX / 2);
+        self.per_stretch *= 2;
+    }
+
+    /// Points of a column, in the order of [`Self::push`]: time, h, and error; empty if none is known.
+    #[must_use]
+    pub fn points(&self, column: usize) -> Vec<[f64; 2]> {
+        let mut points = Vec::with_capacity(2 * self.stretches.len());
+        for stretch in &self.stretches {
+            let (low, high) = (stretch.low[column], stretch.high[column]);
+            if low.is_finite() && high.is_finite() {
+                points.push([stretch.hours, low]);
+                if high > low {
+                    points.push([stretch.hours, high]);
+                }
+            }
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_series_stays_short_and_keeps_a_lone_spike() {
+        let mut series = SolutionSeries::default();
+        for k in 0..1_000_000u32 {
+            let spike = if k == 777_777 { -9.0 } else { 0.5 };
+            series.push(f64::from(k) / 3600.0, [spike, 0.0, f64::NAN, f64::from(k), 1.0]);
+        }
+        let points = series.points(0);
+        assert!(points.len() <= 2 * BUCKETS_MAX, "{}", points.len());
+        let spike = points.iter().find(|p| p[1] == -9.0).copied().unwrap_or_default();
+        assert!((spike[0] - 777_777.0 / 3600.0).abs() < 1024.0 / 3600.0, "{spike:?}");
+        assert!(series.points(2).is_empty());
+        let last = series.points(3).last().copied().unwrap_or_default();
+        assert_eq!(last[1], 999_999.0);
+    }
+
+    #[test]
+    fn a_short_series_is_kept_whole() {
+        let mut series = SolutionSeries::default();
+        for k in 0..100u32 {
+            series.push(f64::from(k), [f64::from(k); COLUMNS]);
+        }
+        assert_eq!(series.points(4).len(), 100);
+    }
+}

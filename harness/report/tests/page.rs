@@ -1,0 +1,200 @@
+//! Content of the page of a run: contents, series for the script, requirements with units, plots.
+
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
+
+use octant_report::{
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
+    SolutionSeries, run,
+};
+use octant_sample::Parameters;
+use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
+use octant_score::summary::Summary;
+
+/// Hours of the calibration, and of the navigation after it.
+const CALIBRATION_H: f64 = 4.0;
+const NAVIGATION_H: f64 = 24.0;
+
+/// Deterministic numbers between −1 and 1.
+fn chance(k: usize) -> f64 {
+    let x = ((k as f64 + 1.0) * 12.9898).sin() * 43_758.545_3;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+fn convergence() -> Vec<ParameterPoint> {
+    (1..=400usize)
+        .map(|k| {
+            let part = k as f64 / 400.0;
+            let mut sigma = [0.0; PARAMETER_COUNT];
+            let mut estimate = [0.0; PARAMETER_COUNT];
+            for i in 0..PARAMETER_COUNT {
+                sigma[i] =
+                    ParameterGroup::of(i).si_per_unit() * (0.01 + 20.0 * (-12.0 * part).exp());
+                estimate[i] = sigma[i] * (0.8 * chance(i) + 0.5 * (9.0 * part + i as f64).sin());
+            }
+            ParameterPoint {
+                hours: CALIBRATION_H * part,
+                estimate: Parameters::from_array(&estimate),
+                sigma,
+            }
+        })
+        .collect()
+}
+
+fn gimbals() -> Vec<GimbalPoint> {
+    let mut points = Vec::new();
+    for k in 0..8 + 240usize {
+        let start = if k < 8 { 0.5 * k as f64 } else { CALIBRATION_H + 0.1 * (k - 8) as f64 };
+        let length = if k < 8 { 0.5 } else { 0.1 };
+        for (part, moving) in [(0.0, false), (0.85, true), (0.99, true)] {
+            points.push(GimbalPoint {
+                hours: start + part * length,
+                azimuth_deg: 90.0 * (k % 4) as f64,
+                roll_deg: 45.0 * (k % 3) as f64,
+                moving,
+            });
+        }
+    }
+    points
+}
+
+/// A run of 28 h at full length: 1 Hz of errors, every measurement of NIS that a watcher keeps.
+fn data() -> ReportData {
+    let mut solution = SolutionSeries::default();
+    for k in 0..(3600.0 * NAVIGATION_H) as usize {
+        let hours = k as f64 / 3600.0;
+        let schuler = (std::f64::consts::TAU * hours / 1.407).sin();
+        let noise = 0.02 * chance(k);
+        solution.push(
+            hours,
+            [
+                0.8 * (hours / 6.0).sin() + noise,
+                0.1 * schuler + noise,
+                0.07 * schuler,
+                0.2 * schuler + noise,
+                -0.1 * schuler,
+            ],
+        );
+    }
+    let mut covariance = Box::new([[0.0; PARAMETER_COUNT]; PARAMETER_COUNT]);
+    for i in 0..PARAMETER_COUNT {
+        for j in 0..PARAMETER_COUNT {
+            covariance[i][j] =
+                if i == j { 1.0 } else { 0.9 * chance(i.max(j) * 31 + i.min(j)).powi(5) };
+        }
+    }
+    let event = |hours: f64, name: &str| HealthEvent {
+        hours,
+        duration_s: 12.0,
+        name: name.to_owned(),
+        detail: "3 epochs".to_owned(),
+    };
+    let chi = |k: usize| (0..3).map(|axis| 3.0 * chance(3 * k + axis).powi(2)).sum::<f64>();
+    ReportData {
+        summary: Summary::from_json(include_str!("summary.json")).unwrap(),
+        facts: vec![("site".to_owned(), "30.5° latitude".to_owned())],
+        truth: Some(Parameters::from_array(&[0.0; PARAMETER_COUNT])),
+        convergence: convergence(),
+        nis: (1..14_400).map(|k| NisPoint { hours: k as f64 / 3600.0, nis: chi(k) }).collect(),
+        gimbals: gimbals(),
+        baseline_solution: solution.clone(),
+        solution,
+        navigation_start_h: Some(CALIBRATION_H),
+        latitude_rad: Some(0.53),
+        sample_period_s: Some(0.005),
+        covariance: Some(covariance),
+        requirement_texts: [("NAV-1".to_owned(), "The longitude <shall> stay close.".to_owned())]
+            .into(),
+        events: vec![event(1.2, "innovation rejected"), event(7.5, "gap")],
+        dispositions: Default::default(),
+        provenance: ReportProvenance { entries: vec![], rerun: "octant run".to_owned() },
+        units: Default::default(),
+    }
+}
+
+/// The page, kept beside the tests to be looked at.
+fn page(data: &ReportData) -> String {
+    let html = run::render(data);
+    std::fs::write(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("run.html"), &html)
+        .unwrap();
+    html
+}
+
+#[test]
+fn a_run_of_28_h_is_one_small_file_with_every_plot() {
+    let html = page(&data());
+    assert!(html.len() < 3_000_000, "{} bytes", html.len());
+    for title in [
+        "Latitude error",
+        "Longitude error",
+        "Heading error",
+        "Pitch error",
+        "Roll error",
+        "Velocity error north",
+        "Velocity error east",
+        "Mean NIS",
+        "NIS",
+        "Autocorrelation of the NIS",
+        "Gimbal angles",
+        "Correlation of the parameters",
+        "Ground track of the position error",
+        "gyro_bias_x",
+        "accel_misalignment_zy",
+    ] {
+        assert!(html.contains(&format!("aria-label=\"{title}\"")), "no drawing of {title}");
+    }
+    assert!(!html.contains("NaN,") && !html.contains("\"d=\"NaN"));
+}
+
+#[test]
+fn every_section_has_an_anchor_and_an_entry_in_the_contents() {
+    let html = page(&data());
+    let anchors: Vec<&str> =
+        html.split("<h2 id=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert!(anchors.len() >= 6, "{anchors:?}");
+    let contents = html.split("<nav").nth(1).unwrap().split("</nav>").next().unwrap();
+    for anchor in &anchors {
+        assert!(
+            contents.contains(&format!("href=\"#{anchor}\"")),
+            "{anchor} isn't in the contents"
+        );
+    }
+    assert_eq!(contents.matches("<a ").count(), anchors.len());
+    // Sections without content are in neither.
+    assert!(!anchors.contains(&"faults"));
+}
+
+#[test]
+fn a_requirement_has_its_unit_and_its_text() {
+    let html = page(&data());
+    let row = html.split("<tr id=\"req-NAV-1\">").nth(1).unwrap().split("</tr>").next().unwrap();
+    for part in ["arcmin", "The longitude &lt;shall&gt; stay close.", "≤ 3", "badge pass", "0.7507"]
+    {
+        assert!(row.contains(part), "{part} is not in {row}");
+    }
+}
+
+#[test]
+fn markers_have_the_times_of_the_run() {
+    let html = page(&data());
+    let marks = html.split("<script id=\"marks\" type=\"application/json\">").nth(1).unwrap();
+    let marks = marks.split("</script>").next().unwrap();
+    assert!(marks.contains("[7.500000,7.503333,\"gap\"]"), "{marks}");
+    assert!(marks.contains("\"stops\":[[0.000000,0.425000,\"1\"]"), "{marks}");
+}
+
+#[test]
+fn plots_over_the_navigation_begin_where_it_began() {
+    let html = page(&data());
+    let heading = html.split("aria-label=\"Heading error\"").nth(1).unwrap();
+    let block =
+        heading.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    assert!(block.contains("\"offset\":4,"), "{}", &block[..200]);
+    // Errors of 86 400 s in at most 2000 stretches of two points: columns of x and y for two methods.
+    assert!(block.len() < 100_000, "{}", block.len());
+}
+
+#[test]
+fn many_moves_are_drawn_from_their_beginning() {
+    let html = page(&data());
+    assert!(html.contains("240 moves in") && html.contains("The first 32 moves are drawn."));
+}

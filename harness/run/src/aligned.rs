@@ -1,0 +1,60 @@
+//! Results of the alignment: reference, duration, solution with its σ.
+
+use super::watch::Watcher;
+use octant_calibration::config::{Estimator, Kalman};
+use octant_calibration::covariance::SolutionCovariance;
+use octant_scenario::{AlignmentSpec, Method, MotionSpec, Scenario};
+use octant_score::alignment::SolutionUncertainty;
+use octant_score::summary::{AlignmentReference, AlignmentResult, SolutionScore};
+
+/// Builds the result of a method's alignment; `None` if the unit never had an attitude.
+pub(super) fn alignment(
+    scenario: &Scenario,
+    method: Method,
+    watcher: &Watcher,
+) -> Option<AlignmentResult> {
+    let point = watcher.aligned.as_ref()?;
+    let calibration = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    };
+    let prior = calibration.and_then(|calibration| match &calibration.estimator {
+        Estimator::Kalman(kalman) => Some(prior_of(kalman)),
+        Estimator::LeastSquares(_) | Estimator::ExternalTurntable(_) => None,
+    });
+    Some(AlignmentResult {
+        reference: match scenario.alignment {
+            AlignmentSpec::Given { .. } => AlignmentReference::External,
+            AlignmentSpec::Coarse { .. } => AlignmentReference::Static,
+        },
+        duration_s: watcher.alignment_s()?,
+        solution: SolutionScore::of(point, prior.as_ref()),
+    })
+}
+
+/// Uncertainty with which the filter takes over from the alignment.
+fn prior_of(kalman: &Kalman) -> SolutionUncertainty {
+    let mut phi = [[0.0; 3]; 3];
+    for (axis, sigma) in kalman.prior.attitude_rad.iter().enumerate() {
+        phi[axis][axis] = sigma * sigma;
+    }
+    SolutionUncertainty { phi, velocity_mps: [kalman.prior.velocity_mps; 2] }
+}
+
+/// Uncertainty at the end of a calibration.
+pub(super) fn uncertainty_of(covariance: &SolutionCovariance) -> SolutionUncertainty {
+    let [north, east, _] = covariance.velocity_mps;
+    SolutionUncertainty { phi: covariance.phi, velocity_mps: [north, east] }
+}
+
+/// Reference from which a calibration finds the attitude.
+pub(super) fn calibration_reference(
+    scenario: &Scenario,
+    estimator: &Estimator,
+) -> AlignmentReference {
+    match (estimator, &scenario.motion) {
+        (Estimator::ExternalTurntable(_), _) => AlignmentReference::External,
+        (_, MotionSpec::Static(_)) => AlignmentReference::Static,
+        (_, MotionSpec::Dockside(_)) => AlignmentReference::Dockside,
+    }
+}

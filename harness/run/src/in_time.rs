@@ -1,0 +1,88 @@
+//! Runs in simulated time: they wait for nothing, and keep every result at once.
+
+use super::drive::{Books, InStep, Keeps, Line, NoFaults, drive};
+use super::ended::{Ended, RunError, over};
+use super::watch::Watcher;
+use octant_base::control::Control;
+use octant_endpoint::Endpoint;
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::Occurrence;
+use octant_recorder::Recorder;
+use octant_sample::Output;
+use octant_source::{Epoch, Source};
+
+/// Epochs between two checks of the control: about a millisecond of wall time.
+const CONTROL_EPOCHS: u64 = 8192;
+
+/// Keeps the results of a run in simulated time, which waits for nothing.
+#[derive(Debug)]
+pub(super) struct InTime<'a> {
+    /// Recorder and watcher.
+    pub(super) books: Books<'a>,
+    /// Control of the run.
+    pub(super) control: &'a Control,
+    /// Number of epochs between two checks of the control.
+    pub(super) look_every: u64,
+    /// Revision of the last parameters.
+    pub(super) revision: u32,
+}
+
+impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
+    fn begin(&mut self, done: u64) -> bool {
+        done != 0 && done.is_multiple_of(self.look_every) && self.control.look(done)
+    }
+
+    #[inline(always)]
+    fn answered(
+        &mut self,
+        source: &S,
+        endpoint: &E,
+        (step, sent): (InStep<'_>, &Epoch),
+        output: &Output,
+    ) -> Result<Option<Ended>, RunError> {
+        let is_new = output.parameters_revision != self.revision;
+        self.revision = output.parameters_revision;
+        let estimate = is_new.then(|| endpoint.parameters());
+        let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
+        let answered = (step, sent, !untouched);
+        self.books.answered(answered, output, estimate.as_ref(), || source.truth())?;
+        let misbehaved = self.books.watcher.misbehaved.is_some();
+        Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
+    }
+
+    fn lost(&mut self, source: &S, clean: &Epoch) -> Result<(), RunError> {
+        Ok(self.books.lost(clean, || source.truth())?)
+    }
+
+    fn unit(&mut self, event: &UnitEvent, number: u64) {
+        self.books.unit(event, number);
+    }
+
+    fn occurrence(&mut self, occurrence: &Occurrence) {
+        self.books.occurrence(occurrence);
+    }
+}
+
+/// Drives in simulated time. Receipts of faults are recorded at the end, also after a failure.
+///
+/// # Errors
+/// If source, endpoint or recorder fail; epochs recorded before stay readable.
+pub fn drive_in_time<S, E>(
+    line: Line<'_, S, E>,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> Result<Ended, RunError>
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    let Line { source, faulted, endpoint } = line;
+    let books = Books::new(recorder, watcher, faulted.as_deref());
+    let look_every = if source.is_live() { 1 } else { CONTROL_EPOCHS };
+    let mut keeper = InTime { books, control, look_every, revision: 0 };
+    let Some(faulted) = faulted else { return drive(source, &mut NoFaults, endpoint, &mut keeper) };
+    let ended = drive(source, faulted, endpoint, &mut keeper);
+    faulted.last_words().into_iter().for_each(|event| keeper.books.recorder.event(event));
+    ended
+}

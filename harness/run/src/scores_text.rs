@@ -1,0 +1,97 @@
+//! Scores of a navigation as text for the terminal.
+
+use octant_base::display::{DisplayUnits, ShownUnit};
+use octant_base::number;
+use octant_score::summary::{
+    AlignmentResult, ErrorScore, NavigationScore, PointScore, SolutionScore,
+};
+
+/// Renders an alignment on one line: reference, duration, attitude, and the scores of the attitude.
+#[must_use]
+pub fn alignment_line(alignment: &AlignmentResult, units: &DisplayUnits) -> String {
+    let AlignmentResult { reference, duration_s, solution } = alignment;
+    let degrees = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
+    let scores =
+        attitude_scores(solution, units).map_or(String::new(), |scores| format!("; {scores}"));
+    format!(
+        "  alignment {}, {} s: heading {}, pitch {}, roll {} deg{scores}",
+        reference.name(),
+        number::plain(*duration_s, 4),
+        degrees(solution.heading_deg),
+        degrees(solution.pitch_deg),
+        degrees(solution.roll_deg),
+    )
+}
+
+/// Renders the solution at the end of a calibration; `None` if neither errors nor σ are known.
+#[must_use]
+pub fn solution_line(solution: &SolutionScore, units: &DisplayUnits) -> Option<String> {
+    Some(format!("    attitude at its end: {}", attitude_scores(solution, units)?))
+}
+
+/// Errors and σ of heading, pitch and roll; `None` if neither is known.
+fn attitude_scores(solution: &SolutionScore, units: &DisplayUnits) -> Option<String> {
+    let points = [solution.heading_arcmin, solution.pitch_arcmin, solution.roll_arcmin];
+    let unit = units.attitude();
+    let digits = unit.decimals;
+    let all = |of: fn(&PointScore) -> Option<f64>, sign: bool| -> Option<String> {
+        let one = |point: &PointScore| {
+            let value = unit.of(of(point)?);
+            Some(if sign { format!("{value:+.digits$}") } else { format!("{value:.digits$}") })
+        };
+        Some(points.iter().map(one).collect::<Option<Vec<String>>>()?.join(", "))
+    };
+    let name = unit.name;
+    match (all(|point| point.error, true), all(|point| point.sigma, false)) {
+        (Some(error), Some(sigma)) => Some(format!("error {error}, σ {sigma} {name}")),
+        (Some(error), None) => Some(format!("error {error} {name}")),
+        (None, Some(sigma)) => Some(format!("σ {sigma} {name}")),
+        (None, None) => None,
+    }
+}
+
+/// Renders the scores of a navigation, one line each for latitude, longitude, radial error, attitude and
+/// velocity.
+#[must_use]
+pub fn navigation_lines(n: &NavigationScore, units: &DisplayUnits) -> Vec<String> {
+    let pair = |e: &ErrorScore, unit: ShownUnit| {
+        let (max, rms, digits) = (unit.of(e.max), unit.of(e.rms), unit.decimals);
+        format!("max {max:.digits$}, rms {rms:.digits$}")
+    };
+    let position = |e: &ErrorScore, unit: ShownUnit| {
+        let (name, digits) = (unit.name, unit.decimals);
+        let slope = e
+            .slope_per_day
+            .map_or(String::new(), |s| format!(", {:+.digits$} {name}/day", unit.of(s)));
+        format!("{} {name}{slope}", pair(e, unit))
+    };
+    let radial = units.radial();
+    let (digits, finer) = (radial.decimals, radial.decimals + 1);
+    let mut lines = vec![
+        format!("    latitude  {}", position(&n.latitude_error_arcmin, units.latitude())),
+        format!("    longitude {}", position(&n.longitude_error_arcmin, units.longitude())),
+        format!(
+            "    radial    max {:.digits$}, rms {:.digits$} {name}, {:.finer$} {name}/h",
+            radial.of(n.radial_error_nmi.max),
+            radial.of(n.radial_error_nmi.rms),
+            radial.of(n.radial_error_nmi.rate_per_h),
+            name = radial.name
+        ),
+    ];
+    if let (Some(heading), Some(pitch), Some(roll)) =
+        (&n.heading_error_arcmin, &n.pitch_error_arcmin, &n.roll_error_arcmin)
+    {
+        let unit = units.attitude();
+        let [heading, pitch, roll] = [heading, pitch, roll].map(|e| pair(e, unit));
+        lines.push(format!(
+            "    attitude  heading {heading}; pitch {pitch}; roll {roll} {}",
+            unit.name
+        ));
+    }
+    if let (Some(north), Some(east)) = (&n.velocity_north_error_mps, &n.velocity_east_error_mps) {
+        let unit = units.velocity();
+        let [north, east] = [north, east].map(|e| pair(e, unit));
+        lines.push(format!("    velocity  north {north}; east {east} {}", unit.name));
+    }
+    lines
+}
