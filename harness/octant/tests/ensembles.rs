@@ -152,9 +152,10 @@ fn assert_near(
     six: [f64; 4],
     eight: [f64; 4],
 ) {
-    assert_eq!(comparison.cells.len(), 4);
-    for (i, cell) in comparison.cells.iter().enumerate() {
-        for (ours, reference) in [(cell.first, six[i]), (cell.second, eight[i])] {
+    // Position comes first; attitude and velocity have their own references.
+    assert_eq!(comparison.cells.len(), 9);
+    for (cell, (six, eight)) in comparison.cells.iter().zip(six.into_iter().zip(eight)) {
+        for (ours, reference) in [(cell.first, six), (cell.second, eight)] {
             let ratio = ours / reference;
             assert!(
                 (0.6..1.5).contains(&ratio),
