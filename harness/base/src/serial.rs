@@ -21,14 +21,15 @@ impl SerialPort {
         let mut settings = port.get_configuration()?;
         settings.set_raw();
         settings.set_baud_rate(baud)?;
-        port.set_configuration(&settings)?;
-        // A driver that can't set a rate may silently take another one.
+        let set = port.set_configuration(&settings);
+        // A driver that can't set a rate may take another one, with or without a word.
         let found = port.get_configuration()?.get_baud_rate()?;
         if found != baud {
             return Err(io::Error::other(format!(
                 "the driver gave {found} baud, expected {baud}: this port can't do that rate"
             )));
         }
+        set?;
         port.discard_input_buffer()?;
         Ok(Self { port, wait: Duration::ZERO })
     }
