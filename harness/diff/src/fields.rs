@@ -1,7 +1,8 @@
 //! Fields of a recorded message by name, from its bytes and the schema of its topic.
 
 use octant_recorder::message::{
-    Topic, encode_aiding, encode_output, encode_parameters, encode_sample, encode_truth,
+    Topic, encode_aiding, encode_innovation, encode_output, encode_parameters, encode_sample,
+    encode_truth,
 };
 use octant_recorder::reader::Item;
 
@@ -15,6 +16,7 @@ pub(crate) fn encode(item: &Item, bytes: &mut Vec<u8>) -> bool {
         Item::CleanAiding(aiding) => encode_aiding(aiding.as_ref(), bytes),
         Item::Aiding(aiding) => encode_aiding(Some(aiding), bytes),
         Item::Output(output) => encode_output(output, bytes),
+        Item::Innovation(sequence, innovation) => encode_innovation(*sequence, innovation, bytes),
         Item::Parameters(sequence, estimate) => encode_parameters(*sequence, estimate, bytes),
         Item::Truth(truth) => encode_truth(truth, bytes),
         Item::Event(_) => return false,

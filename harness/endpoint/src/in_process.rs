@@ -2,8 +2,8 @@
 
 use super::{Conclusion, Endpoint, EndpointError};
 use octant_calibration::{Core, CoreConfig};
-use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Epoch, Innovation};
 use octant_sample::{Output, Parameters};
 
 /// The calibration core, called directly.
@@ -70,6 +70,10 @@ impl Endpoint for InProcess {
             parameters: *self.core.parameters(),
             sigma: *self.core.sigma(),
         }
+    }
+
+    fn innovation(&self) -> Option<Innovation> {
+        Some(*self.core.innovation())
     }
 
     /// Ends the stream: see [`Core::end_of_stream`].

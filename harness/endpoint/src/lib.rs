@@ -22,8 +22,8 @@ use octant_link::harness::SessionError;
 use octant_mapping::stepper::UseError;
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::Event;
-use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Epoch, Innovation};
 use octant_sample::{Output, Parameters};
 use octant_scenario::{self as scenario, Scenario};
 
@@ -82,6 +82,12 @@ pub trait Endpoint {
 
     /// Returns the parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;
+
+    /// Returns the innovation of the measurement whose NIS the last output has; `None` from a core
+    /// that answers with outputs alone.
+    fn innovation(&self) -> Option<Innovation> {
+        None
+    }
 
     /// Returns the wire to the core, where faults can be injected on one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {

@@ -110,11 +110,53 @@ const AIDING: [Fixed; 7] = [
     ("height_m", "m", Number, "measured height above the ellipsoid"),
 ];
 
-const INNOVATIONS: [Fixed; 4] = [
+const INNOVATIONS: [Fixed; 16] = [
     ("sequence", "", Integer, "number of the sample with the measurement"),
     ("mode", "", Integer, "0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done"),
     ("nis", "", Number, "normalized innovation squared of three axes, expected 3"),
     ("rejected", "", Boolean, "rejected by the innovation gate"),
+    ("innovation_velocity_north", "m/s", Number, "velocity north: computed minus reference"),
+    ("innovation_velocity_east", "m/s", Number, "velocity east: computed minus reference"),
+    ("innovation_velocity_down", "m/s", Number, "velocity down: computed minus reference"),
+    (
+        "sigma_velocity_north",
+        "m/s",
+        Number,
+        "velocity north: expected standard deviation of the innovation",
+    ),
+    (
+        "sigma_velocity_east",
+        "m/s",
+        Number,
+        "velocity east: expected standard deviation of the innovation",
+    ),
+    (
+        "sigma_velocity_down",
+        "m/s",
+        Number,
+        "velocity down: expected standard deviation of the innovation",
+    ),
+    ("innovation_position_north", "m", Number, "position north: computed minus reference"),
+    ("innovation_position_east", "m", Number, "position east: computed minus reference"),
+    ("innovation_position_down", "m", Number, "position down: computed minus reference"),
+    (
+        "sigma_position_north",
+        "m",
+        Number,
+        "position north: expected standard deviation of the innovation",
+    ),
+    (
+        "sigma_position_east",
+        "m",
+        Number,
+        "position east: expected standard deviation of the innovation",
+    ),
+    (
+        "sigma_position_down",
+        "m",
+        Number,
+        "position down: expected standard deviation of the innovation",
+    ),
 ];
 
 const FAULTS: [Fixed; 4] = [

@@ -11,7 +11,9 @@ use octant_recorder::message::Topic;
 use octant_recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterEstimate, ParameterGroup};
-use octant_sample::{GimbalAngles, Health, Mode, Output, Reference, Sample, Truth};
+use octant_sample::{
+    GimbalAngles, Health, Innovation, InnovationOf, Mode, Output, Reference, Sample, Truth,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +47,7 @@ struct Epoch {
     clean: Option<Sample>,
     sample: Option<Sample>,
     output: Option<Output>,
+    innovation: Option<Innovation>,
     truth: Option<Truth>,
 }
 
@@ -81,6 +84,7 @@ pub fn each_row(
             Item::CleanSample(sample) => epoch.clean = Some(sample),
             Item::Sample(sample) => epoch.sample = Some(sample),
             Item::Output(output) => epoch.output = Some(output),
+            Item::Innovation(_, innovation) => epoch.innovation = Some(innovation),
             Item::Truth(truth) => epoch.truth = Some(truth),
             Item::Aiding(aiding) => rows.aiding(time_ns, &aiding.reference)?,
             Item::Parameters(sequence, estimate) => {
@@ -167,6 +171,7 @@ impl Rows<'_> {
             self.put(output.mode as u8);
             self.put(output.nis);
             self.put(output.health.contains(Health::INNOVATION_REJECTED));
+            self.innovation(epoch.innovation.as_ref());
             self.end(ExportTable::Innovations)?;
         }
         if self.begin(ExportTable::Navigation, epoch.time_ns) {
@@ -176,6 +181,19 @@ impl Rows<'_> {
             self.end(ExportTable::Navigation)?;
         }
         Ok(())
+    }
+
+    /// Columns of velocity, then those of position: one of them is empty, or both.
+    fn innovation(&mut self, innovation: Option<&Innovation>) {
+        for of in [InnovationOf::Velocity, InnovationOf::Position] {
+            match innovation.filter(|innovation| innovation.of == of) {
+                Some(innovation) => {
+                    self.numbers(&innovation.value);
+                    self.numbers(&innovation.sigma);
+                }
+                None => self.empty(6),
+            }
+        }
     }
 
     fn sample(&mut self, sample: Option<&Sample>) {

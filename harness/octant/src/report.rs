@@ -187,6 +187,9 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
             }
             None => watcher.epoch(output),
         };
+        if let Some(innovation) = &epoch.innovation {
+            watcher.innovation(output, innovation);
+        }
         if let Some(estimate) = &epoch.parameters {
             watcher.parameters(output, estimate);
         }

@@ -54,6 +54,7 @@ mod fuzz_corpus;
 #[cfg(target_os = "linux")]
 mod generated;
 mod hostile;
+mod innovations;
 #[cfg(unix)]
 mod live;
 mod master;

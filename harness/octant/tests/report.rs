@@ -211,7 +211,7 @@ fn data() -> ReportData {
         nis: (0..86_400usize)
             .map(|k| {
                 let x = 1.0 + 0.8 * (chance(k) + chance(k + 7) + chance(k + 13));
-                NisPoint { hours: (k + 1) as f64 / 3600.0, nis: x * x + 1.08 }
+                NisPoint { hours: (k + 1) as f64 / 3600.0, nis: x * x + 1.08, innovation: None }
             })
             .collect(),
         gimbals: gimbals(),

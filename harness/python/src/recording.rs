@@ -12,7 +12,9 @@ use octant_recorder::Event;
 use octant_recorder::reader::{Item, ReadError, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterEstimate, ParameterGroup};
-use octant_sample::{Aiding, Health, Navigation, Output, Reference, Sample, Truth};
+use octant_sample::{
+    Aiding, Health, Innovation, InnovationOf, Navigation, Output, Reference, Sample, Truth,
+};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -24,6 +26,8 @@ struct Topics {
     aiding: Vec<Aiding>,
     /// Outputs, each with the stamp of the source's step, ns.
     outputs: Vec<(u64, Output)>,
+    /// Innovations by the number of their sample.
+    innovations: BTreeMap<u64, Innovation>,
     parameters: Vec<(f64, ParameterEstimate)>,
     truths: Vec<Truth>,
     /// Time of the step, s, and the event as JSON.
@@ -99,6 +103,9 @@ fn topics(path: &Path) -> Result<(Topics, Head), ReadError> {
             Item::Sample(sample) => topics.samples.push(sample),
             Item::Aiding(aiding) => topics.aiding.push(aiding),
             Item::Output(output) => topics.outputs.push((time_ns, output)),
+            Item::Innovation(sequence, innovation) => {
+                topics.innovations.insert(sequence, innovation);
+            }
             Item::Parameters(_, estimate) => topics.parameters.push((time_s, *estimate)),
             Item::Truth(truth) => topics.truths.push(truth),
             Item::Event(event) => topics.events.push((time_s, text(&event))),
@@ -188,6 +195,21 @@ impl Topics {
         columns.texts("mode", all.iter().map(|o| Some(o.mode.name())));
         columns.numbers("nis", "1", each(&all, |o| o.nis));
         columns.booleans("rejected", each(&all, rejected));
+        for (of, name, unit) in
+            [(InnovationOf::Velocity, "velocity", "m/s"), (InnovationOf::Position, "position", "m")]
+        {
+            let found = |o: &Output| self.innovations.get(&o.sequence).filter(|i| i.of == of);
+            if !all.iter().any(|o| found(o).is_some()) {
+                continue;
+            }
+            for (axis, direction) in ["north", "east", "down"].into_iter().enumerate() {
+                let value = |i: &Innovation| (i.value[axis], i.sigma[axis]);
+                let pairs = each(&all, |o| found(o).map_or((f64::NAN, f64::NAN), value));
+                let column = |kind| format!("{kind}_{name}_{direction}");
+                columns.numbers(&column("innovation"), unit, each(&pairs, |p| p.0));
+                columns.numbers(&column("sigma"), unit, each(&pairs, |p| p.1));
+            }
+        }
         columns
     }
 

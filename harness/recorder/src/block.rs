@@ -2,9 +2,9 @@
 
 use super::{EpochFrame, Event, Extra};
 use octant_sample::Epoch;
-use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
+use octant_sample::{Innovation, Truth};
 
 /// Epochs in columns, with rare parts in lists of their own: a plain epoch costs two short copies.
 ///
@@ -27,6 +27,8 @@ pub(super) struct Block {
     pub(super) added: Vec<(u32, u64)>,
     /// Frames on the recording grid.
     pub(super) due: Vec<u32>,
+    /// Innovations, by position.
+    pub(super) innovations: Vec<(u32, Innovation)>,
     /// Truth, by position.
     pub(super) truth: Vec<(u32, Truth)>,
     /// Changed parameters, by position.
@@ -45,6 +47,7 @@ impl Block {
             lost: Vec::with_capacity(64),
             added: Vec::with_capacity(64),
             due: Vec::with_capacity(64),
+            innovations: Vec::with_capacity(64),
             truth: Vec::with_capacity(64),
             parameters: Vec::with_capacity(64),
             events: Vec::new(),
@@ -108,6 +111,7 @@ impl Block {
     pub(super) fn extra(&mut self, extra: &Extra) {
         let position = self.position();
         match extra {
+            Extra::Innovation(innovation) => self.innovations.push((position, *innovation)),
             Extra::Truth(truth) => self.truth.push((position, *truth)),
             Extra::Parameters(estimate) => self.parameters.push((position, *estimate)),
         }
@@ -125,6 +129,7 @@ impl Block {
         self.lost.clear();
         self.added.clear();
         self.due.clear();
+        self.innovations.clear();
         self.truth.clear();
         self.parameters.clear();
         self.events.clear();

@@ -12,6 +12,7 @@ pub mod event;
 mod handle;
 pub mod message;
 pub mod reader;
+mod recorded;
 pub mod records;
 mod sink;
 mod stream_hash;
@@ -28,8 +29,8 @@ pub use trouble::RecorderTrouble;
 
 use octant_sample::Epoch;
 use octant_sample::Output;
-use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Innovation, Truth};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -60,6 +61,8 @@ pub struct EpochFrame<'a> {
 pub enum Extra {
     /// Truth at the stamp of the last frame.
     Truth(Truth),
+    /// Innovation of the measurement whose NIS the last frame's output has.
+    Innovation(Innovation),
     /// Parameters that changed with the last frame.
     Parameters(ParameterEstimate),
 }

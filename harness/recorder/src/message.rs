@@ -8,13 +8,12 @@
 pub use super::cdr::MessageError;
 
 use super::cdr::{Decoder, Encoder};
-use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{
-    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
-    Reference, Sample, Status,
+    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, InnovationOf, Mode,
+    Navigation, Output, Parameters, Reference, Sample, Status, Truth,
 };
 
 /// Content of a recording's channel.
@@ -33,6 +32,8 @@ pub enum Topic {
     Imu,
     /// Output of the core.
     Output,
+    /// Innovation of each axis of a measurement.
+    Innovation,
     /// Estimated parameters with their σ.
     Parameters,
     /// Truth.
@@ -43,12 +44,13 @@ pub enum Topic {
 
 impl Topic {
     /// All topics.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::ImuClean,
         Self::AidingClean,
         Self::Aiding,
         Self::Imu,
         Self::Output,
+        Self::Innovation,
         Self::Parameters,
         Self::Truth,
         Self::Event,
@@ -63,6 +65,7 @@ impl Topic {
             Self::Aiding => "/aiding",
             Self::Imu => "/imu",
             Self::Output => "/output",
+            Self::Innovation => "/innovation",
             Self::Parameters => "/parameters",
             Self::Truth => "/truth",
             Self::Event => "/event",
@@ -82,6 +85,7 @@ impl Topic {
             Self::ImuClean | Self::Imu => "octant_msgs/msg/InertialSample",
             Self::AidingClean | Self::Aiding => "octant_msgs/msg/Aiding",
             Self::Output => "octant_msgs/msg/Output",
+            Self::Innovation => "octant_msgs/msg/Innovation",
             Self::Parameters => "octant_msgs/msg/Parameters",
             Self::Truth => "octant_msgs/msg/Truth",
             Self::Event => "octant.Event",
@@ -104,6 +108,7 @@ impl Topic {
             Self::ImuClean | Self::Imu => IMU_SCHEMA.into(),
             Self::AidingClean | Self::Aiding => AIDING_SCHEMA.into(),
             Self::Output => OUTPUT_SCHEMA.into(),
+            Self::Innovation => INNOVATION_SCHEMA.into(),
             Self::Parameters => parameters_schema(),
             Self::Truth => TRUTH_SCHEMA.into(),
             Self::Event => EVENT_SCHEMA.into(),
@@ -160,6 +165,17 @@ uint8 mode
 bool moving
 ";
 
+const INNOVATION_SCHEMA: &str = "\
+# Innovation of a measurement, computed minus reference, north, east, down; its NIS is in the output.
+# kind 0: velocity, m/s. kind 1: position, m. sigma: what the filter expects of it, same unit.
+uint8 VELOCITY=0
+uint8 POSITION=1
+uint64 sequence
+float64[3] innovation
+float64[3] sigma
+uint8 kind
+";
+
 const TRUTH_SCHEMA: &str = "\
 # Truth at the stamp of the sample. q_nb: w, x, y, z.
 uint64 time_ns
@@ -203,6 +219,7 @@ fn parameters_schema() -> String {
 const IMU_LENGTH: usize = 4 + 16 + 24 + 8 + 2;
 const AIDING_LENGTH: usize = 4 + 8 + 24 + 1;
 const OUTPUT_LENGTH: usize = 4 + 16 + 11 * 8 + 8 + 8 + 4;
+const INNOVATION_LENGTH: usize = 4 + 8 + 2 * 24 + 1;
 const PARAMETERS_LENGTH: usize = 4 + 8 + 2 * PARAMETER_COUNT * 8 + 4;
 const TRUTH_LENGTH: usize = 4 + 8 + 12 * 8;
 
@@ -355,6 +372,39 @@ pub fn decode_output(bytes: &[u8]) -> Result<Output, MessageError> {
         nis,
         parameters_revision,
     })
+}
+
+/// Encodes an innovation with the sequence number of its epoch.
+pub fn encode_innovation(sequence: u64, innovation: &Innovation, bytes: &mut Vec<u8>) {
+    let mut e = Encoder::new(bytes);
+    e.put(sequence.to_le_bytes());
+    e.f64s(&innovation.value);
+    e.f64s(&innovation.sigma);
+    e.put([match innovation.of {
+        InnovationOf::Velocity => KIND_VELOCITY,
+        InnovationOf::Position => KIND_POSITION,
+    }]);
+}
+
+/// Decodes an innovation with the sequence number of its epoch.
+///
+/// # Errors
+/// If the bytes are not those of an innovation.
+pub fn decode_innovation(bytes: &[u8]) -> Result<(u64, Innovation), MessageError> {
+    let mut d = Decoder::new(bytes, INNOVATION_LENGTH)?;
+    let (sequence, value, sigma) = (d.u64(), d.f64s(), d.f64s());
+    let of = match d.take::<1>()[0] {
+        KIND_VELOCITY => InnovationOf::Velocity,
+        KIND_POSITION => InnovationOf::Position,
+        kind => {
+            return Err(MessageError::Value {
+                field: "kind",
+                found: kind.into(),
+                expected: "0 (velocity) or 1 (position)",
+            });
+        }
+    };
+    Ok((sequence, Innovation { of, value, sigma }))
 }
 
 /// Encodes parameters with their σ and the sequence number of their epoch.

@@ -1,13 +1,14 @@
 //! Reading of recordings: message by message, or epoch by epoch for replay and scoring.
 
 use super::message::{self, MessageError, Topic};
+pub use super::recorded::RecordedEpoch;
 use super::records::{FileEnd, Records, RecordsError};
+
 use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
 use super::{Event, FORMAT_VERSION, Samples, StreamHash};
 use mcap::records::{Record, op};
-use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Aiding, Output, Sample};
+use octant_sample::{Aiding, Innovation, Output, Sample, Truth};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -89,6 +90,8 @@ pub enum Item {
     Sample(Sample),
     /// An output of the core.
     Output(Output),
+    /// Innovation with the sequence number of its epoch.
+    Innovation(u64, Innovation),
     /// Parameters with the sequence number of their epoch.
     Parameters(u64, Box<ParameterEstimate>),
     /// Truth.
@@ -114,6 +117,10 @@ impl Item {
                 }
             },
             Topic::Output => Self::Output(message::decode_output(data)?),
+            Topic::Innovation => {
+                let (sequence, innovation) = message::decode_innovation(data)?;
+                Self::Innovation(sequence, innovation)
+            }
             Topic::Parameters => {
                 let (sequence, estimate) = message::decode_parameters(data)?;
                 Self::Parameters(sequence, Box::new(estimate))
@@ -135,6 +142,7 @@ impl Item {
             Self::Aiding(_) => Topic::Aiding,
             Self::Sample(_) => Topic::Imu,
             Self::Output(_) => Topic::Output,
+            Self::Innovation(..) => Topic::Innovation,
             Self::Parameters(..) => Topic::Parameters,
             Self::Truth(_) => Topic::Truth,
             Self::Event(_) => Topic::Event,
@@ -343,30 +351,6 @@ fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) ->
     }
 }
 
-/// Recorded data of one epoch. With decimation any part can be missing.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RecordedEpoch {
-    /// Simulated time, ns.
-    pub time_ns: u64,
-    /// Sample that reached the core.
-    pub sample: Option<Sample>,
-    /// Aiding that reached the core.
-    pub aiding: Option<Aiding>,
-    /// Sample that the source delivered, if it differs from `sample`; without `sample` if it didn't
-    /// reach the core in its step.
-    pub clean_sample: Option<Sample>,
-    /// Aiding that the source delivered (`Some(None)`: none), if it differs from `aiding`.
-    pub clean_aiding: Option<Option<Aiding>>,
-    /// Output.
-    pub output: Option<Output>,
-    /// Parameters recorded with this epoch.
-    pub parameters: Option<ParameterEstimate>,
-    /// Truth.
-    pub truth: Option<Truth>,
-    /// Events since the epoch before, up to this one.
-    pub events: Vec<Event>,
-}
-
 /// Epochs of a recording in order: time, truth, output and parameters for scoring, samples and aiding
 /// for replay. Events after the last epoch are available as [`Epochs::last_event`] only.
 pub struct Epochs<R> {
@@ -430,6 +414,7 @@ impl<R: Read> Epochs<R> {
                 Item::Aiding(aiding) => epoch.aiding = Some(aiding),
                 Item::Sample(sample) => epoch.sample = Some(sample),
                 Item::Output(output) => epoch.output = Some(output),
+                Item::Innovation(_, innovation) => epoch.innovation = Some(innovation),
                 Item::Parameters(_, estimate) => epoch.parameters = Some(*estimate),
                 Item::Truth(truth) => epoch.truth = Some(truth),
                 Item::Event(_) => {}

@@ -59,6 +59,8 @@ pub(super) struct RecordingWriter<W: Write> {
     /// Log time and sequence number of the last frame.
     last_time_ns: u64,
     last_sequence: u64,
+    /// True if the last frame's output is in the file.
+    last_kept: bool,
     /// Last parameters, until they are in the file.
     unwritten_parameters: Option<(u64, ParameterEstimate)>,
     next_parameters_ns: u64,
@@ -136,6 +138,7 @@ impl<W: Write> RecordingWriter<W> {
             mode: None,
             last_time_ns: 0,
             last_sequence: 0,
+            last_kept: false,
             revision: 0,
             unwritten_parameters: None,
             next_parameters_ns: 0,
@@ -147,6 +150,7 @@ impl<W: Write> RecordingWriter<W> {
         let mut aiding = block.aiding.iter().peekable();
         let mut altered = block.altered.iter().peekable();
         let mut due = block.due.iter().peekable();
+        let mut innovations = block.innovations.iter().peekable();
         let mut truth = block.truth.iter().peekable();
         let mut parameters = block.parameters.iter().peekable();
         let mut events = block.events.iter().peekable();
@@ -154,6 +158,12 @@ impl<W: Write> RecordingWriter<W> {
         let mut added = block.added.iter().peekable();
         for position in 0..=block.len() as u32 {
             // First the additions to the frame before, in the order of the topics.
+            while let Some((_, innovation)) = innovations.next_if(|(at, _)| *at == position) {
+                if self.last_kept {
+                    message::encode_innovation(self.last_sequence, innovation, &mut self.bytes);
+                    self.put(Topic::Innovation)?;
+                }
+            }
             while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
                 self.parameters_changed(estimate)?;
             }
@@ -179,6 +189,7 @@ impl<W: Write> RecordingWriter<W> {
             self.last_time_ns =
                 step.unwrap_or_else(|| clean.map_or(sample, |epoch| &epoch.sample).device_time.ns);
             self.last_sequence = sample.sequence;
+            self.last_kept = keep;
             if let Some(epoch) = clean {
                 if keep && (lost || epoch.sample != *sample) {
                     message::encode_sample(&epoch.sample, &mut self.bytes);

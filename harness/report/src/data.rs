@@ -3,8 +3,8 @@
 use super::series::SolutionSeries;
 use octant_base::display::DisplayUnits;
 use octant_evidence::disposition::Dispositions;
-use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::{Innovation, Parameters};
 use octant_score::summary::Summary;
 use std::collections::BTreeMap;
 
@@ -67,6 +67,8 @@ pub struct NisPoint {
     pub hours: f64,
     /// NIS.
     pub nis: f64,
+    /// Innovation of each axis, where the core tells it.
+    pub innovation: Option<Innovation>,
 }
 
 /// Gimbal angles at one time.

@@ -1,9 +1,10 @@
-//! Innovations of a calibration: NIS with its bounds, and whiteness.
+//! Innovations of a calibration: NIS with its bounds, whiteness, and each axis.
 
 use super::chart::{Band, Chart, ChartLine, ChartRole};
 use super::data::{NisPoint, ReportData};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_sample::{Innovation, InnovationOf};
 
 /// 2.5th and 97.5th percentile of χ² with three degrees of freedom.
 const CHI_SQUARED_3: [f64; 2] = [0.2158, 9.3484];
@@ -29,6 +30,7 @@ pub(super) fn innovations(data: &ReportData) -> Markup {
             (single(&finite))
             (whiteness(&finite))
         }
+        (axes(&finite))
     }
 }
 
@@ -122,6 +124,75 @@ fn whiteness(finite: &[NisPoint]) -> Markup {
     chart.render()
 }
 
+/// Draws the innovation of each axis in its own standard deviations, with their statistics.
+fn axes(finite: &[NisPoint]) -> Markup {
+    let known: Vec<(f64, Innovation)> =
+        finite.iter().filter_map(|p| p.innovation.map(|i| (p.hours, i))).collect();
+    if known.len() < 2 {
+        return html! {};
+    }
+    let of = match known[0].1.of {
+        InnovationOf::Velocity => "velocity",
+        InnovationOf::Position => "position",
+    };
+    let normalized = |axis: usize| -> Vec<[f64; 2]> {
+        known.iter().map(|(hours, i)| [*hours, i.value[axis] / i.sigma[axis]]).collect()
+    };
+    let axes = ["north", "east", "down"].map(|name| (name, format!("Innovation of {of} {name}")));
+    html! {
+        p.hint { "Innovation of each axis, divided by its expected standard deviation. Of a consistent filter the \
+            mean is 0, the standard deviation is 1, and 95 % lie within 1.96." }
+        table {
+            thead { tr { th { "Axis" } th.n { "Mean" } th.n { "Standard deviation" } th.n { "Within 1.96, %" } } }
+            tbody {
+                @for (axis, (name, _)) in axes.iter().enumerate() {
+                    @let [mean, deviation, within] = statistics(&normalized(axis));
+                    tr {
+                        td { (of) " " (name) }
+                        td.n { (number::fixed(mean, 3)) }
+                        td.n { (number::fixed(deviation, 3)) }
+                        td.n { (number::fixed(100.0 * within, 1)) }
+                    }
+                }
+            }
+        }
+        div.plots {
+            @for (axis, (_, title)) in axes.iter().enumerate() { (axis_chart(title, normalized(axis))) }
+        }
+    }
+}
+
+/// Draws one axis with the bounds of single values.
+fn axis_chart(title: &str, points: Vec<[f64; 2]>) -> Markup {
+    let mut chart = Chart::new(title, "hours of the run", title);
+    chart.height = 160.0;
+    chart.run_offset_h = Some(0.0);
+    let highest = points.iter().map(|p| p[1].abs()).fold(4.0, f64::max);
+    chart.y_range = Some([-1.05 * highest, 1.05 * highest]);
+    let ends = [points[0][0], points[points.len() - 1][0]];
+    chart.bands.push(Band {
+        label: "95 % interval".to_owned(),
+        role: ChartRole::Reference,
+        points: ends.iter().map(|&x| [x, -1.96, 1.96]).collect(),
+    });
+    chart.lines.push(ChartLine {
+        label: "innovation / σ".to_owned(),
+        role: ChartRole::Primary,
+        points,
+    });
+    chart.levels.push((0.0, String::new()));
+    chart.render()
+}
+
+/// Mean, standard deviation and share within 1.96 of a series.
+fn statistics(points: &[[f64; 2]]) -> [f64; 3] {
+    let n = points.len() as f64;
+    let mean = points.iter().map(|p| p[1]).sum::<f64>() / n;
+    let squares: f64 = points.iter().map(|p| (p[1] - mean) * (p[1] - mean)).sum();
+    let within = points.iter().filter(|p| p[1].abs() <= 1.96).count() as f64 / n;
+    [mean, libm::sqrt(squares / (n - 1.0)), within]
+}
+
 /// Sample autocorrelation at lags from 1 on; `None` for series that are too short or don't vary.
 fn autocorrelation(values: &[f64], lags: usize) -> Option<Vec<f64>> {
     let lags = lags.min(values.len() / 4);
@@ -140,6 +211,13 @@ fn autocorrelation(values: &[f64], lags: usize) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn statistics_of_a_series() {
+        // Mean 1; squares of the differences 0 + 1 + 4 + 9; 1 alone lies within 1.96 of zero.
+        let points = [1.0, 2.0, 3.0, -2.0].map(|value| [0.0, value]);
+        assert_eq!(statistics(&points), [1.0, libm::sqrt(14.0 / 3.0), 0.25]);
+    }
 
     #[test]
     fn autocorrelation_of_a_first_order_process_is_a_power_of_its_factor() {

@@ -94,7 +94,9 @@ fn data() -> ReportData {
         facts: vec![("site".to_owned(), "30.5° latitude".to_owned())],
         truth: Some(Parameters::from_array(&[0.0; PARAMETER_COUNT])),
         convergence: convergence(),
-        nis: (1..14_400).map(|k| NisPoint { hours: k as f64 / 3600.0, nis: chi(k) }).collect(),
+        nis: (1..14_400)
+            .map(|k| NisPoint { hours: k as f64 / 3600.0, nis: chi(k), innovation: None })
+            .collect(),
         gimbals: gimbals(),
         baseline_solution: solution.clone(),
         solution,

@@ -18,7 +18,7 @@ use octant_faults::station::{Delivered, Occurrence};
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
+use octant_sample::{DeviceTime, GimbalCommand, Innovation, Output, Truth};
 use octant_source::{Epoch, Source};
 
 /// Parts of a run that its samples go through.
@@ -366,14 +366,14 @@ impl<'a> Books<'a> {
         Self { recorder, watcher, names }
     }
 
-    /// Takes the answer to an epoch, and the parameters where they are new; asks for the truth
-    /// where it is needed. `altered` tells whether faults changed the epoch.
+    /// Takes the answer to an epoch, the innovation where there is one, and the parameters where
+    /// they are new; asks for the truth where it is needed. `altered` tells whether faults changed the epoch.
     #[inline(always)]
     pub(super) fn answered(
         &mut self,
         (step, sent, altered): (InStep<'_>, &Epoch, bool),
         output: &Output,
-        estimate: Option<&ParameterEstimate>,
+        (innovation, estimate): (Option<&Innovation>, Option<&ParameterEstimate>),
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
         let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
@@ -388,6 +388,10 @@ impl<'a> Books<'a> {
             }
         }
         let watched = watcher.answer(sent, altered, output);
+        if let Some(innovation) = innovation {
+            recorder.extra(&Extra::Innovation(*innovation));
+            watcher.innovation(output, innovation);
+        }
         if let Some(estimate) = estimate {
             recorder.extra(&Extra::Parameters(*estimate));
             watcher.parameters(output, estimate);

@@ -43,9 +43,11 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
         let is_new = output.parameters_revision != self.revision;
         self.revision = output.parameters_revision;
         let estimate = is_new.then(|| endpoint.parameters());
+        let innovation = if output.nis.is_finite() { endpoint.innovation() } else { None };
         let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
         let answered = (step, sent, !untouched);
-        self.books.answered(answered, output, estimate.as_ref(), || source.truth())?;
+        let additions = (innovation.as_ref(), estimate.as_ref());
+        self.books.answered(answered, output, additions, || source.truth())?;
         let misbehaved = self.books.watcher.misbehaved.is_some();
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
     }

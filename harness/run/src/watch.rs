@@ -12,7 +12,7 @@ use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
 use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, SolutionSeries};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Health, Mode, Output, Status};
+use octant_sample::{DeviceTime, Health, Innovation, Mode, Output, Status};
 use octant_score::alignment::SolutionPoint;
 use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
@@ -303,8 +303,17 @@ impl Watcher {
             // Rejected measurements are always drawn.
             let rejected = output.health.contains(Health::INNOVATION_REJECTED);
             if rejected || self.measurements.is_multiple_of(self.nis_stride) {
-                self.nis.push(NisPoint { hours: hours(output), nis: output.nis });
+                self.nis.push(NisPoint { hours: hours(output), nis: output.nis, innovation: None });
             }
+        }
+    }
+
+    /// Takes the innovation of the measurement in the last output.
+    #[inline(never)]
+    pub fn innovation(&mut self, output: &Output, innovation: &Innovation) {
+        let at = hours(output);
+        if let Some(point) = self.nis.last_mut().filter(|point| point.hours == at) {
+            point.innovation = Some(*innovation);
         }
     }
 

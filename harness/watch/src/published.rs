@@ -225,7 +225,11 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
             }
             _ => {}
         },
-        Item::Sample(_) | Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}
+        Item::Sample(_)
+        | Item::CleanSample(_)
+        | Item::CleanAiding(_)
+        | Item::Aiding(_)
+        | Item::Innovation(..) => {}
     }
 }
 

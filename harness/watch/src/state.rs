@@ -202,7 +202,10 @@ impl RunState {
             Item::Parameters(_, estimate) => self.parameters = Some((time_ns, estimate.clone())),
             Item::Truth(truth) => self.truth(truth),
             Item::Event(event) => self.event(time_ns, event),
-            Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}
+            Item::CleanSample(_)
+            | Item::CleanAiding(_)
+            | Item::Aiding(_)
+            | Item::Innovation(..) => {}
         }
     }
 

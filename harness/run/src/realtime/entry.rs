@@ -3,7 +3,7 @@
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Output, Truth};
+use octant_sample::{Innovation, Output, Truth};
 use octant_source::Epoch;
 
 /// One message. Placed into a ring that has room for the largest: a box would be an allocation on
@@ -53,7 +53,16 @@ impl std::fmt::Display for Broke {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     pub(super) output: Output,
+    /// Innovation, if there was a measurement.
+    pub(super) innovation: Option<Innovation>,
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
     pub(super) truth: Option<Truth>,
+}
+
+impl Answer {
+    /// Innovation and parameters that came with the output.
+    pub(super) fn additions(&self) -> (Option<&Innovation>, Option<&ParameterEstimate>) {
+        (self.innovation.as_ref(), self.estimate.as_ref())
+    }
 }

@@ -45,12 +45,12 @@ fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
     match entry {
         Entry::Frame { clean, faulted, answer } => {
             let sent = (InStep::First(&clean), &faulted, clean != faulted);
-            books.answered(sent, &answer.output, answer.estimate.as_ref(), || answer.truth)?;
+            books.answered(sent, &answer.output, answer.additions(), || answer.truth)?;
         }
         Entry::Added { step_ns, faulted, answer } => {
             // The epoch of an earlier step may have been altered: this isn't known any more.
             let sent = (InStep::Further { step_ns }, &faulted, true);
-            books.answered(sent, &answer.output, answer.estimate.as_ref(), || answer.truth)?;
+            books.answered(sent, &answer.output, answer.additions(), || answer.truth)?;
         }
         Entry::Lost { clean, truth } => books.lost(&clean, || truth)?,
         Entry::Unit { event, epoch } => books.unit(&event, epoch),

@@ -6,13 +6,15 @@ use crate::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
 use crate::error_model::computer_frame_error;
 use crate::strapdown::Strapdown;
 use nalgebra::{Matrix3, Vector3};
-use octant_sample::{Parameters, Reference};
+use octant_sample::{Innovation, InnovationOf, Parameters, Reference};
 
 /// Result of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasurementResult {
     /// Normalized innovation squared over three axes; expected mean 3.
     pub nis: f64,
+    /// Innovation of each axis.
+    pub innovation: Innovation,
     /// True if the gate rejected the measurement.
     pub rejected: bool,
     /// True if the measurement started a recovery.
@@ -35,7 +37,9 @@ impl CalibrationFilter {
     ) -> Option<MeasurementResult> {
         let (first, sigma, error) = self.error_against(reference, strapdown)?;
         let r = sigma * sigma;
-        let nis = self.nis(first, r, &error)?;
+        let (nis, sigma) = self.nis(first, r, &error)?;
+        let of = if first == DV { InnovationOf::Velocity } else { InnovationOf::Position };
+        let innovation = Innovation { of, value: error.into(), sigma };
 
         let mut recovery_started = false;
         if let Some(gate) = self.gate
@@ -45,6 +49,7 @@ impl CalibrationFilter {
                 self.tally.rejected += 1;
                 return Some(MeasurementResult {
                     nis,
+                    innovation,
                     rejected: true,
                     recovery_started,
                     turned_rad: 0.0,
@@ -59,6 +64,7 @@ impl CalibrationFilter {
                     self.tally.rejected += 1;
                     return Some(MeasurementResult {
                         nis,
+                        innovation,
                         rejected: true,
                         recovery_started,
                         turned_rad: 0.0,
@@ -92,7 +98,7 @@ impl CalibrationFilter {
                 drift.watch(self.time_s, parameters, &self.covariance);
             }
         }
-        Some(MeasurementResult { nis, rejected: false, recovery_started, turned_rad })
+        Some(MeasurementResult { nis, innovation, rejected: false, recovery_started, turned_rad })
     }
 
     /// First state, standard deviation and error (computed − reference) of a measurement.
@@ -123,12 +129,13 @@ impl CalibrationFilter {
         found.2.iter().all(|value| value.is_finite()).then_some(found)
     }
 
-    fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<f64> {
+    /// Normalized innovation squared, and the standard deviation of each axis.
+    fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<(f64, [f64; 3])> {
         let s = Matrix3::from_fn(|i, j| {
             self.covariance.at(first + i, first + j) + if i == j { r } else { 0.0 }
         });
         let nis = error.dot(&(s.try_inverse()? * error));
-        nis.is_finite().then_some(nis)
+        nis.is_finite().then(|| (nis, core::array::from_fn(|i| libm::sqrt(s[(i, i)]))))
     }
 
     fn feed_back(

@@ -62,6 +62,7 @@ impl Core {
         if let Some(measured) = measured {
             self.last_measured_tick = self.tick;
             *nis = measured.nis;
+            self.innovation = measured.innovation;
             if measured.rejected {
                 *health |= Health::INNOVATION_REJECTED;
             } else {

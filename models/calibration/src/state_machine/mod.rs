@@ -39,7 +39,9 @@ use judgement::quality_of;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
-use octant_sample::{DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Output, Parameters};
+use octant_sample::{
+    DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, Mode, Output, Parameters,
+};
 use slips::Slips;
 use stretch::Bridge;
 
@@ -119,6 +121,8 @@ pub struct Core {
     /// Covariance of attitude and velocity at the end of the calibration. A statement about the past:
     /// nothing computes with it, and a stored state doesn't have it.
     concluded: Option<SolutionCovariance>,
+    /// Innovation of the last measurement.
+    innovation: Innovation,
     /// Gimbals and stamp of the last output.
     gimbals: Gimbals,
     answered: (u64, DeviceTime),
@@ -199,6 +203,7 @@ impl Core {
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
             concluded: None,
+            innovation: Innovation::default(),
             gimbals: Gimbals::default(),
             answered: Default::default(),
         };
@@ -346,6 +351,12 @@ impl Core {
     #[must_use]
     pub fn concluded(&self) -> Option<&SolutionCovariance> {
         self.concluded.as_ref()
+    }
+
+    /// Innovation of the last measurement; it belongs to the last output where that has a NIS.
+    #[must_use]
+    pub fn innovation(&self) -> &Innovation {
+        &self.innovation
     }
 
     /// Reason why the calibration was refused, if it was.

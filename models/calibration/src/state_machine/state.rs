@@ -106,6 +106,7 @@ impl State for Core {
             last_quality,
             table,
             concluded: _,
+            innovation: _,
             gimbals,
             answered,
         } = self;
