@@ -84,8 +84,7 @@ pub(super) fn beside_program() -> Result<PathBuf, BuildError> {
     let folder = program.parent().unwrap_or(Path::new(""));
     let name = file_name();
     // A test program is itself in `deps`, an example in `examples`.
-    let places =
-        ["", "deps", "../deps", "../lib/octant"].map(|beside| folder.join(beside));
+    let places = ["", "deps", "../deps", "../lib/octant"].map(|beside| folder.join(beside));
     let found = places.iter().map(|place| place.join(&name)).filter(|path| path.is_file());
     // `cargo test` renews only the library in `deps`.
     let newest = found.max_by_key(|path| path.metadata().and_then(|facts| facts.modified()).ok());
