@@ -30,6 +30,12 @@ glibc_at_most() {
   echo "$found"
 }
 
+# in_its_own_process COMMAND...: the program finds itself, and starts itself again.
+in_its_own_process() {
+  "$@" | grep -q 'in its own process' || { echo "FAIL the program doesn't start itself: $*" >&2; return 1; }
+  echo "ok   an FMU in a process of the program's own"
+}
+
 # debian_tree FOLDER ARCHITECTURE VARIANT: Debian 12 in a folder, made once. "extract" unpacks only, for another machine.
 debian_tree() {
   local folder=$1 architecture=$2 variant=$3 include=()
@@ -82,8 +88,7 @@ use_deb() {
   in_chroot "$tree" octant fmu build --out /tmp/fmus >/dev/null
   same ".deb in a Debian 12" "$(hashes_of "$tree/tmp/run" in_chroot "$tree" octant run /usr/share/octant/scenarios/quick.toml \
     "${short[@]}" --out /tmp/run)"
-  # Cases of a campaign are processes of their own.
-  in_chroot "$tree" octant man /tmp/pages >/dev/null
+  in_its_own_process in_chroot "$tree" octant fmu run /tmp/fmus/plant_fmi3.fmu --stop 1
   install_quietly chroot "$tree" dpkg -r octant
   [ "$before" = "$(find "$tree/usr" | sort | sha256sum)" ] || { echo "FAIL files are left after dpkg -r octant" >&2; return 1; }
   echo "ok   .deb removed without a rest"
@@ -110,6 +115,7 @@ print(*process["args"])' "$folder/bundle/config.json")
   started --version
   same "image" "$(hashes_of "$root/work/run" started run /usr/share/octant/scenarios/quick.toml "${short[@]}" --out /work/run)"
   started fmu build --out /work/fmus >/dev/null
+  in_its_own_process started fmu run /work/fmus/plant_fmi3.fmu --stop 1
 }
 
 # use_under_qemu PROGRAM: a program for 64-bit ARM, with the C library of Debian 12.
@@ -122,7 +128,7 @@ use_under_qemu() {
 
 # use_fmus FOLDER: the libraries of three platforms, loaded from the same files and stepped in closed loop.
 use_fmus() {
-  local fmus=$1 zig=("$python" -m ziglang cc -O1 -Wall -I "$work/fmu" -D_FORTIFY_SOURCE=0) source=tests/rigs/fmu/platforms.c
+  local fmus=$1 zig=("$python" -m ziglang cc -O1 -Wall -I "$work/fmu" ) source=tests/rigs/fmu/platforms.c
   local file here arm windows
   for file in "$fmus"/*.fmu; do
     "$own" fmu check "$file" >"$work/check.log" || [ $? = 1 ] && grep -qvi '^error' "$work/check.log" || { cat "$work/check.log" >&2; return 1; }
@@ -175,7 +181,7 @@ use_wheel() {
   cp fixtures/scenarios/quick.toml "$folder/"
   same "octant of the wheel" "$(hashes_of "$folder/run" env -C "$folder" bin/octant run quick.toml "${short[@]}" --out "$folder/run")"
   same "octant.run of the wheel" "$(hashes_of "$folder/python" "$folder/bin/python" -c "$USE_OF_PYTHON" "$folder/quick.toml" "$folder/python")"
-  ls "$folder"/lib/python3*/site-packages/octant/fmus/*.fmu >/dev/null
+  in_its_own_process "$folder/bin/octant" fmu run "$folder"/lib/python3*/site-packages/octant/fmus/plant_fmi3.fmu --stop 1
 }
 
 # use_arm_wheel FILE: unpacked beside a Python for 64-bit ARM, under qemu-user.
