@@ -11,7 +11,7 @@ packed() {
 third_parties() {
   echo "Packages of others in this program, with their licences; their texts are at https://crates.io."
   echo
-  (cd "$1" && cargo tree --locked -p octant -p octant-fmu --features octant/full -e normal --target all --prefix none \
+  (cd "$1" && cargo tree --locked -p octant -p octant-fmu --features octant/full -e normal --prefix none \
     --no-dedupe -f '{p}: {l}') | grep -v '(/' | sed 's/ (proc-macro)//' | LC_ALL=C sort -u
 }
 

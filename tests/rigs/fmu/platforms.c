@@ -26,9 +26,9 @@ struct wire { struct variable from; uint32_t to; };
 #include "wiring.h"
 
 enum { TYPES = 5, VALUES_MAX = 16 };
-static const char TYPE[] = "FIUBE";
+static const char LETTERS[] = "FIUBE";
 static const char *NAME[TYPES] = {"Float64", "Int32", "UInt64", "Boolean", "Int64"};
-static const size_t SIZE[TYPES] = {8, 4, 8, sizeof(bool), 8};
+static const size_t BYTES[TYPES] = {8, 4, 8, sizeof(bool), 8};
 
 typedef void *instance;
 typedef int get_t(instance, const uint32_t *, size_t, void *, size_t);
@@ -89,14 +89,14 @@ static struct unit start(const char *path, const char *token) {
   return unit;
 }
 
-static int type_of(char letter) { return (int)(strchr(TYPE, letter) - TYPE); }
+static int type_of(char letter) { return (int)(strchr(LETTERS, letter) - LETTERS); }
 
 /* Values of a variable; the number of bytes. */
 static size_t get(const struct unit *unit, struct variable of, void *values) {
   int type = type_of(of.type);
   must(of.count <= VALUES_MAX, "a variable of at most 16 elements");
   must(unit->get[type](unit->handle, &of.reference, 1, values, of.count) == 0, "fmi3Get");
-  return of.count * SIZE[type];
+  return of.count * BYTES[type];
 }
 
 static void pass(const struct unit *from, const struct unit *to, const struct wire *wires, size_t count) {
