@@ -13,7 +13,7 @@ pub enum BuildError {
     },
     /// The library isn't where the build puts it.
     #[error(
-        "{name} isn't beside the program in {}: build it with `cargo build --release`, or name one with --library",
+        "{name} is neither beside the program in {} nor in ../lib/octant from there: build it with `cargo build --release`, or name one with --library",
         folder.display()
     )]
     NoLibrary {

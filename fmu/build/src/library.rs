@@ -77,14 +77,14 @@ pub(super) fn file_name() -> String {
     format!("{}octant_fmu{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX)
 }
 
-/// Finds the library that was built with the program: beside it, or in the `deps` folder of the
-/// build.
+/// Finds the library that was built with the program: beside it, in the `deps` folder of the build, or
+/// in the `lib/octant` that an installation has beside its `bin`.
 pub(super) fn beside_program() -> Result<PathBuf, BuildError> {
     let program = std::env::current_exe().map_err(|source| BuildError::Program { source })?;
     let folder = program.parent().unwrap_or(Path::new(""));
     let name = file_name();
     // A test program is itself in `deps`, an example in `examples`.
-    let places = [folder.to_owned(), folder.join("deps"), folder.join("../deps")];
+    let places = ["", "deps", "../deps", "../lib/octant"].map(|beside| folder.join(beside));
     let found = places.iter().map(|place| place.join(&name)).filter(|path| path.is_file());
     // `cargo test` renews only the library in `deps`.
     let newest = found.max_by_key(|path| path.metadata().and_then(|facts| facts.modified()).ok());

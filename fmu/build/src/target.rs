@@ -42,14 +42,16 @@ pub(super) fn library(target: &str) -> Result<PathBuf, BuildError> {
         .ok_or_else(|| failed("cargo made no shared library".to_owned()))
 }
 
-/// Finds the workspace: the current folder, or the one that the program was built in.
+/// Finds the workspace: the current folder, or the one whose `target` the program is in. (The path at
+/// the time of the build would make the program another one in each folder.)
 fn source_tree() -> Result<PathBuf, BuildError> {
     let here = std::env::current_dir().ok();
-    let built = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).map(Path::to_owned);
+    let program = std::env::current_exe().unwrap_or_default();
+    let above = program.ancestors().map(Path::to_owned);
     let is_ours = |folder: &PathBuf| {
         folder.join("fmu/unit/Cargo.toml").is_file() && folder.join("models/calibration").is_dir()
     };
-    here.into_iter().chain(built).find(is_ours).ok_or(BuildError::NoSource)
+    here.into_iter().chain(above).find(is_ours).ok_or(BuildError::NoSource)
 }
 
 fn has_zigbuild(source: &Path) -> bool {
@@ -145,7 +147,7 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        let source = source_tree().unwrap();
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let unknown = standard_library("z80-unknown-cpm", &source).unwrap_err();
         assert!(unknown.contains("knows no target z80-unknown-cpm"), "{unknown}");
         // A target known to the compiler, for which no standard library is ever shipped.

@@ -7,6 +7,7 @@
 //! | [`number`] | numbers as people read them |
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
+//! | [`code`] | the file that this code is in |
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
@@ -15,6 +16,7 @@
 
 pub mod arrow;
 pub mod child;
+pub mod code;
 pub mod control;
 pub mod display;
 pub mod hash;

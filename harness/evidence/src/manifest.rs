@@ -338,11 +338,12 @@ pub fn sha256_of(folder: &Path) -> Result<String, ManifestError> {
     Ok(files::hash(folder, FILE_NAME)?.sha256)
 }
 
-/// Computes the SHA-256 of the running program, hexadecimal; `None` if it can't be read.
+/// Computes the SHA-256 of the file that this code is in, hexadecimal; `None` if it can't be read. It is the
+/// program, or the library that another program has loaded.
 pub fn program_sha256() -> Option<String> {
     // Computed once: the file is large, and stays the same while the program runs.
     static HASH: std::sync::OnceLock<Option<String>> = std::sync::OnceLock::new();
-    let hash = || octant_base::hash::sha256(&std::env::current_exe().ok()?).ok();
+    let hash = || octant_base::hash::sha256(&octant_base::code::file().ok()?).ok();
     HASH.get_or_init(hash).clone()
 }
 

@@ -121,7 +121,7 @@ impl std::fmt::Display for RefusedCommand {
 impl std::error::Error for RefusedCommand {}
 
 /// Prints help, the version, or the error of a command line, as clap does it.
-fn help(told: &clap::Error) -> ExitCode {
+fn help(told: &clap::Error) -> u8 {
     // The style of the program's own errors: fragments without a full stop.
     let text = told.render().to_string();
     let text = text.replace("For more information, try '--help'.", "try --help for all options");
@@ -131,7 +131,7 @@ fn help(told: &clap::Error) -> ExitCode {
         true => std::io::stderr().write_all(styled(&text, &std::io::stderr()).as_bytes()),
         false => std::io::stdout().write_all(styled(&text, &std::io::stdout()).as_bytes()),
     };
-    ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
+    u8::try_from(told.exit_code()).unwrap_or(2)
 }
 
 /// Names this build in the manifests that the process writes.
@@ -147,6 +147,11 @@ pub(crate) fn say_build() {
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {
+    ExitCode::from(status())
+}
+
+/// Runs the program; its exit status as a number.
+pub(crate) fn status() -> u8 {
     say_build();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
@@ -156,7 +161,7 @@ pub fn main() -> ExitCode {
         && let Err(error) = progress::leave_interrupts_to(parent)
     {
         note!("error: failed to follow process {parent}: {error}");
-        return ExitCode::from(Verdict::Error.exit_code());
+        return Verdict::Error.exit_code();
     }
     let outcome = match cli.command {
         Command::New(arguments) => new::command(&arguments),
@@ -188,11 +193,11 @@ pub fn main() -> ExitCode {
         }
     };
     match outcome {
-        Ok(verdict) => ExitCode::from(verdict.exit_code()),
+        Ok(verdict) => verdict.exit_code(),
         Err(failure) => {
             let line = format!("error: {}\n", printable(&failure.message));
             eprint!("{}", styled(&line, &std::io::stderr()));
-            ExitCode::from(failure.status)
+            failure.status
         }
     }
 }

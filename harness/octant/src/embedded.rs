@@ -16,6 +16,12 @@ pub fn say_build() {
     crate::commands::say_build();
 }
 
+/// Runs the program with the arguments of this process; its exit status.
+#[must_use]
+pub fn program() -> u8 {
+    crate::commands::status()
+}
+
 /// Runs a scenario and writes its evidence. `look` is called 50 times a second with the controls of
 /// the methods and twins, and the total that their epochs will count.
 ///

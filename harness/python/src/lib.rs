@@ -5,6 +5,7 @@
 //! campaigns; [`table`] hands tables over in the Arrow C data interface, without a copy. [`request`] runs
 //! scenarios; [`bench`] steps one, with [`parts`] that are Python callables, sample by sample
 //! ([`epoch`]) or in blocks ([`records`]). Errors of the harness become exceptions in [`failure`].
+//! [`program`] is the program `octant` of the wheel, so that its code is there once.
 
 mod bench;
 mod columns;
@@ -12,6 +13,7 @@ mod epoch;
 mod failure;
 mod parquet;
 mod parts;
+mod program;
 mod recording;
 mod records;
 mod request;
