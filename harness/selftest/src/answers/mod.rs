@@ -184,9 +184,12 @@ pub fn cases() -> Vec<SelftestCase> {
             "Values on both sides of limits, a turn between two intervals, a disturbance at rest.",
             known("limits"),
             "docs/scenario.md and the pages of the core, by mpmath (golden/answers.py)",
-            |_| computed(limits::found().and_then(|all| {
-                Ok(all.into_iter().chain(disturbance::found()?).collect())
-            })),
+            |_| {
+                computed(
+                    limits::found()
+                        .and_then(|all| Ok(all.into_iter().chain(disturbance::found()?).collect())),
+                )
+            },
         ),
         case(
             "answers-statistics",
