@@ -69,7 +69,10 @@ fn jumps(all: &mut Found) -> Result<(), String> {
         let still = TurntableRates { rate_radps: 0.0, acceleration_radps2: 0.0 };
         let text = format!("{:?}", black_box(Screen::new(&screening, &noise, &still, 0.005)));
         let limits = super::core::of_field(&text, "limits")?;
-        all.insert(name, limits.get(3).copied().ok_or("find the limits")?);
+        for (gimbals, at) in [("resting", 3), ("moving", 9)] {
+            let limit = limits.get(at).copied().ok_or("find the limits")?;
+            all.insert(format!("{name}, gimbals {gimbals}"), limit);
+        }
     }
     Ok(())
 }
