@@ -2,6 +2,8 @@
 """The tool that changes constants, on a program whose constants are known: one that its answers check, one that they
 don't, and one that is never reached."""
 
+import importlib.machinery
+import importlib.util
 import json
 import pathlib
 import subprocess
@@ -71,6 +73,22 @@ class Tool(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         found = {row["value"]: row["found"] for row in json.loads(out.read_text())["rows"]}
         self.assertEqual(found, {6378137.25: True, 9.780325: False, 1852.75: False})
+
+    def test_what_was_tried_is_kept_for_the_same_program_only(self):
+        loader = importlib.machinery.SourceFileLoader("mutate_constants", str(HERE.parent / "mutate-constants"))
+        spec = importlib.util.spec_from_loader("mutate_constants", loader)
+        tool = importlib.util.module_from_spec(spec)
+        loader.exec_module(tool)
+        path = pathlib.Path(self.folder.name) / "kept.partial"
+        constant = {"offsets": [4711]}
+        tool.Kept(path, "first").put("answers", constant, 2.5, (1, "answers-earth", None))
+        with open(path, "a") as file:
+            file.write('\n{"key": "first", "offs')
+        self.assertEqual(tool.Kept(path, "first").get("answers", constant, 2.5), (1, "answers-earth", None))
+        self.assertIsNone(tool.Kept(path, "first").get("answers", constant, 2.6))
+        self.assertIsNone(tool.Kept(path, "second").get("answers", constant, 2.5))
+        tool.Kept(path, "first").done()
+        self.assertFalse(path.exists())
 
     def test_what_only_rounds_otherwise_shows_nothing_else(self):
         words = shown.words_of('{"max": 0.25, "at": "2026-11-23T07:00:00Z", "hash": "0123456789abcdef01"}')

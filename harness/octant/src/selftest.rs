@@ -12,6 +12,7 @@ use octant_selftest::judge::CaseVerdict;
 use octant_selftest::record::{CaseRecord, FILE_NAME, SelftestRecord, write};
 use octant_selftest::{answers, cases, run};
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::SystemTime;
 
 #[derive(Debug, Args)]
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     /// Number of parallel cases; by default the number of processors.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
+    /// End with the first case that doesn't pass
+    #[arg(long)]
+    fail_fast: bool,
     /// Print selftest.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -61,6 +65,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             progress.done += 1;
             progress.message = case.id.to_string();
         });
+        if arguments.fail_fast && case.verdict != CaseVerdict::Pass {
+            // Cases that have begun are ended as by an interrupt.
+            interrupt::flag().store(true, Ordering::Relaxed);
+        }
         if case.verdict == CaseVerdict::Alarm {
             bar.note(&format!("ALARM: {}: {}", case.id, case.found));
         }

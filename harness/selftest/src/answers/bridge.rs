@@ -4,9 +4,9 @@
 use super::numbers::Found;
 use crate::judge::Known;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use octant_calibration::Core;
+use octant_calibration::{Core, CoreConfig};
 use octant_plant::Plant;
-use octant_sample::{GimbalCommand, Output};
+use octant_sample::{GimbalCommand, Output, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
@@ -61,18 +61,24 @@ pub(super) fn found() -> Result<Found, String> {
 }
 
 /// Core with the table that it turns.
-struct Bench {
+pub(super) struct Bench {
     plant: Plant,
-    core: Core,
+    pub(super) core: Core,
     output: Output,
 }
 
 impl Bench {
     fn new() -> Result<Self, String> {
+        Self::with(|_| ())
+    }
+
+    /// Makes one whose core is configured otherwise.
+    pub(super) fn with(change: impl Fn(&mut CoreConfig)) -> Result<Self, String> {
         let scenario = Scenario::parse(SCENARIO, "bridge.toml", Path::new("."), &[])
             .map_err(|why| why.to_string())?;
-        let (plant, core, _) =
+        let (plant, mut core, _) =
             configurations(&scenario, Method::Primary, 1).map_err(|why| why.to_string())?;
+        change(&mut core);
         let plant = Plant::new(&plant).map_err(|why| why.to_string())?;
         let core = Core::new(&core).map_err(|why| why.to_string())?;
         Ok(Self { plant, core, output: Output::default() })
@@ -82,8 +88,14 @@ impl Bench {
         self.output.gimbal_command
     }
 
-    fn step(&mut self) {
-        let step = self.plant.step(&self.command());
+    pub(super) fn step(&mut self) {
+        self.step_with(|_| ());
+    }
+
+    /// Makes a step with a sample that is changed on its way to the core.
+    pub(super) fn step_with(&mut self, change: impl Fn(&mut Sample)) {
+        let mut step = self.plant.step(&self.command());
+        change(&mut step.sample);
         self.output = self.core.step(&step.sample, step.aiding.as_ref());
     }
 

@@ -58,7 +58,7 @@ fn bands(all: &mut Found) {
 
 /// Extracts the numbers of a field from its `Debug` text: limits aren't exposed otherwise, and
 /// needn't be.
-fn of_field(text: &str, field: &str) -> Result<Vec<f64>, String> {
+pub(super) fn of_field(text: &str, field: &str) -> Result<Vec<f64>, String> {
     let missing = || format!("find {field} in {text}");
     let at = text.find(&format!(" {field}: ")).ok_or_else(missing)?;
     let rest = &text[at + field.len() + 3..];

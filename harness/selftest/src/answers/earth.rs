@@ -3,6 +3,7 @@
 use super::numbers::Found;
 use octant_earth::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::frames::case_of_phi;
 use octant_earth::rotation;
 use octant_earth::units::{DEG, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR};
 use octant_score::reference::{isotropic_g_sigma, vertical_drift};
@@ -58,6 +59,12 @@ pub(super) fn found() -> Found {
         for (axis, part, angle) in [("x", q.i, back.x), ("y", q.j, back.y), ("z", q.k, back.z)] {
             all.insert(format!("quaternion {axis}, {name}"), part);
             all.insert(format!("rotation vector {axis}, {name}"), angle);
+        }
+    }
+    let to_case = case_of_phi(black_box(0.7), black_box(0.4));
+    for (row, angle) in ["heading", "pitch", "roll"].into_iter().enumerate() {
+        for (column, axis) in ["north", "east", "down"].into_iter().enumerate() {
+            all.insert(format!("{angle} by phi {axis}"), to_case[(row, column)]);
         }
     }
     all

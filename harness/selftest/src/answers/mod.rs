@@ -9,10 +9,12 @@ mod bridge;
 mod campaign;
 mod core;
 mod defaults;
+mod disturbance;
 mod draws;
 mod earth;
 mod errors;
 mod faults;
+mod limits;
 mod more;
 mod navigation;
 mod numbers;
@@ -176,6 +178,18 @@ pub fn cases() -> Vec<SelftestCase> {
             known("recovery"),
             "the table of docs/method.md (golden/answers.py)",
             |_| computed(recovery::found()),
+        ),
+        case(
+            "answers-limits",
+            "Values on both sides of limits, a turn between two intervals, a disturbance at rest.",
+            known("limits"),
+            "docs/scenario.md and the pages of the core, by mpmath (golden/answers.py)",
+            |_| {
+                computed(
+                    limits::found()
+                        .and_then(|all| Ok(all.into_iter().chain(disturbance::found()?).collect())),
+                )
+            },
         ),
         case(
             "answers-statistics",

@@ -40,6 +40,11 @@ pub(super) fn found() -> Result<Found, String> {
     all.insert("farthest position".to_owned(), farthest(1e6, position_is_followed)?);
     stages(&mut all)?;
     all.insert("age of the checkpoint".to_owned(), checkpoint_age()?);
+    let text = format!("{:?}", Bench::new(AidingMode::Velocity { sigma_mps: 1.0 }).filter);
+    for (name, field) in [("spacing", "spacing_s"), ("time of the first", "next_s")] {
+        let time_s = super::core::of_field(&text, field)?[0];
+        all.insert(format!("{name} of the marks of the drift test"), time_s);
+    }
     Ok(all)
 }
 
@@ -85,7 +90,12 @@ impl Bench {
             refuse_above_mean_nis: 9.0,
         };
         let gate = Gate { nis: 36.0, rejections: REJECTIONS, recovery: Recovery::Widening };
-        let screening = Screening { gate: Some(gate), checkpoints: true, ..Screening::none() };
+        let screening = Screening {
+            gate: Some(gate),
+            checkpoints: true,
+            drift_sigmas: Some(6.0),
+            ..Screening::none()
+        };
         let noise = Noise { angle_random_walk: 2e-7, velocity_random_walk: 5e-4 };
         let parameters = Parameters::default();
         let filter =
