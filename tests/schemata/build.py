@@ -88,9 +88,9 @@ class Build:
                 return out
             blamed = set()
             for message, places in errors:
-                for file in dict.fromkeys(file for file, _, _ in places):
+                for file in dict.fromkeys(file for file, _, _ in places if file in self.regions):
                     spans = [(start, end) for of, start, end in places if of == file]
-                    numbers = rewrite.blamed(self.regions.get(file, []), spans)
+                    numbers = rewrite.blamed(self.regions[file], spans, self.written[file])
                     if numbers:
                         blamed.update(numbers)
                         break

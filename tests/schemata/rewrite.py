@@ -147,8 +147,9 @@ def write(out, regions, source, start, end, places):
     out += source[at:end]
 
 
-def blamed(regions, spans):
-    """Numbers of the mutants that an error of the compiler is about: the smallest region around one of its spans."""
+def blamed(regions, spans, text):
+    """Numbers of the mutants that an error of the compiler is about: the smallest region around one of its spans, or
+    those inside of it, or those of the function."""
     for start, end in spans:
         around = [region for region in regions if region.start <= start and end <= region.end]
         if around:
@@ -157,4 +158,10 @@ def blamed(regions, spans):
         touched = [region for region in regions if region.start < end and start < region.end]
         if touched:
             return sorted({number for region in touched for number in region.numbers})
+    tree = PARSER.parse(text)
+    for start, end in spans:
+        function = enclosing(tree.root_node.descendant_for_byte_range(start, end), {"function_item"})
+        inside = [region for region in regions if function and function.start_byte <= region.start < function.end_byte]
+        if inside:
+            return sorted({number for region in inside for number in region.numbers})
     return []

@@ -136,10 +136,12 @@ class Rewriting(unittest.TestCase):
         pairs = list(enumerate(one for one, _ in MUTANTS))
         text, regions, _ = rewrite.rewritten(SOURCE.encode(), pairs)
         at = text.index(b"a - b + c")
-        self.assertEqual(rewrite.blamed(regions, [(at, at + 1)]), [2])
-        self.assertEqual(rewrite.blamed(regions, [(0, 3)]), [])
+        self.assertEqual(rewrite.blamed(regions, [(at, at + 1)], text), [2])
+        self.assertEqual(rewrite.blamed(regions, [(0, 3)], text), [])
         whole = text.index(b"(if crate::mutant::on(2)")
-        self.assertEqual(rewrite.blamed(regions, [(whole, whole + 1)]), [2, 3])
+        self.assertEqual(rewrite.blamed(regions, [(whole, whole + 1)], text), [2, 3])
+        signature = text.index(b"-> Pair")
+        self.assertEqual(rewrite.blamed(regions, [(signature, signature + 7)], text), [11, 12])
 
 
 class Compiled(unittest.TestCase):
