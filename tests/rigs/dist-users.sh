@@ -110,7 +110,9 @@ assert process["user"]["uid"] == 1000 and process["cwd"] == "/work", process
 print(*process["args"])' "$folder/bundle/config.json")
   # No shell and no env are in it: chroot starts the program itself.
   started() {
-    unshare --mount --pid --fork --mount-proc="$root/proc" chroot --userspec=1000:1000 "$root" "$entry" "$@"
+    # An engine gives /proc and /dev.
+    unshare --mount --pid --fork --mount-proc="$root/proc" sh -c 'mount --rbind /dev "$0/dev" && exec chroot --userspec=1000:1000 "$0" "$@"' \
+      "$root" "$entry" "$@"
   }
   started --version
   same "image" "$(hashes_of "$root/work/run" started run /usr/share/octant/scenarios/quick.toml "${short[@]}" --out /work/run)"
