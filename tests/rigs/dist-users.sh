@@ -44,6 +44,7 @@ debian_tree() {
   [ "$(id -u)" = 0 ] || skip "a Debian in a folder needs root"
   [ "$variant" != extract ] || include=(--include=python3,libpython3-stdlib)
   rm -rf "$folder" "$folder.partial"
+  mkdir -p "$(dirname "$folder")"
   install_quietly mmdebstrap --mode=root --variant="$variant" --arch="$architecture" "${include[@]}" bookworm "$folder.partial" \
     || skip "Debian 12 ($architecture) can't be fetched here"
   mv "$folder.partial" "$folder"
