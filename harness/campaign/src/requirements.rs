@@ -100,3 +100,21 @@ pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
     };
     requirements.requirements.iter().filter_map(of).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn a_limit_on_one_side_of_a_sign_is_refused_at_its_line() {
+        let text = "schema = 1\ntitle = \"Short\"\n\n[[requirements]]\nid = \"NAV-1\"\ntext = \"No drift.\"\n\
+                    measure = \"navigation.latitude_error_arcmin.final\"\nlimit = \"10 arcmin\"\n";
+        let requirements = read(text, "short.toml", &Measures).unwrap();
+        let problems = one_sided(&requirements, text);
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        assert_eq!((problems[0].line, problems[0].column), (7, 11));
+        assert_eq!(problems[0].path, "requirements.NAV-1.measure");
+    }
+}

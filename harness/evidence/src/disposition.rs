@@ -239,4 +239,10 @@ mod tests {
             assert_eq!(table["a"].as_str(), Some(text));
         }
     }
+
+    #[test]
+    fn an_error_names_its_line() {
+        let error = parse("schema = 1\n\n[[discrepancies]]\nid = 3\n").expect_err("id is a text");
+        assert!(error.starts_with("line 4: "), "{error}");
+    }
 }

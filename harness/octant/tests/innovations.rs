@@ -57,7 +57,7 @@ fn innovations_of_a_run_fit_their_nis_and_what_the_filter_expects() {
     let rows = std::fs::read_to_string(folder.path().join("tables/innovations.csv")).unwrap();
     let mut lines = rows.lines().filter(|line| !line.starts_with('#'));
     let head: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let east = head.iter().position(|name| name.starts_with("sigma_velocity_east")).unwrap();
+    let east = head.iter().position(|name| *name == "velocity_east_sigma_mps").unwrap();
     let first: f64 = lines.next().unwrap().split(',').nth(east).unwrap().parse().unwrap();
     assert_eq!(first.to_bits(), all[0].1.sigma[1].to_bits());
     assert_eq!(lines.count() + 1, all.len());

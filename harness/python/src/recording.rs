@@ -205,7 +205,7 @@ impl Topics {
             for (axis, direction) in ["north", "east", "down"].into_iter().enumerate() {
                 let value = |i: &Innovation| (i.value[axis], i.sigma[axis]);
                 let pairs = each(&all, |o| found(o).map_or((f64::NAN, f64::NAN), value));
-                let column = |kind| format!("{kind}_{name}_{direction}");
+                let column = |kind| format!("{name}_{direction}_{kind}");
                 columns.numbers(&column("innovation"), unit, each(&pairs, |p| p.0));
                 columns.numbers(&column("sigma"), unit, each(&pairs, |p| p.1));
             }

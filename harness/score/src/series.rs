@@ -121,4 +121,17 @@ mod tests {
         }
         assert_eq!(series.points().len(), 100);
     }
+
+    #[test]
+    fn extremes_of_every_bucket_survive_its_merging() {
+        // The first merge comes with the next point after the last bucket.
+        for extreme in [0, 1, 250, 251, BUCKETS_MAX - 2, BUCKETS_MAX - 1] {
+            let mut series = Series::new();
+            for k in 0..=BUCKETS_MAX {
+                let latitude = if k == extreme { 5.0 } else { 0.0 };
+                series.push([k as f64, latitude, 0.0]);
+            }
+            assert!(series.points().contains(&[extreme as f64, 5.0, 0.0]), "{extreme}");
+        }
+    }
 }
