@@ -1,4 +1,4 @@
-//! What the filter is opened by for a turn of the gyros that the base at rest didn't make.
+//! Widening of the filter's covariance by a turn that the gyros show and the base at rest didn't make.
 
 use super::bridge::Bench;
 use super::numbers::{Found, input};
