@@ -216,6 +216,33 @@ mod tests {
         finished(&path, "one");
     }
 
+    /// A run that is whole takes its name only where the name is free.
+    #[test]
+    fn a_whole_run_never_takes_the_place_of_a_finished_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("RUN");
+        let run = RunFolder::create(&path, Existing::Refuse).unwrap();
+        fs::write(run.path().join("manifest.json"), "whole").unwrap();
+        fs::remove_file(run.path().join(LOCK)).unwrap();
+        let partial = run.path().to_owned();
+        drop(run);
+        fs::create_dir(&path).unwrap();
+        let error = RunFolder::clear_partial(&partial, &path, Existing::Refuse).unwrap_err();
+        assert!(matches!(error, FolderError::Unfinished { .. }), "{error}");
+        assert_eq!(fs::read_to_string(partial.join("manifest.json")).unwrap(), "whole");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_lock_that_cannot_be_opened_is_no_missing_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let partial = folder.path().join("RUN.partial");
+        fs::create_dir(&partial).unwrap();
+        std::os::unix::fs::symlink(LOCK, partial.join(LOCK)).unwrap();
+        let error = RunFolder::create(&folder.path().join("RUN"), Existing::Replace).unwrap_err();
+        assert!(matches!(error, FolderError::System { action: "open", .. }), "{error}");
+    }
+
     /// Covers every state that a kill can leave: the next run starts, and only that run is there
     /// afterwards.
     #[test]

@@ -387,6 +387,32 @@ mod tests {
     }
 
     #[test]
+    fn a_report_shows_where_a_run_comes_from() {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = Manifest::write(folder.path(), &facts()).unwrap();
+        let entries = manifest.entries();
+        let names: Vec<&str> = entries.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "octant",
+                "numerics version",
+                "source revision",
+                "compiler",
+                "host",
+                "operator",
+                "started",
+                "ended",
+                "signature"
+            ]
+        );
+        let value = |name: &str| entries.iter().find(|(n, _)| n == name).unwrap().1.as_str();
+        assert_eq!(value("octant"), env!("CARGO_PKG_VERSION"));
+        assert_eq!(value("ended"), "1970-01-02T00:00:00.250Z");
+        assert_eq!(value("signature"), "unsigned");
+    }
+
+    #[test]
     fn a_manifest_has_the_hashes_and_finds_every_change() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("a.txt"), "abc").unwrap();

@@ -88,4 +88,5 @@ mod turntable;
 mod turntable_panic;
 mod verdict;
 mod verdict_algebra;
+mod verdict_edges;
 mod watch;

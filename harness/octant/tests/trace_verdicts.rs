@@ -59,24 +59,33 @@ fn case_files(out: &Path) -> Vec<PathBuf> {
     all
 }
 
+/// Returns the row of a requirement in a trace.
+fn row_of<'a>(traced: &'a Value, id: &str) -> &'a Value {
+    let rows = traced["requirements"].as_array().unwrap();
+    rows.iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("{id} isn't there"))
+}
+
 /// Returns the verdict of a requirement in a trace.
 fn verdict_of<'a>(traced: &'a Value, id: &str) -> &'a Value {
-    let rows = traced["requirements"].as_array().unwrap();
-    &rows.iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("{id} isn't there"))["verdict"]
+    &row_of(traced, id)["verdict"]
 }
 
 /// Lowers the ensemble's requirement so that two draws can show it.
-fn modest(bench: &Bench) {
+fn lower(bench: &Bench, pass: &str) {
     let path = bench.at("requirements.toml");
     let text = std::fs::read_to_string(&path).unwrap();
-    let modest = text.replace("\"80 %\"", "\"20 %\"").replace("\"90 %\"", "\"80 %\"");
+    let modest = text.replace("\"80 %\"", &format!("{pass:?}")).replace("\"90 %\"", "\"80 %\"");
     assert_ne!(text, modest);
     std::fs::write(path, modest).unwrap();
 }
 
 fn modest_and_filled(change: Change) -> (Bench, Plan, PathBuf) {
+    demanding("20 %", change)
+}
+
+fn demanding(pass: &str, change: Change) -> (Bench, Plan, PathBuf) {
     let bench = Bench::new(&CAMPAIGN.replace("replicates = 40", "replicates = 2"));
-    modest(&bench);
+    lower(&bench, pass);
     bench.fill(change)
 }
 
@@ -149,6 +158,32 @@ fn what_is_wrong_beside_all_requirements_is_told_everywhere() {
     assert!(said.contains("apart from requirements: inconclusive"), "{said}");
 }
 
+/// A failure in a case that shows nothing isn't one of the failures that an ensemble may have.
+#[test]
+fn a_failure_without_evidence_is_no_failure_that_an_ensemble_may_have() {
+    let failed: Change = |index, _, result| {
+        if index == 1 {
+            check(result, "NAV-1", 11.0, 10.0);
+        }
+    };
+    let (bench, ..) = demanding("10 %", failed);
+    let traced = agree(&bench, 0, "pass");
+    assert_eq!(verdict_of(&traced, "NAV-1"), "pass");
+    assert_eq!(row_of(&traced, "NAV-1")["counts"]["fail"], 1);
+
+    let (bench, ..) = demanding("10 %", |index, _, result| {
+        if index == 1 {
+            check(result, "NAV-1", 11.0, 10.0);
+            let mut receipt = TEMPLATE["summary"]["faults"][0].clone();
+            receipt["fired"] = false.into();
+            result["summary"]["faults"] = json!([receipt]);
+        }
+    });
+    let traced = agree(&bench, 3, "inconclusive");
+    let counts = &row_of(&traced, "NAV-1")["counts"];
+    assert_eq!((&counts["fail"], &counts["inconclusive"]), (&json!(0), &json!(1)), "{counts}");
+}
+
 /// A campaign that names no file of requirements checks those of its scenarios.
 #[test]
 fn requirements_of_scenarios_alone_are_traced() {
@@ -179,4 +214,5 @@ fn requirements_of_scenarios_alone_are_traced() {
     });
     let traced = agree(&bench, 3, "inconclusive");
     assert_eq!(traced["requirements"], json!([]));
+    assert_eq!(traced["besides"], "inconclusive");
 }

@@ -215,6 +215,8 @@ mod tests {
         assert_eq!(schuler, latitude);
         // Measures without a position as reference don't get a band.
         assert_eq!(uncertainty("calibration.nis_mean"), 0.0);
+        assert_eq!(uncertainty("navigation.duration_h"), 0.0);
+        assert_eq!(uncertainty("baseline.navigation.slope_window.hours"), 0.0);
         assert_eq!(uncertainty("counterfactual.navigation.radial_max_nmi"), 0.0);
     }
 

@@ -1,5 +1,6 @@
 //! Comparison of two methods on the same instruments with the same noise: `octant compare`.
 
+pub use super::claim::{CLAIM, Claim, interval, percent};
 use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
 use super::summary::NavigationScore;
@@ -11,9 +12,6 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the schema of `compare.json`.
 pub const SCHEMA: u32 = 1;
-
-/// Improvement of the published claim, 1.
-pub const CLAIM: f64 = 0.5;
 
 /// Largest errors of one navigation, arcmin and m/s; a mark that the run did not reach is null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -293,42 +291,6 @@ pub struct MeasureCell {
     pub claim: Claim,
 }
 
-/// Verdict of a comparison on the claim that the second method is more than 50 % better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Claim {
-    /// The whole interval of improvement is above 50 %.
-    Holds,
-    /// The improvement in these runs is more than 50 %, but the interval reaches below.
-    Likely,
-    /// The improvement is significant and at most 50 % in these runs, but the interval reaches above.
-    Better,
-    /// The improvement is significant and below 50 %: the whole interval lies between.
-    BetterByLess,
-    /// The interval includes 0: the result is inconclusive.
-    NotShown,
-    /// The second method is significantly worse.
-    Worse,
-}
-
-impl Claim {
-    fn of(i: &Improvement) -> Self {
-        if i.high < 0.0 {
-            Self::Worse
-        } else if i.low <= 0.0 {
-            Self::NotShown
-        } else if i.low > CLAIM {
-            Self::Holds
-        } else if i.value > CLAIM {
-            Self::Likely
-        } else if i.high > CLAIM {
-            Self::Better
-        } else {
-            Self::BetterByLess
-        }
-    }
-}
-
 /// Comparison of two methods.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodComparison {
@@ -398,18 +360,6 @@ fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<
             .map(|f| if measure.is_longitude() { f.longitude_arcmin } else { f.latitude_arcmin }),
         claim: Claim::of(&improvement),
     })
-}
-
-/// Text of an interval, `[−14 %, 1 %]`.
-#[must_use]
-pub fn interval(i: &Improvement) -> String {
-    format!("[{} %, {} %]", percent(i.low), percent(i.high))
-}
-
-/// Text of a fraction in whole per cent, with a true minus sign.
-#[must_use]
-pub fn percent(fraction: f64) -> String {
-    octant_base::number::fixed(100.0 * fraction, 0)
 }
 
 /// Text of the verdict and its reasons.
@@ -494,4 +444,43 @@ fn words(
 /// True if the second method is within a factor of 2 of the random walk.
 fn near_floor(cell: &MeasureCell) -> bool {
     cell.floor.is_some_and(|floor| cell.second < 2.0 * floor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The longitude errors of a method, the same in every pair.
+    fn told(pairs: u64, second: f64, floor: f64) -> String {
+        let run = |seed| PairedRun {
+            seed,
+            first: Maxima {
+                longitude_24h: Some(second - 0.5 + (seed % 3) as f64 * 0.5),
+                ..Maxima::default()
+            },
+            second: Maxima { longitude_24h: Some(second), ..Maxima::default() },
+            first_refused: None,
+            second_refused: None,
+        };
+        let runs: Vec<PairedRun> = (0..pairs).map(run).collect();
+        let floor = MaximumFloor { hours: 24.0, latitude_arcmin: floor, longitude_arcmin: floor };
+        compare("s", "six", "eight", &runs, &[floor]).words.join("; ")
+    }
+
+    #[test]
+    fn the_random_walk_hides_what_is_within_twice_of_it() {
+        let hidden = "the random walk hides it";
+        assert!(told(21, 7.9, 4.0).contains(hidden), "{}", told(21, 7.9, 4.0));
+        assert!(!told(21, 8.1, 4.0).contains(hidden));
+        assert!(told(21, 1.99, 1.0).contains(hidden));
+        assert!(!told(21, 2.5, 1.0).contains(hidden));
+    }
+
+    #[test]
+    fn fewer_than_twenty_pairs_are_told_as_few() {
+        let few = "seeds leave a sampling error";
+        assert!(told(18, 4.0, 1.0).contains(few));
+        assert!(!told(20, 4.0, 1.0).contains(few));
+        assert!(!told(21, 4.0, 1.0).contains(few));
+    }
 }

@@ -373,4 +373,37 @@ mod tests {
         let c = compare((&faulted, &stuck), (&twin, &[]), None);
         assert_eq!(c.faults[0].noticed_by, None);
     }
+
+    /// At 60° WGS 84 has M = 6 383 454 m and N = 6 394 209 m (NIMA TR8350.2, 3rd edition, by its formulas).
+    #[test]
+    fn a_difference_of_position_is_measured_on_the_ellipsoid() {
+        let navigation: NavigationScore = serde_json::from_value(serde_json::json!({
+            "duration_h": 1.0, "height": "held", "slope_window": null, "marks": {}, "series_hours": [],
+            "latitude_error_arcmin": { "max": 0.0, "rms": 0.0, "final": 0.0, "slope_per_day": null },
+            "longitude_error_arcmin": { "max": 0.0, "rms": 0.0, "final": 0.0, "slope_per_day": null },
+            "radial_error_nmi": { "max": 0.25, "rms": 0.0, "final": 0.0, "rate_per_h": 0.0 },
+        }))
+        .unwrap();
+        let calibration = calibration(1.0, None);
+        let between = |latitude_rad: f64, longitude_rad: f64| {
+            let (mut here, mut there) = (RunTrace::new(), RunTrace::new());
+            (here.navigation_begins(), there.navigation_begins());
+            here.drift(60.0, latitude_rad + 1e-4, longitude_rad);
+            there.drift(60.0, 1e-4, 0.0);
+            let [faulted, twin] = [&here, &there].map(|trace| CounterfactualSide {
+                navigation: Some(&navigation),
+                ..side(&calibration, &[], trace)
+            });
+            difference(&faulted, &twin, std::f64::consts::FRAC_PI_3, 0.0).unwrap()
+        };
+        let near = |found: f64, expected: f64| {
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found}, expected {expected}");
+        };
+        let north = between(-1e-3, 0.0);
+        near(north.radial_max_nmi, 6_383.453_86 / 1852.0);
+        near(north.latitude_max_arcmin, 3.437_746_770_784_939);
+        let east = between(0.0, 1e-3);
+        near(east.radial_max_nmi, 3_197.104_58 / 1852.0);
+        assert_eq!((east.latitude_max_arcmin, east.twin_radial_max_nmi), (0.0, 0.25));
+    }
 }

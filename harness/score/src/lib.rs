@@ -16,6 +16,7 @@
 pub mod alignment;
 pub mod attitude;
 mod calibration;
+mod claim;
 pub mod compare;
 pub mod counterfactual;
 pub mod drift;

@@ -160,6 +160,11 @@ fn paired_differences() {
     let many = &golden()["wilcoxon_many"];
     assert_near(paired::wilcoxon(&numbers(&many["differences"])), number(&many["p"]), 1e-9);
     assert_eq!(paired::wilcoxon(&[0.0, 0.0]), 1.0);
+    // The largest number of differences with the exact distribution: the number of subsets of the ranks up to a sum,
+    // counted in whole numbers. The normal approximation would give 0.01856.
+    let signed = |k: i32| f64::from(if matches!(k % 5, 0 | 3) { -k } else { k });
+    let differences: Vec<f64> = (1..=200).map(signed).collect();
+    assert_near(paired::wilcoxon(&differences), 0.018_330_701_271_282_6, 1e-11);
 }
 
 #[test]
