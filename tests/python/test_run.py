@@ -86,29 +86,6 @@ def test_ctrl_c_ends_the_run_in_order(tmp_path):
     assert (tmp_path / "a.partial" / "summary.json").is_file()
 
 
-def test_a_scenario_makes_a_round_trip(lockstep, tmp_path):
-    scenario = octant.Scenario.load(lockstep)
-    again = octant.Scenario.from_toml(scenario.to_toml())
-    assert dict(again) == dict(scenario)
-    scenario.save(tmp_path / "copy.toml")
-    run = octant.run(scenario, out=tmp_path / "a", progress=False)
-    copy = octant.run(tmp_path / "copy.toml", out=tmp_path / "b", progress=False)
-    assert run.stream_hash == copy.stream_hash
-
-
-@pytest.mark.parametrize("name", sorted(path.name for path in SCENARIOS.glob("*.toml")))
-def test_shipped_scenarios_make_a_round_trip(name):
-    scenario = octant.Scenario.load(SCENARIOS / name)
-    assert octant.Scenario.from_toml(scenario.to_toml()) == scenario
-
-
-def test_a_scenario_is_checked_by_name(lockstep):
-    scenario = octant.Scenario.load(lockstep)
-    scenario["imu.angle_random_wlk"] = "0 deg/sqrt(h)"
-    with pytest.raises(octant.InputError, match="angle_random_walk"):
-        scenario.check()
-
-
 def test_observability_is_predicted():
     (first, *_) = octant.observe(SCENARIOS / "quick.toml")
     assert first["rank"] == 12 and first["rank_with_vertical"] == 13

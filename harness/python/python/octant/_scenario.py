@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import os
 from collections.abc import Iterator, Mapping, MutableMapping
+from functools import cache
 from pathlib import Path
 from typing import Any, Union
 
@@ -36,27 +38,53 @@ def overrides(changes: Mapping[str, Any] | None, keywords: Mapping[str, Any]) ->
 class Section(MutableMapping[str, Any]):
     """A table of a scenario. Keys are attributes and items alike.
 
-    A key that the scenario doesn't have yet can be set; the harness refuses it by name when the
-    scenario is checked, if there is no such key.
+    Attributes are those of the program's schema: a table that isn't there yet is empty, and comes to be with
+    its first key; a key that no scenario has is refused where it is set. Values are looked at by
+    :meth:`Scenario.check`.
     """
 
-    __slots__ = ("_keys",)
+    __slots__ = ("_keys", "_name", "_node", "_parent")
 
-    def __init__(self, keys: dict[str, Any]) -> None:
-        object.__setattr__(self, "_keys", keys)
+    def __init__(
+        self,
+        keys: dict[str, Any],
+        node: Mapping[str, Any] | None = None,
+        name: str = "",
+        parent: Section | None = None,
+    ) -> None:
+        for slot, value in (("_keys", keys), ("_node", node), ("_name", name), ("_parent", parent)):
+            object.__setattr__(self, slot, value)
 
     def __getitem__(self, key: str) -> Any:
-        at, name = self._at(key, make=False)
-        value = at[name]
-        return Section(value) if isinstance(value, dict) else value
+        first, _, rest = key.partition(".")
+        value = self._keys[first]
+        if isinstance(value, dict):
+            value = Section(value, self._inner(first), self._path(first))
+        elif rest:
+            raise KeyError(key)
+        return value[rest] if rest else value
 
     def __setitem__(self, key: str, value: Any) -> None:
-        at, name = self._at(key, make=True)
-        at[name] = _plain(value)
+        first, _, rest = key.partition(".")
+        self._known(first)
+        if rest:
+            at = self[first] if first in self._keys else self._empty(first)
+            if not isinstance(at, Section):
+                raise InputError(f"{self._path(first)} is {at!r}, a table is needed for {self._path(key)}")
+            at[rest] = value
+            return
+        self._attach()
+        self._keys[first] = _plain(value)
 
     def __delitem__(self, key: str) -> None:
-        at, name = self._at(key, make=False)
-        del at[name]
+        first, _, rest = key.partition(".")
+        if rest:
+            at = self[first]
+            if not isinstance(at, Section):
+                raise KeyError(key)
+            del at[rest]
+        else:
+            del self._keys[first]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._keys)
@@ -67,26 +95,82 @@ class Section(MutableMapping[str, Any]):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
-        try:
+        if name in self._keys:
             return self[name]
-        except KeyError:
-            raise AttributeError(f"the scenario has no {name!r} here: it has {', '.join(self)}") from None
+        node = self._inner(name)
+        if node is not None and "properties" in node:
+            return self._empty(name)
+        if node is not None:
+            left_out = f": by default it is {node['default']!r}" if "default" in node else ""
+            raise AttributeError(f"the scenario has no {self._path(name)}{left_out}")
+        raise AttributeError(self._unknown(name))
 
     def __setattr__(self, name: str, value: Any) -> None:
         self[name] = value
 
+    def __delattr__(self, name: str) -> None:
+        if name not in self._keys:
+            raise AttributeError(f"the scenario has no {self._path(name)}")
+        del self[name]
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._keys, *self._properties()})
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self._keys!r})"
 
-    def _at(self, key: str, *, make: bool) -> tuple[dict[str, Any], str]:
-        """Find the table of a dotted key, and its last name."""
-        *path, name = key.split(".")
-        at = self._keys
-        for part in path:
-            at = at.setdefault(part, {}) if make else at[part]
-            if not isinstance(at, dict):
-                raise KeyError(key)
-        return at, name
+    def describe(self, key: str = "") -> str:
+        """Meaning of a key, what it takes, and its default, in a line; of the table itself without a key.
+
+        Raises
+        ------
+        InputError
+            If there is no such key.
+        """
+        node = self._node
+        name = self._name
+        for part in key.split(".") if key else []:
+            table = Section({}, node, name)
+            table._known(part)
+            node, name = table._inner(part), table._path(part)
+        if node is None:
+            return f"{name}: free"
+        default = f" Default: {json.dumps(node['default'], ensure_ascii=False)}." if "default" in node else ""
+        return f"{name or 'scenario'}: {node.get('description', node.get('title', ''))}{default}"
+
+    def _path(self, name: str) -> str:
+        return f"{self._name}.{name}" if self._name else name
+
+    def _properties(self) -> Mapping[str, Any]:
+        return (self._node or {}).get("properties", {})
+
+    def _inner(self, name: str) -> Mapping[str, Any] | None:
+        return self._properties().get(name)
+
+    def _empty(self, name: str) -> Section:
+        """A table that comes to be with its first key."""
+        return Section({}, self._inner(name), self._path(name), self)
+
+    def _attach(self) -> None:
+        """Put a table that was empty into the one around it."""
+        parent = self._parent
+        if parent is not None:
+            parent._attach()
+            # Another one of this name may have been first.
+            keys = parent._keys.setdefault(self._name.rpartition(".")[2], self._keys)
+            object.__setattr__(self, "_keys", keys)
+            object.__setattr__(self, "_parent", None)
+
+    def _known(self, name: str) -> None:
+        """Refuse a key that the schema doesn't have, where it has any."""
+        if self._node is not None and "properties" in self._node and name not in self._properties():
+            raise InputError(self._unknown(name))
+
+    def _unknown(self, name: str) -> str:
+        known = sorted(self._properties())
+        near = difflib.get_close_matches(name, known, n=1)
+        meant = f"did you mean {self._path(near[0])}? " if near else ""
+        return f"no scenario has the key {self._path(name)}: {meant}{self._name or 'it'} takes {', '.join(known)}"
 
 
 def _plain(value: Any) -> Any:
@@ -98,6 +182,12 @@ def _plain(value: Any) -> Any:
     return value
 
 
+@cache
+def _schema() -> dict[str, Any]:
+    """JSON Schema of scenarios."""
+    return json.loads(schema())
+
+
 class Scenario(Section):
     """A scenario: what ``octant run`` reads from a TOML file.
 
@@ -106,21 +196,25 @@ class Scenario(Section):
         scenario = octant.Scenario.load("quick.toml")
         scenario.procedure.calibration.duration = "12 h"
         scenario["imu.angle_random_walk"] = "0.0001 deg/sqrt(h)"
+        scenario.describe("imu.angle_random_walk")
         scenario.check()
 
-    Quantities are text with a unit. Comments of the file aren't kept.
+    Quantities are text with a unit. Comments of the file aren't kept. Type checkers and editors know every key:
+    the types are written from the program's schema.
 
-    Attributes
+    Parameters
     ----------
-    _path : pathlib.Path
+    keys : mapping, optional
+        Tables and keys.
+    path : path
         File of the scenario: relative names of files in it start at its folder.
     """
 
-    __slots__ = ("_path",)
+    __slots__ = ("_file",)
 
     def __init__(self, keys: Mapping[str, Any] | None = None, path: PathLike = "scenario.toml") -> None:
-        super().__init__({"schema": 1, **_plain(keys or {})})
-        object.__setattr__(self, "_path", Path(path))
+        super().__init__({"schema": 1, **_plain(keys or {})}, _schema())
+        object.__setattr__(self, "_file", Path(path))
 
     @classmethod
     def load(cls, path: PathLike) -> Scenario:
@@ -167,16 +261,16 @@ class Scenario(Section):
 
     def copy(self) -> Scenario:
         """Return a copy that can be changed by itself."""
-        return Scenario(self._keys, self._path)
+        return Scenario(self._keys, self._file)
 
     @staticmethod
     def schema() -> dict[str, Any]:
         """JSON Schema of scenarios."""
-        return json.loads(schema())
+        return json.loads(schema())  # A copy of its own.
 
 
 def settings(scenario: PathLike | Scenario) -> dict[str, Any]:
     """The settings of a request that name its scenario."""
     if isinstance(scenario, Scenario):
-        return {"scenario": scenario._path, "text": scenario.to_toml()}
+        return {"scenario": scenario._file, "text": scenario.to_toml()}
     return {"scenario": Path(scenario)}
