@@ -3,6 +3,11 @@
 use super::numbers::Found;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::quantity;
+use octant_score::alignment::{SolutionPoint, SolutionScore};
+use octant_score::attitude::CaseAngles;
+
+/// End of the names of angles.
+const REPORTED: &str = " rad as a report has it, deg";
 
 pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();
@@ -10,11 +15,34 @@ pub(super) fn found() -> Result<Found, String> {
         let name = known.name;
         let value = match name.strip_prefix("unit of ") {
             Some(group) => of_group(group).ok_or_else(|| format!("find the group {group}"))?,
+            None if name.ends_with(REPORTED) => {
+                reported(&name).ok_or_else(|| format!("find the angle of {name}"))?
+            }
             None => quantity::parse(&name).map_err(|why| format!("parse {name}: {why:?}"))?.si,
         };
         all.insert(name, value);
     }
     Ok(all)
+}
+
+/// Computes an angle of a solution as a report has it: `heading of 2.5 rad as …`.
+fn reported(name: &str) -> Option<f64> {
+    let (angle, at) = name.strip_suffix(REPORTED)?.split_once(" of ")?;
+    let at: f64 = std::hint::black_box(at.parse().ok()?);
+    let mut attitude = CaseAngles::default();
+    match angle {
+        "heading" => attitude.heading_rad = at,
+        "pitch" => attitude.pitch_rad = at,
+        "roll" => attitude.roll_rad = at,
+        _ => return None,
+    }
+    let point = SolutionPoint { attitude: Some(attitude), ..SolutionPoint::default() };
+    let score = SolutionScore::of(&point, None);
+    match angle {
+        "heading" => score.heading_deg,
+        "pitch" => score.pitch_deg,
+        _ => score.roll_deg,
+    }
 }
 
 fn of_group(name: &str) -> Option<f64> {
