@@ -127,6 +127,13 @@ fn floors(all: &mut Found) -> Result<(), String> {
         ] {
             all.insert(format!("floor {what}, {name}"), value);
         }
+        let most = floor.maxima(&[2.0], 2, 7);
+        let most = most.first().ok_or("find the largest errors")?;
+        for (what, value) in
+            [("latitude", most.latitude_arcmin), ("longitude", most.longitude_arcmin)]
+        {
+            all.insert(format!("floor largest {what} of two members, {name}"), value);
+        }
         let gyro = 0.01 * DEG_PER_HOUR;
         for (error, of) in [
             ("gyro north", [gyro, 0.0, 0.0, 0.0, 0.0]),
