@@ -110,6 +110,7 @@ fn floors(all: &mut Found) -> Result<(), String> {
         let noise = (0.0007 * DEG_PER_SQRT_HOUR, 50.0 * MICRO_G);
         let floor = Floor::new(degrees * DEG, 0.0, noise.0, noise.1).at_heading(90.0 * DEG);
         let summary = floor.summary(14_400.0);
+        let last = summary.sigma.last().ok_or("find the points of the floor")?;
         for what in ["heading", "pitch", "roll", "north", "east"] {
             let value = summary.solution.and_then(|solution| solution.of(what));
             let value = value.ok_or_else(|| format!("find the floor of the {what}"))?;
@@ -123,7 +124,9 @@ fn floors(all: &mut Found) -> Result<(), String> {
             ("longitude rms", summary.longitude_rms_arcmin),
             ("radial rms", summary.radial_rms_nmi),
             ("first hours", summary.sigma[1].hours),
-            ("last hours", summary.sigma[summary.sigma.len() - 1].hours),
+            ("last hours", last.hours),
+            ("latitude of the last point", last.latitude_arcmin),
+            ("longitude of the last point", last.longitude_arcmin),
         ] {
             all.insert(format!("floor {what}, {name}"), value);
         }

@@ -1,6 +1,7 @@
 //! Units: SI values of a scenario's quantities.
 
 use super::numbers::Found;
+use octant_observe::ensemble::state_unit;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::quantity;
 use octant_score::alignment::{SolutionPoint, SolutionScore};
@@ -13,7 +14,9 @@ pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();
     for known in super::numbers::known("units") {
         let name = known.name;
+        let state = name.strip_prefix("unit of state ").and_then(|state| state.parse().ok());
         let value = match name.strip_prefix("unit of ") {
+            Some(_) if let Some(state) = state => state_unit(std::hint::black_box(state)).1,
             Some(group) => of_group(group).ok_or_else(|| format!("find the group {group}"))?,
             None if name.ends_with(REPORTED) => {
                 reported(&name).ok_or_else(|| format!("find the angle of {name}"))?
