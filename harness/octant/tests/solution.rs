@@ -1,5 +1,6 @@
 //! Scores of attitude and velocity compared with closed forms and golden numbers.
 
+use crate::common::program::ends;
 use octant_base::control::Control;
 use octant_base::display::UnitChoice;
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
@@ -316,6 +317,49 @@ fn the_largest_errors_of_noise_alone_turn_with_the_case_and_exceed_their_last() 
         assert!(max > 1.1 * sigma && max < 2.0 * sigma, "{name}: {max} of {sigma}");
     }
     assert_eq!(last.of("longitude"), None);
+}
+
+#[test]
+fn a_predicted_ensemble_obeys_the_units_and_its_json_keeps_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.toml");
+    let text = "schema = 1\n[procedure.calibration]\npositions = \"six\"\nduration = \"1 h\"\n\
+                [procedure.navigation]\nduration = \"2 h\"\n[display]\nvelocity = \"kn\"\n";
+    std::fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let shown = |more: &[&str]| ends(&[&["observe", file], more].concat(), 0).0;
+    let row = |text: &str, name: &str| -> Vec<f64> {
+        let line = text.lines().rfind(|line| line.trim_start().starts_with(name));
+        let words = line.unwrap_or_else(|| panic!("no {name} in {text}")).split_whitespace();
+        words.filter_map(|word| word.replace('−', "-").parse().ok()).collect()
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 2e-2, "found {found}, expected {expected}");
+    };
+    let (plain, other) =
+        (shown(&["--ensemble"]), shown(&["--ensemble", "--units", "m,arcsec,m/s"]));
+    assert!(plain.contains("latitude, arcmin") && plain.contains("50, 95 %, nmi"), "{plain}");
+    assert!(other.contains("latitude, m") && other.contains("50, 95 %, m"), "{other}");
+    let line = |text: &str, name: &str| {
+        text.lines().rfind(|line| line.trim_start().starts_with(name)).unwrap().to_owned()
+    };
+    assert!(
+        line(&plain, "heading").ends_with(" arcmin") && line(&other, "roll").ends_with(" arcsec")
+    );
+    assert!(line(&plain, "velocity north").ends_with(" kn"));
+    assert!(line(&other, "velocity east").ends_with(" m/s"));
+    near(row(&other, "heading")[0], 60.0 * row(&plain, "heading")[0]);
+    // A knot is 1852 m in an hour.
+    near(row(&plain, "velocity north")[0], row(&other, "velocity north")[0] * 3600.0 / 1852.0);
+    // The last row of the drift: hours, three percentiles each of latitude and longitude, two radial.
+    let (last, metres) = (row(&plain, "2.0"), row(&other, "2.0"));
+    let earth = Ellipsoid::at(LATITUDE, 0.0);
+    near(metres[3], last[3] * earth.meridian_radius_m * ARCMIN);
+    near(metres[6], last[6] * earth.transverse_radius_m * earth.cos_latitude * ARCMIN);
+    near(metres[8], last[8] * 1852.0);
+    let json = |more: &[&str]| shown(&[&["--ensemble", "--json"], more].concat());
+    assert_eq!(json(&[]), json(&["--units", "km,deg"]));
+    assert!(shown(&["--units", "km"]).contains("predicted drift in navigation, 1σ, km"));
 }
 
 #[test]
