@@ -6,6 +6,7 @@ use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
+use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_base::number::significant;
 use octant_calibration::config::{CoreConfig, Estimator, StaticIntervals};
 use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
@@ -32,6 +33,10 @@ pub(super) struct Arguments {
     /// Compare the ensemble with the cases of this scenario in the folder of a campaign.
     #[arg(long, value_name = "DIR", requires = "ensemble")]
     against: Option<PathBuf>,
+    /// Units of errors in the tables: of position (arcmin, nmi, m, km), attitude (arcmin, deg, arcsec,
+    /// mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
+    #[arg(long, value_name = "UNIT,UNIT", conflicts_with = "against")]
+    units: Option<UnitChoice>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -75,6 +80,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         return ensemble::command(
             &arguments.scenario,
             arguments.against.as_deref(),
+            arguments.units.unwrap_or_default(),
             arguments.json,
         );
     }
@@ -86,8 +92,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.json {
         print_json(&observations)?;
     } else {
+        let units = scenario.display.with(arguments.units.unwrap_or_default());
         for observation in &observations {
-            print(&text(observation))?;
+            print(&text(observation, &units))?;
         }
     }
     Ok(Verdict::Pass)
@@ -194,7 +201,7 @@ fn true_sigmas(scenario: &Scenario, config: &CoreConfig) -> [f64; STATE_COUNT] {
     sigmas
 }
 
-fn text(observation: &Observation) -> String {
+fn text(observation: &Observation, units: &DisplayUnits) -> String {
     use std::fmt::Write as _;
     let mut out = format!("{}\n", observation.method);
     let space = |null_space: &[String]| {
@@ -236,14 +243,17 @@ fn text(observation: &Observation) -> String {
         );
     }
     if !observation.drift.is_empty() {
-        let _ = writeln!(out, "  predicted drift in navigation, 1σ, arcmin");
+        let (latitude, longitude) = (units.latitude(), units.longitude());
+        let _ = writeln!(out, "  predicted drift in navigation, 1σ, {}", latitude.name);
         let _ = writeln!(out, "  {:>8} {:>10} {:>10}", "hours", "latitude", "longitude");
         let every = (observation.drift.len() / 12).max(1);
         for row in observation.drift.iter().skip(every - 1).step_by(every) {
             let _ = writeln!(
                 out,
                 "  {:>8.1} {:>10.4} {:>10.4}",
-                row.hours, row.latitude_sigma_arcmin, row.longitude_sigma_arcmin
+                row.hours,
+                latitude.of(row.latitude_sigma_arcmin),
+                longitude.of(row.longitude_sigma_arcmin)
             );
         }
     }

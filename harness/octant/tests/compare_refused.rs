@@ -98,7 +98,7 @@ fn rates_are_paired_by_seed() {
     assert_eq!((found.first, found.second, found.both), (1, 9, 1));
     assert!((found.p - 2.0 * 0.5f64.powi(8)).abs() < 1e-12, "{}", found.p);
     assert!(found.second_rate.low > 0.23 && found.second_rate.high < 0.69, "{found:?}");
-    let comparison = compare("s", "six", "eight", &runs, &[]);
+    let comparison = compare("s", "six", "eight", &runs, &[], None);
     assert_eq!(comparison.cells[0].runs, 11);
     let none: Vec<PairedRun> = (0..20).map(|k| run(k, false, false)).collect();
     assert_eq!(Refusals::of(&none), None);

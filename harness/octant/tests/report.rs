@@ -14,7 +14,7 @@ use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_score::compare::{Claim, Maxima, MethodComparison, PairedRun, compare};
 use octant_score::drift::{DriftSample, DriftScorer};
-use octant_score::floor::{Floor, MaximumFloor};
+use octant_score::floor::{Floor, MaximumFloor, SolutionValues};
 use octant_score::judge::judge;
 use octant_score::parameters;
 use octant_score::reference::{ReferenceInput, reference};
@@ -359,8 +359,13 @@ fn comparison(ratio: f64, scatter: f64, floor: f64) -> MethodComparison {
         hours,
         latitude_arcmin: floor,
         longitude_arcmin: floor * hours / 28.0,
+        solution: SolutionValues {
+            heading_arcmin: 0.4,
+            velocity_north_mps: 0.02,
+            ..SolutionValues::default()
+        },
     });
-    compare("G 2e-3, 24 h", "six", "eight", &runs, &floors)
+    compare("G 2e-3, 24 h", "six", "eight", &runs, &floors, Some(72.0))
 }
 
 #[test]
@@ -394,7 +399,7 @@ fn a_comparison_says_in_words_what_it_shows() {
     assert!(less.words[0].starts_with("better, and by less than 50 %"), "{}", less.words[0]);
     assert_eq!(comparison(1.5, 0.02, 0.2).cells[0].claim, Claim::Worse);
 
-    let none = compare("s", "six", "eight", &[], &[]);
+    let none = compare("s", "six", "eight", &[], &[], None);
     assert!(none.cells.is_empty() && none.words[0].starts_with("nothing to compare"));
 }
 
@@ -403,6 +408,13 @@ fn a_comparison_is_a_table_a_page_and_a_file() {
     let comparison = comparison(0.35, 0.1, 0.2);
     let text = page::table(&comparison, &DisplayUnits::default());
     assert_eq!(text.lines().count(), 1 + 6 + 1 + comparison.words.len());
+    // Attitude and velocity have the floor of the whole navigation.
+    let floors: Vec<Option<f64>> = comparison.cells.iter().map(|cell| cell.floor).collect();
+    assert_eq!(floors[4..], [Some(0.4), Some(0.02)]);
+    assert!(
+        text.lines().any(|l| l.starts_with("heading, arcmin") && l.contains("0.400")),
+        "{text}"
+    );
     let html = page::render(
         &comparison,
         &[("rustc".to_owned(), "1.95.0".to_owned())],

@@ -1,5 +1,6 @@
 //! Scores of attitude and velocity compared with closed forms and golden numbers.
 
+use crate::common::program::ends;
 use octant_base::control::Control;
 use octant_base::display::UnitChoice;
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
@@ -275,6 +276,90 @@ fn the_floor_of_attitude_and_velocity_is_that_of_noise_alone() {
         assert!(value.rms < value.r#final);
     }
     assert_near(solution.heading_arcmin.r#final, noise * 600f64.sqrt() / ARCMIN, 0.05 * tilt);
+}
+
+#[test]
+fn the_largest_heading_error_of_noise_alone_is_that_of_a_brownian_motion() {
+    // For a Wiener process W of one second, M = max |W| has E M² = E 1/τ, with τ the time of leaving
+    // ±1, whose Laplace transform is 1/cosh √2s: E M² = ∫ u/cosh u du = 2G, Catalan's constant
+    // G = 0.9159655941772190, and E M = √(π/2). Looked at n times, M is less by 0.5826/√n in the mean
+    // (Siegmund, Advances in Applied Probability 11, 1979). At the equator the heading of the floor is
+    // such a process but for the Earth's turn in the hour, (Ωt)²/3 of its variance at the end.
+    let (noise, hours, steps) = (7e-4 * DEG_PER_SQRT_HOUR, 1.0f64, 60.0f64);
+    let floor = Floor::new(0.0, 0.0, noise, 0.0);
+    let missed = 0.5826 / steps.sqrt();
+    let square = 2.0 * 0.915_965_594_177_219 - 2.0 * missed * (0.5 * PI).sqrt() + missed * missed;
+    let expected = noise * (3600.0 * hours * square).sqrt() / ARCMIN;
+    let found = floor.maxima(&[hours], 4000, 3)[0].solution.heading_arcmin;
+    // 4000 members have a standard error of 0.6 %; without the steps it would be 5.4 % more.
+    assert_near(found / expected, 1.0, 0.025);
+}
+
+#[test]
+fn the_largest_errors_of_noise_alone_turn_with_the_case_and_exceed_their_last() {
+    let (arw, vrw) = (7e-4 * DEG_PER_SQRT_HOUR, 50.0 * MICRO_G);
+    let north = Floor::new(LATITUDE, 0.0, arw, vrw);
+    let east = north.clone().at_heading(90.0 * DEG);
+    let hours = 24.0;
+    let [a, b] = [&north, &east].map(|floor| floor.maxima(&[hours], 400, 1)[0].solution);
+    // With the bow to the east, pitch is what roll was to the north, with the other sign.
+    assert_near(b.roll_arcmin / a.pitch_arcmin, 1.0, 1e-12);
+    assert_near(b.pitch_arcmin / a.roll_arcmin, 1.0, 1e-12);
+    assert_eq!(a.heading_arcmin, b.heading_arcmin);
+    let summary = north.summary(hours * 3600.0);
+    let last = summary.sigma.last().and_then(|point| point.solution).unwrap();
+    let of = summary.solution.unwrap();
+    for name in ["heading", "pitch", "roll", "north", "east"] {
+        let (max, sigma) = (a.of(name).unwrap(), last.of(name).unwrap());
+        assert_eq!(sigma, of.of(name).unwrap().r#final, "{name}");
+        // The rms of the maximum is above that of the last value; a walk has √2G, an oscillation
+        // whose amplitude grows has less than the √2 of its amplitude times that.
+        assert!(max > 1.1 * sigma && max < 2.0 * sigma, "{name}: {max} of {sigma}");
+    }
+    assert_eq!(last.of("longitude"), None);
+}
+
+#[test]
+fn a_predicted_ensemble_obeys_the_units_and_its_json_keeps_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.toml");
+    let text = "schema = 1\n[procedure.calibration]\npositions = \"six\"\nduration = \"1 h\"\n\
+                [procedure.navigation]\nduration = \"2 h\"\n[display]\nvelocity = \"kn\"\n";
+    std::fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let shown = |more: &[&str]| ends(&[&["observe", file], more].concat(), 0).0;
+    let row = |text: &str, name: &str| -> Vec<f64> {
+        let line = text.lines().rfind(|line| line.trim_start().starts_with(name));
+        let words = line.unwrap_or_else(|| panic!("no {name} in {text}")).split_whitespace();
+        words.filter_map(|word| word.replace('−', "-").parse().ok()).collect()
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 2e-2, "found {found}, expected {expected}");
+    };
+    let (plain, other) =
+        (shown(&["--ensemble"]), shown(&["--ensemble", "--units", "m,arcsec,m/s"]));
+    assert!(plain.contains("latitude, arcmin") && plain.contains("50, 95 %, nmi"), "{plain}");
+    assert!(other.contains("latitude, m") && other.contains("50, 95 %, m"), "{other}");
+    let line = |text: &str, name: &str| {
+        text.lines().rfind(|line| line.trim_start().starts_with(name)).unwrap().to_owned()
+    };
+    assert!(
+        line(&plain, "heading").ends_with(" arcmin") && line(&other, "roll").ends_with(" arcsec")
+    );
+    assert!(line(&plain, "velocity north").ends_with(" kn"));
+    assert!(line(&other, "velocity east").ends_with(" m/s"));
+    near(row(&other, "heading")[0], 60.0 * row(&plain, "heading")[0]);
+    // A knot is 1852 m in an hour.
+    near(row(&plain, "velocity north")[0], row(&other, "velocity north")[0] * 3600.0 / 1852.0);
+    // The last row of the drift: hours, three percentiles each of latitude and longitude, two radial.
+    let (last, metres) = (row(&plain, "2.0"), row(&other, "2.0"));
+    let earth = Ellipsoid::at(LATITUDE, 0.0);
+    near(metres[3], last[3] * earth.meridian_radius_m * ARCMIN);
+    near(metres[6], last[6] * earth.transverse_radius_m * earth.cos_latitude * ARCMIN);
+    near(metres[8], last[8] * 1852.0);
+    let json = |more: &[&str]| shown(&[&["--ensemble", "--json"], more].concat());
+    assert_eq!(json(&[]), json(&["--units", "km,deg"]));
+    assert!(shown(&["--units", "km"]).contains("predicted drift in navigation, 1σ, km"));
 }
 
 #[test]

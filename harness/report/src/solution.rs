@@ -1,9 +1,10 @@
 //! Errors of attitude and velocity over the navigation, and the track of the position error.
 
-use super::chart::{Chart, ChartLine, ChartRole, nice_ticks, round, span};
+use super::chart::{Band, Chart, ChartLine, ChartRole, nice_ticks, round, span};
 use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_score::floor::FloorPoint;
 
 /// Names of the columns of the series, as the scores have them, with their titles.
 const COLUMNS: [(&str, &str); 5] = [
@@ -32,6 +33,7 @@ pub(super) fn errors(data: &ReportData) -> Markup {
                 Chart::new(title, "hours of navigation", &format!("{title}, {}", unit.name));
             chart.height = 190.0;
             chart.run_offset_h = data.navigation_start_h;
+            chart.bands.extend(random_walk(data, name));
             if let Some(baseline) = &data.summary.baseline {
                 let points = series(&data.baseline_solution);
                 if points.len() >= 2 {
@@ -49,10 +51,31 @@ pub(super) fn errors(data: &ReportData) -> Markup {
         @if !charts.is_empty() {
             h3 { "Attitude and velocity" }
             p.hint { "Errors are computed minus true. Attitude is that of the case: the gimbals are turned back \
-                by their true angles. Velocity is over ground." }
+                by their true angles. Velocity is over ground."
+                @if COLUMNS.iter().any(|(name, _)| random_walk(data, name).is_some()) {
+                    " The band is, as for the position, what the noise of the sensors leaves with exact parameters \
+                    and exact initial attitude: 1σ of a level case. The core tells no covariance while it navigates."
+                }
+            }
             div.plots { @for chart in &charts { (chart) } }
         }
     }
+}
+
+/// Band of an error by the random walk of the sensors alone; `None` without one in the summary.
+fn random_walk(data: &ReportData, name: &str) -> Option<Band> {
+    let floor = data.summary.reference.as_ref()?.random_walk.as_ref()?;
+    let unit = data.units.of(name);
+    let point = |point: &FloorPoint| {
+        let sigma = unit.of(point.solution?.of(name)?);
+        Some([point.hours, -sigma, sigma])
+    };
+    let points: Vec<[f64; 3]> = floor.sigma.iter().filter_map(point).collect();
+    (points.len() > 1).then(|| Band {
+        label: "±1σ of random walk alone".to_owned(),
+        role: ChartRole::Reference,
+        points,
+    })
 }
 
 /// Edge of the square drawing, px.

@@ -8,6 +8,7 @@ use octant_report::{
 };
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
+use octant_score::floor::Floor;
 use octant_score::summary::Summary;
 
 /// Hours of the calibration, and of the navigation after it.
@@ -145,6 +146,55 @@ fn a_run_of_28_h_is_one_small_file_with_every_plot() {
         assert!(html.contains(&format!("aria-label=\"{title}\"")), "no drawing of {title}");
     }
     assert!(!html.contains("NaN,") && !html.contains("\"d=\"NaN"));
+}
+
+/// Numbers of a column: singles, little-endian, in base64 with a tilde for N.
+fn singles(column: &str) -> Vec<f32> {
+    let digits = b"ABCDEFGHIJKLM~OPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let value = |c: u8| digits.iter().position(|digit| *digit == c).unwrap() as u32;
+    let column = column.trim_end_matches('=').as_bytes();
+    let bits = column.iter().flat_map(|c| (0..6).rev().map(|bit| (value(*c) >> bit) & 1));
+    let bits: Vec<u32> = bits.collect();
+    let bytes: Vec<u8> = bits
+        .chunks_exact(8)
+        .map(|byte| byte.iter().fold(0, |all, bit| 2 * all + *bit as u8))
+        .collect();
+    bytes.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().unwrap())).collect()
+}
+
+#[test]
+fn attitude_and_velocity_have_the_band_of_the_noise_and_say_so() {
+    let block = |html: &str, title: &str| {
+        let chart = html.split(&format!("aria-label=\"{title}\"")).nth(1).unwrap();
+        let block = chart.split("application/json\">").nth(1).unwrap();
+        block.split("</script>").next().unwrap().to_owned()
+    };
+    let mut data = data();
+    let units = "arcsec,kn".parse().unwrap();
+    data.units = data.units.with(units);
+    let floor = Floor::new(0.53, 0.0, 2e-7, 5e-4).summary(3600.0 * NAVIGATION_H);
+    let last = floor.sigma.last().unwrap();
+    let sigma = last.solution.unwrap().heading_arcmin;
+    data.summary.reference.as_mut().unwrap().random_walk = Some(floor.clone());
+    let html = page(&data);
+    for title in ["Heading", "Pitch", "Roll", "Velocity error north", "Velocity error east"] {
+        let title = if title.contains(' ') { title.to_owned() } else { format!("{title} error") };
+        assert!(block(&html, &title).contains("±1σ of random walk alone"), "{title}");
+    }
+    // The last column is the upper edge of the band, in arcsec.
+    let heading = block(&html, "Heading error");
+    let columns = heading.split("\"columns\":[").nth(1).unwrap().split(']').next().unwrap();
+    let upper = singles(columns.rsplit(',').next().unwrap().trim_matches('"'));
+    assert_eq!((upper.len(), upper[0]), (floor.sigma.len(), 0.0));
+    let (found, expected) = (upper[upper.len() - 1], 60.0 * sigma);
+    assert!((f64::from(found) / expected - 1.0).abs() < 1e-6, "found {found}, expected {expected}");
+    // A summary from before the σ were kept: a plain legend.
+    let old = data.summary.reference.as_mut().unwrap().random_walk.as_mut().unwrap();
+    old.sigma.iter_mut().for_each(|point| point.solution = None);
+    let html = page(&data);
+    assert!(!block(&html, "Heading error").contains("random walk"));
+    assert!(block(&html, "Latitude error").contains("±1σ of random walk alone"));
+    assert!(!html.contains("The core tells no covariance"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::drive::Ended;
 use super::method::{MethodError, StreamKeeping, label, run_method};
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{Method, MotionSpec, Scenario};
 use octant_score::compare::{Maxima, MethodComparison, PairedRun, compare};
 use octant_score::floor::Floor;
 use std::sync::atomic::Ordering;
@@ -73,16 +73,26 @@ pub fn paired(
             second_refused: pair[1].refused.clone(),
         })
         .collect();
+    let (heading_rad, lengths) = (
+        match &scenario.motion {
+            MotionSpec::Static(mean) => mean.heading_rad,
+            MotionSpec::Dockside(ship) => ship.mean.heading_rad,
+        },
+        [first, second].map(|side| navigated_h(&side.scenario)),
+    );
+    let navigation_h = (lengths[0] == lengths[1] && lengths[0].is_finite()).then_some(lengths[0]);
+    let hours: Vec<f64> = MARKS_H.into_iter().chain(navigation_h).collect();
     let floor = Floor::new(
         scenario.site.latitude_rad,
         scenario.site.height_m,
         scenario.imu.angle_random_walk,
         scenario.imu.velocity_random_walk,
     )
-    .maxima(&MARKS_H, FLOOR_MEMBERS, scenario.seed);
+    .at_heading(heading_rad)
+    .maxima(&hours, FLOOR_MEMBERS, scenario.seed);
     let [a, b] = [first, second].map(|side| label(&side.scenario, side.method));
     let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };
-    let comparison = compare(&scenario.title, &a, &b, &runs, &floor);
+    let comparison = compare(&scenario.title, &a, &b, &runs, &floor, navigation_h);
     // Refusals of every seed are a result too.
     if comparison.cells.is_empty() && comparison.refusals.is_none() {
         return Err(PairedError::NoNavigation);

@@ -3,7 +3,7 @@
 pub use super::claim::{CLAIM, Claim, interval, percent};
 use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
-use super::summary::NavigationScore;
+pub use super::maxima::{Maxima, Measure};
 use octant_statistics::convergence::pass;
 use octant_statistics::paired::PassPairs;
 use octant_statistics::power;
@@ -12,157 +12,6 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the schema of `compare.json`.
 pub const SCHEMA: u32 = 1;
-
-/// Largest errors of one navigation, arcmin and m/s; a mark that the run did not reach is null.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Maxima {
-    /// Largest latitude error to 24 h.
-    pub latitude_24h: Option<f64>,
-    /// Largest longitude error to 24 h.
-    pub longitude_24h: Option<f64>,
-    /// Largest latitude error to 72 h.
-    pub latitude_72h: Option<f64>,
-    /// Largest longitude error to 72 h.
-    pub longitude_72h: Option<f64>,
-    /// Largest heading error of the case over the navigation.
-    #[serde(default)]
-    pub heading: Option<f64>,
-    /// Largest pitch error of the case over the navigation.
-    #[serde(default)]
-    pub pitch: Option<f64>,
-    /// Largest roll error of the case over the navigation.
-    #[serde(default)]
-    pub roll: Option<f64>,
-    /// Largest error of the velocity to the north over the navigation, m/s.
-    #[serde(default)]
-    pub velocity_north_mps: Option<f64>,
-    /// Largest error of the velocity to the east over the navigation, m/s.
-    #[serde(default)]
-    pub velocity_east_mps: Option<f64>,
-}
-
-impl Maxima {
-    /// Maxima of a scored navigation.
-    #[must_use]
-    pub fn of(navigation: &NavigationScore) -> Self {
-        let mark = |name: &str| navigation.marks.get(name);
-        Self {
-            latitude_24h: mark("24h").map(|m| m.latitude_max_arcmin),
-            longitude_24h: mark("24h").map(|m| m.longitude_max_arcmin),
-            latitude_72h: mark("72h").map(|m| m.latitude_max_arcmin),
-            longitude_72h: mark("72h").map(|m| m.longitude_max_arcmin),
-            heading: navigation.heading_error_arcmin.map(|e| e.max),
-            pitch: navigation.pitch_error_arcmin.map(|e| e.max),
-            roll: navigation.roll_error_arcmin.map(|e| e.max),
-            velocity_north_mps: navigation.velocity_north_error_mps.map(|e| e.max),
-            velocity_east_mps: navigation.velocity_east_error_mps.map(|e| e.max),
-        }
-    }
-
-    /// Maximum of a measure.
-    #[must_use]
-    pub const fn get(&self, measure: Measure) -> Option<f64> {
-        match measure {
-            Measure::Latitude24h => self.latitude_24h,
-            Measure::Longitude24h => self.longitude_24h,
-            Measure::Latitude72h => self.latitude_72h,
-            Measure::Longitude72h => self.longitude_72h,
-            Measure::Heading => self.heading,
-            Measure::Pitch => self.pitch,
-            Measure::Roll => self.roll,
-            Measure::VelocityNorth => self.velocity_north_mps,
-            Measure::VelocityEast => self.velocity_east_mps,
-        }
-    }
-}
-
-/// Measure of a comparison: the largest error of a run, of the position up to a mark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Measure {
-    /// Largest latitude error to 24 h.
-    #[serde(rename = "latitude_24h")]
-    Latitude24h,
-    /// Largest longitude error to 24 h.
-    #[serde(rename = "longitude_24h")]
-    Longitude24h,
-    /// Largest latitude error to 72 h.
-    #[serde(rename = "latitude_72h")]
-    Latitude72h,
-    /// Largest longitude error to 72 h.
-    #[serde(rename = "longitude_72h")]
-    Longitude72h,
-    /// Largest heading error.
-    Heading,
-    /// Largest pitch error.
-    Pitch,
-    /// Largest roll error.
-    Roll,
-    /// Largest error of the velocity to the north.
-    VelocityNorth,
-    /// Largest error of the velocity to the east.
-    VelocityEast,
-}
-
-impl Measure {
-    /// All measures.
-    pub const ALL: [Self; 9] = [
-        Self::Latitude24h,
-        Self::Longitude24h,
-        Self::Latitude72h,
-        Self::Longitude72h,
-        Self::Heading,
-        Self::Pitch,
-        Self::Roll,
-        Self::VelocityNorth,
-        Self::VelocityEast,
-    ];
-
-    /// Name of the measure.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Latitude24h => "latitude to 24 h",
-            Self::Longitude24h => "longitude to 24 h",
-            Self::Latitude72h => "latitude to 72 h",
-            Self::Longitude72h => "longitude to 72 h",
-            Self::Heading => "heading",
-            Self::Pitch => "pitch",
-            Self::Roll => "roll",
-            Self::VelocityNorth => "velocity north",
-            Self::VelocityEast => "velocity east",
-        }
-    }
-
-    /// Name of the error, as in [`NavigationScore::errors`].
-    #[must_use]
-    pub const fn error(self) -> &'static str {
-        match self {
-            Self::Latitude24h | Self::Latitude72h => "latitude",
-            Self::Longitude24h | Self::Longitude72h => "longitude",
-            Self::Heading => "heading",
-            Self::Pitch => "pitch",
-            Self::Roll => "roll",
-            Self::VelocityNorth => "north",
-            Self::VelocityEast => "east",
-        }
-    }
-
-    /// True for a longitude error.
-    #[must_use]
-    pub const fn is_longitude(self) -> bool {
-        matches!(self, Self::Longitude24h | Self::Longitude72h)
-    }
-
-    /// Mark of a position error, h; `None`: over the whole navigation.
-    const fn hours(self) -> Option<f64> {
-        match self {
-            Self::Latitude24h | Self::Longitude24h => Some(24.0),
-            Self::Latitude72h | Self::Longitude72h => Some(72.0),
-            _ => None,
-        }
-    }
-}
 
 /// Confidence of the intervals of improvements, two-sided.
 pub const CONFIDENCE: f64 = 0.9;
@@ -284,8 +133,8 @@ pub struct MeasureCell {
     /// Improvement 1 − second/first with its 90 % interval, and the smallest that so many pairs detect
     /// with a probability of 90 %.
     pub improvement: Improvement,
-    /// Root mean square from the random walk alone, with exact parameters and attitude, arcmin; null for
-    /// attitude and velocity.
+    /// Root mean square from the random walk alone, with exact parameters and attitude, in the same
+    /// unit; null for attitude and velocity if the navigations of the methods differ in length.
     pub floor: Option<f64>,
     /// Verdict on the claim.
     pub claim: Claim,
@@ -317,8 +166,9 @@ pub struct MethodComparison {
 
 /// Compares paired runs.
 ///
-/// `floor` has the maxima of the random walk alone for 24 h and 72 h, from
-/// [`super::floor::Floor::maxima`].
+/// `floor` has the maxima of the random walk alone for 24 h, 72 h and the length of the navigation, from
+/// [`super::floor::Floor::maxima`]. `navigation_h` is the length of the navigation, h, if it is the same
+/// for both methods.
 #[must_use]
 pub fn compare(
     scenario: &str,
@@ -326,9 +176,16 @@ pub fn compare(
     second: &str,
     runs: &[PairedRun],
     floor: &[MaximumFloor],
+    navigation_h: Option<f64>,
 ) -> MethodComparison {
-    let cells: Vec<MeasureCell> =
-        Measure::ALL.into_iter().filter_map(|measure| cell(measure, runs, floor)).collect();
+    let floor_of = |measure: Measure| {
+        let hours = measure.hours().or(navigation_h)?;
+        measure.floor(floor.iter().find(|floor| floor.hours == hours)?)
+    };
+    let cells: Vec<MeasureCell> = Measure::ALL
+        .into_iter()
+        .filter_map(|measure| cell(measure, runs, floor_of(measure)))
+        .collect();
     let refusals = Refusals::of(runs);
     MethodComparison {
         schema: SCHEMA,
@@ -343,7 +200,7 @@ pub fn compare(
     }
 }
 
-fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<MeasureCell> {
+fn cell(measure: Measure, runs: &[PairedRun], floor: Option<f64>) -> Option<MeasureCell> {
     let pairs: Vec<(f64, f64)> =
         runs.iter().filter_map(|r| r.first.get(measure).zip(r.second.get(measure))).collect();
     let (first, second): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
@@ -354,10 +211,7 @@ fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<
         first: rms(&first)?,
         second: rms(&second)?,
         improvement,
-        floor: floor
-            .iter()
-            .find(|f| Some(f.hours) == measure.hours())
-            .map(|f| if measure.is_longitude() { f.longitude_arcmin } else { f.latitude_arcmin }),
+        floor,
         claim: Claim::of(&improvement),
     })
 }
@@ -410,8 +264,10 @@ fn words(
     if let Some(floor) = main.floor {
         words.push(format!(
             "the noise of the sensors alone, with every parameter and the attitude exact, gives \
-             {floor:.3} arcmin; {second} has {:.3} and {first} {:.3}",
-            main.second, main.first
+             {floor:.3} {}; {second} has {:.3} and {first} {:.3}",
+            main.measure.unit(),
+            main.second,
+            main.first
         ));
         // Even a method without any error of its own would have the floor.
         let best = 1.0 - floor / main.first;
@@ -463,8 +319,13 @@ mod tests {
             second_refused: None,
         };
         let runs: Vec<PairedRun> = (0..pairs).map(run).collect();
-        let floor = MaximumFloor { hours: 24.0, latitude_arcmin: floor, longitude_arcmin: floor };
-        compare("s", "six", "eight", &runs, &[floor]).words.join("; ")
+        let floor = MaximumFloor {
+            hours: 24.0,
+            latitude_arcmin: floor,
+            longitude_arcmin: floor,
+            ..MaximumFloor::default()
+        };
+        compare("s", "six", "eight", &runs, &[floor], Some(24.0)).words.join("; ")
     }
 
     #[test]

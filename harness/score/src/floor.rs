@@ -39,8 +39,8 @@ pub struct Floor {
     noise: Matrix,
     angle_random_walk: f64,
     velocity_random_walk: f64,
-    /// Heading of the case, rad.
-    heading_rad: f64,
+    /// Sine and cosine of the heading of the case.
+    heading_sin_cos: (f64, f64),
     /// North and east distance of one radian of latitude and longitude, m.
     metres_per_rad: [f64; 2],
 }
@@ -54,6 +54,50 @@ pub struct FloorPoint {
     pub latitude_arcmin: f64,
     /// 1σ of the longitude error, arcmin.
     pub longitude_arcmin: f64,
+    /// 1σ of attitude and velocity; null in files from before they were kept.
+    #[serde(default)]
+    pub solution: Option<SolutionValues>,
+}
+
+/// A value of each error of attitude and velocity: its 1σ, or its largest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SolutionValues {
+    /// Heading error, arcmin.
+    pub heading_arcmin: f64,
+    /// Pitch error, arcmin.
+    pub pitch_arcmin: f64,
+    /// Roll error, arcmin.
+    pub roll_arcmin: f64,
+    /// Error of the velocity to the north, m/s.
+    pub velocity_north_mps: f64,
+    /// Error of the velocity to the east, m/s.
+    pub velocity_east_mps: f64,
+}
+
+impl SolutionValues {
+    /// Values in the order heading, pitch, roll (rad), north, east (m/s).
+    fn of_si([heading, pitch, roll, north, east]: [f64; 5]) -> Self {
+        Self {
+            heading_arcmin: heading / ARCMIN,
+            pitch_arcmin: pitch / ARCMIN,
+            roll_arcmin: roll / ARCMIN,
+            velocity_north_mps: north,
+            velocity_east_mps: east,
+        }
+    }
+
+    /// Value of an error by the name that [`crate::summary::NavigationScore::errors`] gives it.
+    #[must_use]
+    pub fn of(&self, name: &str) -> Option<f64> {
+        match name {
+            "heading" => Some(self.heading_arcmin),
+            "pitch" => Some(self.pitch_arcmin),
+            "roll" => Some(self.roll_arcmin),
+            "north" => Some(self.velocity_north_mps),
+            "east" => Some(self.velocity_east_mps),
+            _ => None,
+        }
+    }
 }
 
 /// Floor over one navigation.
@@ -115,8 +159,8 @@ pub struct FloorValue {
     pub r#final: f64,
 }
 
-/// Root mean square over many runs of the largest error, arcmin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Root mean square over many runs of the largest error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MaximumFloor {
     /// Length of the navigation, h.
     pub hours: f64,
@@ -124,6 +168,8 @@ pub struct MaximumFloor {
     pub latitude_arcmin: f64,
     /// Value for the longitude error, arcmin.
     pub longitude_arcmin: f64,
+    /// Values for attitude and velocity.
+    pub solution: SolutionValues,
 }
 
 impl Floor {
@@ -167,7 +213,7 @@ impl Floor {
             noise,
             angle_random_walk,
             velocity_random_walk,
-            heading_rad: 0.0,
+            heading_sin_cos: (0.0, 1.0),
             metres_per_rad: [rm, rn * c],
         }
     }
@@ -175,26 +221,40 @@ impl Floor {
     /// Sets the heading of the case, rad, which tells pitch from roll; 0 without it.
     #[must_use]
     pub fn at_heading(self, heading_rad: f64) -> Self {
-        Self { heading_rad, ..self }
+        Self { heading_sin_cos: libm::sincos(heading_rad), ..self }
+    }
+
+    /// Variances of heading, pitch, roll, velocity north and east of a level case, SI.
+    fn variances(&self, p: &Matrix) -> [f64; 5] {
+        let (s, c) = self.heading_sin_cos;
+        // Roll is about the bow (c, s), pitch about starboard (−s, c).
+        let about = |[north, east]: [f64; 2]| {
+            north * north * p[(0, 0)] + 2.0 * north * east * p[(0, 1)] + east * east * p[(1, 1)]
+        };
+        [p[(2, 2)], about([-s, c]), about([c, s]), p[(3, 3)], p[(4, 4)]]
+            .map(|variance| variance.max(0.0))
+    }
+
+    /// 1σ of attitude and velocity of a level case.
+    fn sigmas(&self, p: &Matrix) -> SolutionValues {
+        SolutionValues::of_si(self.variances(p).map(libm::sqrt))
     }
 
     /// Floor of attitude and velocity: from the mean covariance over the navigation, and the last one.
     fn solution(&self, mean: &Matrix, last: &Matrix) -> SolutionFloor {
-        let (s, c) = libm::sincos(self.heading_rad);
-        // Roll is about the bow (c, s), pitch about starboard (−s, c).
-        let about = |p: &Matrix, [north, east]: [f64; 2]| {
-            north * north * p[(0, 0)] + 2.0 * north * east * p[(0, 1)] + east * east * p[(1, 1)]
-        };
-        let value = |of: &dyn Fn(&Matrix) -> f64, unit: f64| FloorValue {
-            rms: libm::sqrt(of(mean).max(0.0)) / unit,
-            r#final: libm::sqrt(of(last).max(0.0)) / unit,
-        };
+        let (mean, last) = (self.sigmas(mean), self.sigmas(last));
         SolutionFloor {
-            heading_arcmin: value(&|p| p[(2, 2)], ARCMIN),
-            pitch_arcmin: value(&|p| about(p, [-s, c]), ARCMIN),
-            roll_arcmin: value(&|p| about(p, [c, s]), ARCMIN),
-            velocity_north_mps: value(&|p| p[(3, 3)], 1.0),
-            velocity_east_mps: value(&|p| p[(4, 4)], 1.0),
+            heading_arcmin: FloorValue { rms: mean.heading_arcmin, r#final: last.heading_arcmin },
+            pitch_arcmin: FloorValue { rms: mean.pitch_arcmin, r#final: last.pitch_arcmin },
+            roll_arcmin: FloorValue { rms: mean.roll_arcmin, r#final: last.roll_arcmin },
+            velocity_north_mps: FloorValue {
+                rms: mean.velocity_north_mps,
+                r#final: last.velocity_north_mps,
+            },
+            velocity_east_mps: FloorValue {
+                rms: mean.velocity_east_mps,
+                r#final: last.velocity_east_mps,
+            },
         }
     }
 
@@ -204,8 +264,12 @@ impl Floor {
         let steps = (duration_s / STEP_S).max(1.0) as u32;
         let every = (steps / 150).max(1);
         let mut p = Matrix::zeros();
-        let mut sigma =
-            vec![FloorPoint { hours: 0.0, latitude_arcmin: 0.0, longitude_arcmin: 0.0 }];
+        let mut sigma = vec![FloorPoint {
+            hours: 0.0,
+            latitude_arcmin: 0.0,
+            longitude_arcmin: 0.0,
+            solution: Some(SolutionValues::default()),
+        }];
         let (mut latitude, mut longitude, mut sum) = (0.0, 0.0, Matrix::zeros());
         for k in 1..=steps {
             p = self.transition * p * self.transition.transpose() + self.noise;
@@ -217,6 +281,7 @@ impl Floor {
                     hours: f64::from(k) * STEP_S / 3600.0,
                     latitude_arcmin: libm::sqrt(p[(5, 5)]) / ARCMIN,
                     longitude_arcmin: libm::sqrt(p[(6, 6)]) / ARCMIN,
+                    solution: Some(self.sigmas(&p)),
                 });
             }
         }
@@ -235,18 +300,20 @@ impl Floor {
     }
 
     /// Root mean square over `members` simulated runs of the largest error up to each of `hours`.
-    /// A maximum has no closed form; the same seed gives the same numbers.
+    /// A maximum has no closed form; the same seed gives the same numbers. Errors are looked at once a
+    /// minute: the largest one of a Brownian motion, as heading is, is missed by 1 % in a day (0.58 σ of
+    /// one step).
     #[must_use]
     pub fn maxima(&self, hours: &[f64], members: u32, seed: u64) -> Vec<MaximumFloor> {
         let mut hours = hours.to_vec();
         hours.sort_by(f64::total_cmp);
-        let mut squares = vec![[0.0f64; 2]; hours.len()];
+        let mut squares = vec![[0.0f64; STATES]; hours.len()];
         let gyro = self.angle_random_walk * libm::sqrt(STEP_S);
         let accelerometer = self.velocity_random_walk * libm::sqrt(STEP_S);
         for member in 0..members {
             let mut random = Philox::from_u64_seed_stream(seed, u64::from(member));
             let mut x = State::zeros();
-            let mut max = [0.0f64; 2];
+            let mut max = [0.0f64; STATES];
             let mut step = 0u32;
             for (hour, square) in hours.iter().zip(&mut squares) {
                 let end = (hour * 3600.0 / STEP_S) as u32;
@@ -260,24 +327,37 @@ impl Floor {
                     x[2] += gyro * c;
                     x[3] += accelerometer * d;
                     x[4] += accelerometer * e;
-                    max[0] = max[0].max(x[5].abs());
-                    max[1] = max[1].max(x[6].abs());
+                    for (max, error) in max.iter_mut().zip(self.errors(&x)) {
+                        *max = max.max(error.abs());
+                    }
                     step += 1;
                 }
-                square[0] += max[0] * max[0];
-                square[1] += max[1] * max[1];
+                for (square, max) in square.iter_mut().zip(max) {
+                    *square += max * max;
+                }
             }
         }
-        let rms = |sum: f64| libm::sqrt(sum / f64::from(members.max(1))) / ARCMIN;
+        let rms = |sum: f64| libm::sqrt(sum / f64::from(members.max(1)));
         hours
             .iter()
             .zip(&squares)
-            .map(|(&hours, square)| MaximumFloor {
-                hours,
-                latitude_arcmin: rms(square[0]),
-                longitude_arcmin: rms(square[1]),
+            .map(|(&hours, square)| {
+                let [latitude, longitude, solution @ ..] = square.map(rms);
+                MaximumFloor {
+                    hours,
+                    latitude_arcmin: latitude / ARCMIN,
+                    longitude_arcmin: longitude / ARCMIN,
+                    solution: SolutionValues::of_si(solution),
+                }
             })
             .collect()
+    }
+
+    /// Errors of a state: latitude, longitude, heading, pitch, roll of a level case (rad), velocity
+    /// north and east (m/s). Signs are those of φ.
+    fn errors(&self, x: &State) -> [f64; STATES] {
+        let (s, c) = self.heading_sin_cos;
+        [x[5], x[6], x[2], c * x[1] - s * x[0], c * x[0] + s * x[1], x[3], x[4]]
     }
 
     /// Latitude and longitude error (rad) after `t_s`, from errors that are constant in n, without

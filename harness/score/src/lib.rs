@@ -27,6 +27,7 @@ pub mod floor;
 pub mod health;
 pub mod judge;
 pub mod junit;
+mod maxima;
 mod navigation;
 pub mod numerics;
 pub mod parameters;

@@ -4,10 +4,11 @@
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
+use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_base::number::{counted, significant};
 use octant_campaign::against::{Against, EnsembleComparison, Selection, against};
 use octant_campaign::plan::{FILE_NAME, Plan};
-use octant_observe::ensemble::{Ensemble, ensemble};
+use octant_observe::ensemble::{DriftBand, Ensemble, ErrorBand, SolutionBands, ensemble};
 use octant_requirements::Verdict;
 use octant_scenario::{Method, Scenario};
 use std::fmt::Write as _;
@@ -19,16 +20,17 @@ const DRIFT_ROWS: usize = 12;
 pub(super) fn command(
     arguments: &ScenarioArguments,
     folder: Option<&Path>,
+    units: UnitChoice,
     json: bool,
 ) -> Result<Verdict, Failure> {
     let scenario = load(arguments, &[])?;
     match folder {
-        None => predict(&scenario, json),
+        None => predict(&scenario, &scenario.display.with(units), json),
         Some(folder) => hold(arguments, folder, json),
     }
 }
 
-fn predict(scenario: &Scenario, json: bool) -> Result<Verdict, Failure> {
+fn predict(scenario: &Scenario, units: &DisplayUnits, json: bool) -> Result<Verdict, Failure> {
     let methods = std::iter::once(Method::Primary)
         .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
     let ensembles = methods
@@ -39,7 +41,7 @@ fn predict(scenario: &Scenario, json: bool) -> Result<Verdict, Failure> {
         print_json(&ensembles)?;
     } else {
         for ensemble in &ensembles {
-            print(&text(ensemble))?;
+            print(&text(ensemble, units))?;
         }
     }
     Ok(Verdict::Pass)
@@ -88,7 +90,7 @@ fn verdict(found: &Against) -> Verdict {
     found.compared.iter().map(of).fold(least, Verdict::worst)
 }
 
-fn text(ensemble: &Ensemble) -> String {
+fn text(ensemble: &Ensemble, units: &DisplayUnits) -> String {
     let figure = |value: f64| significant(value, 4);
     let mut out = format!("{}, as an ensemble\n", ensemble.method);
     let _ = writeln!(
@@ -109,55 +111,76 @@ fn text(ensemble: &Ensemble) -> String {
         );
     }
     if !ensemble.drift.is_empty() {
-        let _ = writeln!(
-            out,
-            "  drift of the ensemble: percentiles 5 %, 50 % and 95 % of the runs\n  {:>6} {:>29} {:>29} {:>19}",
-            "hours", "latitude, arcmin", "longitude, arcmin", "50, 95 %, nmi"
-        );
-        let every = (ensemble.drift.len() / DRIFT_ROWS).max(1);
-        for row in ensemble.drift.iter().skip(every - 1).step_by(every) {
-            let [latitude, longitude] = [row.latitude_arcmin, row.longitude_arcmin];
-            let _ = writeln!(
-                out,
-                "  {:>6.1} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
-                row.hours,
-                latitude.p5,
-                latitude.p50,
-                latitude.p95,
-                longitude.p5,
-                longitude.p50,
-                longitude.p95,
-                row.radial_nmi.p50,
-                row.radial_nmi.p95
-            );
-        }
+        out += &drift(&ensemble.drift, units);
     }
-    if let Some(solution) = ensemble.drift.last().and_then(|last| last.solution) {
-        let hours = ensemble.drift.last().map_or(0.0, |last| last.hours);
-        let _ = writeln!(
-            out,
-            "  {:24} {:>12} {:>12} {:>12} {:>12}  unit",
-            format!("attitude, velocity, {hours:.1} h"),
-            "σ",
-            "5 %",
-            "50 %",
-            "95 %"
-        );
-        let names = [
-            ("heading", "arcmin"),
-            ("pitch", "arcmin"),
-            ("roll", "arcmin"),
-            ("velocity north", "m/s"),
-            ("velocity east", "m/s"),
-        ];
-        for ((name, unit), band) in names.into_iter().zip(solution.all()) {
-            let [sigma, p5, p50, p95] = [band.sigma, band.p5, band.p50, band.p95].map(figure);
-            let _ = writeln!(out, "  {name:24} {sigma:>12} {p5:>12} {p50:>12} {p95:>12}  {unit}");
-        }
+    if let Some(last) = ensemble.drift.last()
+        && let Some(bands) = &last.solution
+    {
+        out += &solution(last.hours, bands, units);
     }
     let _ = writeln!(out, "  not modelled:");
     for what in &ensemble.not_modelled {
         let _ = writeln!(out, "    {what}");
+    }
+    out
+}
+
+/// Table of the drift over the ensemble.
+fn drift(rows: &[DriftBand], units: &DisplayUnits) -> String {
+    let (in_latitude, in_longitude, in_radial) =
+        (units.latitude(), units.longitude(), units.radial());
+    let mut out = format!(
+        "  drift of the ensemble: percentiles 5 %, 50 % and 95 % of the runs\n  {:>6} {:>29} {:>29} {:>19}\n",
+        "hours",
+        format!("latitude, {}", in_latitude.name),
+        format!("longitude, {}", in_longitude.name),
+        format!("50, 95 %, {}", in_radial.name)
+    );
+    let every = (rows.len() / DRIFT_ROWS).max(1);
+    for row in rows.iter().skip(every - 1).step_by(every) {
+        let _ = write!(out, "  {:>6.1}", row.hours);
+        let ErrorBand { p5, p50, p95, .. } = row.latitude_arcmin;
+        let latitude = [p5, p50, p95].map(|value| in_latitude.of(value));
+        let ErrorBand { p5, p50, p95, .. } = row.longitude_arcmin;
+        let longitude = [p5, p50, p95].map(|value| in_longitude.of(value));
+        let radial = [row.radial_nmi.p50, row.radial_nmi.p95].map(|value| in_radial.of(value));
+        let columns =
+            [(&latitude[..], in_latitude), (&longitude, in_longitude), (&radial, in_radial)];
+        for (values, unit) in columns {
+            // A digit more than the scores have.
+            let decimals = unit.decimals + 1;
+            for value in values {
+                let _ = write!(out, " {value:>9.decimals$}");
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// Table of attitude and velocity over the ensemble at the end.
+fn solution(hours: f64, bands: &SolutionBands, units: &DisplayUnits) -> String {
+    let mut out = format!(
+        "  {:24} {:>12} {:>12} {:>12} {:>12}  unit\n",
+        format!("attitude, velocity, {hours:.1} h"),
+        "σ",
+        "5 %",
+        "50 %",
+        "95 %"
+    );
+    let (attitude, velocity) = (units.attitude(), units.velocity());
+    let names = [
+        ("heading", attitude),
+        ("pitch", attitude),
+        ("roll", attitude),
+        ("velocity north", velocity),
+        ("velocity east", velocity),
+    ];
+    for ((name, unit), band) in names.into_iter().zip(bands.all()) {
+        let [sigma, p5, p50, p95] =
+            [band.sigma, band.p5, band.p50, band.p95].map(|value| significant(unit.of(value), 4));
+        let _ =
+            writeln!(out, "  {name:24} {sigma:>12} {p5:>12} {p50:>12} {p95:>12}  {}", unit.name);
     }
     out
 }
