@@ -86,6 +86,10 @@ keys! {
         gyro_rate_random_walk: f64
             = si(&[UnitDimension::RATE_RANDOM_WALK], Bounds::NotNegative), "0 deg/h/sqrt(h)",
             "Rate random walk of each gyro.";
+        gyro_bias_instability: f64 = si(&[UnitDimension::GYRO_BIAS], Bounds::NotNegative), "0 deg/h",
+            "Bias instability (1/f noise) of each gyro: coefficient B of IEEE Std 952, the floor of the Allan deviation divided by 0.664.";
+        accel_bias_instability: f64 = si(&[UnitDimension::ACCEL_BIAS], Bounds::NotNegative), "0 ug",
+            "Bias instability (1/f noise) of each accelerometer: coefficient B, the floor of the Allan deviation divided by 0.664.";
         gyro_quantization: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::NotNegative), "0 arcsec",
             "Angle of one gyro count, where coarser than the format's 3e-6 arcsec; 0: none.";
         accel_quantization: f64 = si(&[UnitDimension::VELOCITY], Bounds::NotNegative), "0 m/s",
