@@ -280,6 +280,17 @@ fn truth(
             |p: &plant::GaussMarkov| Wander::gauss_markov(group, p.sigma, p.correlation_time_s);
         wanders.extend(process.iter().map(wander));
     }
+    for (group, coefficient) in [
+        (ParameterGroup::GyroBias, extensions.gyro_bias_instability),
+        (ParameterGroup::AccelBias, extensions.accel_bias_instability),
+    ] {
+        if coefficient > 0.0 {
+            let processes = octant_plant::flicker::processes(coefficient);
+            let wander =
+                |p: plant::GaussMarkov| Wander::gauss_markov(group, p.sigma, p.correlation_time_s);
+            wanders.extend(processes.map(wander));
+        }
+    }
     if extensions.gyro_rate_random_walk > 0.0 {
         let walk = Wander::random_walk(ParameterGroup::GyroBias, extensions.gyro_rate_random_walk);
         wanders.push(Wander { variance: walk.driving * start_s, ..walk });

@@ -3,7 +3,7 @@
 use octant_earth::Vector3;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::resolve::{DrawnValues, Seeded};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{GRADES, Method, Scenario};
 use std::path::{Path, PathBuf};
 
 fn files() -> Vec<PathBuf> {
@@ -53,6 +53,53 @@ fn a_resolved_scenario_makes_the_same_run_and_resolves_to_itself() {
         let draws = DrawnValues::of(&again, &Seeded(1));
         assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
     }
+}
+
+/// `imu.model` gives the values that `octant new` writes out, keys beside it replace them, and the
+/// resolved scenario has them all: it doesn't need the model any more.
+#[test]
+fn an_instrument_by_its_name_is_that_of_its_sheet() {
+    let parsed = |text: &str| {
+        Scenario::parse(text, "model.toml", Path::new(""), &[])
+            .unwrap_or_else(|error| panic!("{error}\n{text}"))
+    };
+    let tail = "[procedure.navigation]\nduration = \"1 h\"\n";
+    for sheet in GRADES {
+        let line = |key: &str, value: &str| format!("{key} = {value}\n");
+        let imu: String = sheet.imu.iter().map(|(key, value, _)| line(key, value)).collect();
+        let prior: String = sheet.prior.iter().map(|(key, value)| line(key, value)).collect();
+        let written = parsed(&format!(
+            "schema = 1\n[imu]\n{imu}[procedure.calibration]\n\
+             [procedure.calibration.prior]\n{prior}{tail}"
+        ));
+        let named = parsed(&format!(
+            "schema = 1\n[imu]\nmodel = \"{}\"\n[procedure.calibration]\n{tail}",
+            sheet.name
+        ));
+        assert_eq!(both_configurations(&named), both_configurations(&written), "{}", sheet.name);
+        let resolved = named.to_resolved_toml(1, &DrawnValues::of(&named, &Seeded(1)));
+        let other = resolved
+            .replace(sheet.name, if sheet.name == "table-1" { "tactical-mems" } else { "table-1" });
+        assert_ne!(other, resolved);
+        assert_eq!(both_configurations(&parsed(&other)), both_configurations(&named), "{resolved}");
+    }
+    // 0.753 deg/h in rad/s; the accelerometers' value is the one beside the model.
+    let mems = parsed(
+        "schema = 1\n[imu]\nmodel = \"tactical-mems\"\n[imu.extensions]\n\
+         accel_bias_instability = \"10 ug\"\n[procedure.navigation]\nduration = \"1 h\"\n",
+    );
+    let extensions = &mems.imu.extensions;
+    let expected = 0.753 * std::f64::consts::PI / 180.0 / 3600.0;
+    assert!((extensions.gyro_bias_instability / expected - 1.0).abs() < 1e-12);
+    assert!((extensions.accel_bias_instability / (10.0 * 9.80665e-6) - 1.0).abs() < 1e-12);
+    let unknown = Scenario::parse(
+        "schema = 1\n[imu]\nmodel = \"fog-tactical\"\n[procedure.navigation]\nduration = \"1 h\"\n",
+        "model.toml",
+        Path::new(""),
+        &[],
+    );
+    let said = unknown.unwrap_err().to_string();
+    assert!(GRADES.iter().all(|sheet| said.contains(sheet.name)), "{said}");
 }
 
 #[test]

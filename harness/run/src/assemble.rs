@@ -6,7 +6,7 @@ use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
-use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
 use octant_report::{ReportData, ReportProvenance, SolutionSeries};
@@ -228,6 +228,15 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
             format!("{:.2} µg/√Hz", imu.velocity_random_walk / MICRO_G),
         ),
     ];
+    for (name, coefficient, unit, symbol) in [
+        ("gyro bias instability", imu.extensions.gyro_bias_instability, DEG_PER_HOUR, "deg/h"),
+        ("accelerometer bias instability", imu.extensions.accel_bias_instability, MICRO_G, "µg"),
+    ] {
+        if coefficient > 0.0 {
+            let coefficient = number::significant(coefficient / unit, 4);
+            facts.push((name.to_owned(), format!("{coefficient} {symbol}")));
+        }
+    }
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
     if let Some(drive) = &scenario.drive {
         let range = |axis: TableAxis| {

@@ -2,6 +2,7 @@
 
 use super::document::{DocumentNode, DocumentTable, DocumentValue, parse_default};
 use super::error::Problem;
+use super::grades::GradeSheet;
 use super::keys::{
     Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
 };
@@ -16,6 +17,7 @@ pub(crate) fn derive(document: &mut DocumentTable) {
             .any(|key| document.at(&format!("motion.ship.{key}")).is_some());
         set(document, "motion.ship.preset", if own { "calm" } else { "default" });
     }
+    instrument(document);
     if document.at("procedure.calibration").is_some() {
         calibration(document);
     }
@@ -63,6 +65,20 @@ pub(crate) fn derive(document: &mut DocumentTable) {
                 _ => rate,
             };
             set(document, &format!("{table}.rate"), &rate);
+        }
+    }
+}
+
+/// Adds the values of the instrument that the scenario names, and the σ of its errors as those from which
+/// the filter starts. Other keys keep the defaults of Table 1.
+fn instrument(document: &mut DocumentTable) {
+    let Some(sheet) = text(document, "imu.model").and_then(GradeSheet::of) else { return };
+    for (key, value, _) in sheet.imu {
+        set(document, &format!("imu.{key}"), value);
+    }
+    if document.at("procedure.calibration").is_some() {
+        for (key, value) in sheet.prior {
+            set(document, &format!("procedure.calibration.prior.{key}"), value);
         }
     }
 }

@@ -14,6 +14,7 @@ mod condition;
 mod derive;
 mod document;
 pub mod error;
+mod grades;
 mod keys;
 mod load;
 mod model;
@@ -31,6 +32,7 @@ mod write;
 
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
+pub use grades::{GRADES, GradeSheet};
 pub use keys::SCHEMA;
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,

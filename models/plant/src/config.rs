@@ -147,6 +147,13 @@ pub struct Extensions {
     pub accel_gauss_markov: Option<GaussMarkov>,
     /// Gyro rate random walk, (rad/s)/√s.
     pub gyro_rate_random_walk: f64,
+    /// Coefficient B of the gyros' bias instability (1/f noise), rad/s; 0: none. The Allan deviation
+    /// has its floor at 0.664 B (IEEE Std 952). [`crate::flicker`] says of which processes it is made.
+    /// It starts in its stationary distribution, of standard deviation 2.07 B, and continues from
+    /// calibration into navigation.
+    pub gyro_bias_instability: f64,
+    /// The same of the accelerometers, m/s².
+    pub accel_bias_instability: f64,
     /// Quantization of the gyros, coarser than the format, rad per count; 0: none.
     pub gyro_quantization_rad: f64,
     /// Quantization of the accelerometers, m/s per count; 0: none.

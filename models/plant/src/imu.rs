@@ -99,6 +99,19 @@ impl Triple {
     }
 }
 
+/// Processes of the bias instability of a triad, each with its own stream; none without it.
+fn flicker(triad: &str, coefficient: f64, dt: f64, seed: u64) -> Vec<Wander> {
+    if coefficient == 0.0 {
+        return Vec::new();
+    }
+    let processes = crate::flicker::processes(coefficient);
+    let wander = |(index, process): (usize, &_)| {
+        let stream = Triad::new(seed, &format!("{triad}.flicker.{index}"));
+        Wander::gauss_markov(process, dt, stream)
+    };
+    processes.iter().enumerate().map(wander).collect()
+}
+
 /// Both triads.
 #[derive(Clone, Debug)]
 pub(crate) struct Sensors {
@@ -140,6 +153,8 @@ impl Sensors {
             let stream = Triad::new(seed, "accelerometer.gauss_markov");
             accel_wanders.push(Wander::gauss_markov(process, dt, stream));
         }
+        gyro_wanders.extend(flicker("gyro", e.gyro_bias_instability, dt, seed));
+        accel_wanders.extend(flicker("accelerometer", e.accel_bias_instability, dt, seed));
         let triple = |lsb: f64, density: f64, name, wanders, range: f64, quantum: f64| Triple {
             lsb,
             sigma_counts: density * root_dt / lsb,

@@ -10,9 +10,10 @@
 //! that aids a calibration is made at the same stamp.
 //!
 //! Random numbers come from named streams ([`octant_random`]): `gyro.noise`, `accelerometer.noise`,
-//! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `aiding.noise`,
-//! `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for numbers drawn before a
-//! run ([`draw`]). No stream affects another.
+//! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `gyro.flicker.0` to
+//! `gyro.flicker.8` and `accelerometer.flicker.0` to `accelerometer.flicker.8` ([`flicker`]),
+//! `aiding.noise`, `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for numbers
+//! drawn before a run ([`draw`]). No stream affects another.
 
 mod case;
 pub mod config;
@@ -20,6 +21,7 @@ pub mod course;
 mod disturbed;
 pub mod draw;
 mod encoder;
+pub mod flicker;
 mod gimbal;
 mod imu;
 mod increments;

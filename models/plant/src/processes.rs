@@ -1,4 +1,5 @@
-//! Biases that wander: first-order Gauss-Markov and rate random walk.
+//! Biases that wander: first-order Gauss-Markov, alone or in the sum that is a bias instability, and
+//! rate random walk.
 
 use crate::config::GaussMarkov;
 use octant_random::stream::Triad;

@@ -145,6 +145,8 @@ fn extensions(e: &Extensions, period_s: f64) -> Check {
     gauss_markov(&path("gyro_gauss_markov"), e.gyro_gauss_markov.as_ref())?;
     gauss_markov(&path("accel_gauss_markov"), e.accel_gauss_markov.as_ref())?;
     not_negative(&path("gyro_rate_random_walk"), e.gyro_rate_random_walk)?;
+    not_negative(&path("gyro_bias_instability"), e.gyro_bias_instability)?;
+    not_negative(&path("accel_bias_instability"), e.accel_bias_instability)?;
     let quanta = [
         ("gyro_quantization_rad", e.gyro_quantization_rad, DELTA_THETA_LSB_RAD),
         ("accel_quantization_mps", e.accel_quantization_mps, DELTA_VELOCITY_LSB_MPS),

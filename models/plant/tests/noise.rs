@@ -168,6 +168,119 @@ fn gauss_markov_starts_in_its_stationary_distribution() {
     assert!((sum / n - expected).abs() < 5.0 * (2.0 / n).sqrt() * expected, "{}", sum / n);
 }
 
+/// Autocovariance of averages over τ that are `lag` clusters apart, of a sum of Gauss-Markov
+/// processes: for one of variance s² and correlation time T, with x = τ / T, the integral of
+/// `s² exp(−|t − t'| / T)` over both clusters, divided by τ².
+fn cluster_covariance(processes: &[GaussMarkov], tau: f64, lag: usize) -> f64 {
+    let of_one = |process: &GaussMarkov| {
+        let (s2, x) = (process.sigma.powi(2), tau / process.correlation_time_s);
+        match lag {
+            0 => 2.0 * s2 / (x * x) * (x + (-x).exp_m1()),
+            _ => s2 / (x * x) * (-x).exp_m1().powi(2) * (-x * (lag - 1) as f64).exp(),
+        }
+    };
+    processes.iter().map(of_one).sum()
+}
+
+/// Allan variance of a sum of Gauss-Markov processes (IEEE Std 952-1997, C.1.5, with s² = q² T / 2).
+fn allan_variance(processes: &[GaussMarkov], tau: f64) -> f64 {
+    let of_one = |process: &GaussMarkov| {
+        let (s2, t) = (process.sigma.powi(2), process.correlation_time_s);
+        let x = tau / t;
+        let bracket = 1.0 - (3.0 - 4.0 * (-x).exp() + (-2.0 * x).exp()) / (2.0 * x);
+        2.0 * s2 * t / tau * bracket
+    };
+    processes.iter().map(of_one).sum()
+}
+
+/// Relative standard deviation of an Allan variance from `clusters` clusters without overlap: the
+/// differences of neighbours are Gaussian, so that the mean of their squares has the variance
+/// `2 Σ R(j − k)² / n²`.
+fn allan_spread(processes: &[GaussMarkov], tau: f64, clusters: usize) -> f64 {
+    let c = |lag: isize| cluster_covariance(processes, tau, lag.unsigned_abs());
+    let n = clusters as isize - 1;
+    let difference = |lag: isize| 2.0 * c(lag) - c(lag - 1) - c(lag + 1);
+    let at_zero = difference(0);
+    let sum: f64 =
+        (1 - n..n).map(|lag| (n - lag.abs()) as f64 * (difference(lag) / at_zero).powi(2)).sum();
+    (2.0 * sum).sqrt() / n as f64
+}
+
+/// √(2 ln 2 / π): the floor of the Allan deviation of flicker noise of coefficient 1.
+const FLOOR: f64 = 0.664_282;
+
+/// The band of the documentation: within 1 % from 16 s to 9 h, within 3 % from 8 s to 18 h.
+#[test]
+fn the_processes_of_a_bias_instability_have_a_flat_floor() {
+    let processes = octant_plant::flicker::processes(1.0);
+    for step in 0..=260 {
+        let tau = 8.0 * (step as f64 * 0.05 * std::f64::consts::LN_2).exp();
+        let found = allan_variance(&processes, tau).sqrt() / FLOOR;
+        let slack = if (16.0..=32_768.0).contains(&tau) { 0.01 } else { 0.03 };
+        assert!((found - 1.0).abs() < slack, "{tau} s: {found}");
+        let other = cluster_covariance(&processes, tau, 0) - cluster_covariance(&processes, tau, 1);
+        assert!((allan_variance(&processes, tau) / other - 1.0).abs() < 1e-6, "{tau} s");
+    }
+    let sigma = processes.iter().map(|process| process.sigma.powi(2)).sum::<f64>().sqrt();
+    assert!((sigma - 2.065).abs() < 1e-3, "{sigma}");
+}
+
+/// 42 h at 10 Hz: the six axes have independent noise of the same shape.
+#[test]
+fn bias_instability_has_the_floor_of_its_coefficient() {
+    let mut config = perfect();
+    config.sample_period_ns = 100_000_000;
+    let (gyro, accelerometer) = (1.0 * DEG_PER_HOUR, 50.0 * MICRO_G);
+    config.imu.extensions.gyro_bias_instability = gyro;
+    config.imu.extensions.accel_bias_instability = accelerometer;
+    let noise = noise_of(&config, 1_500_000);
+    let processes = octant_plant::flicker::processes(1.0);
+    for m in [160, 640, 2560, 10_240] {
+        let tau = m as f64 * 0.1;
+        let clusters = noise.len() / m;
+        let mut variance = 0.0;
+        for axis in 0..6 {
+            let unit = if axis < 3 { gyro } else { accelerometer } * tau;
+            let averages: Vec<f64> = noise
+                .chunks_exact(m)
+                .map(|cluster| cluster.iter().map(|x| x[axis]).sum::<f64>() / unit)
+                .collect();
+            let squares: f64 = averages.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+            variance += squares / (2.0 * (clusters - 1) as f64) / 6.0;
+        }
+        // Five standard errors of the mean of six.
+        let bound = 5.0 * allan_spread(&processes, tau, clusters) / 6.0f64.sqrt();
+        let found = variance / allan_variance(&processes, tau);
+        assert!((found - 1.0).abs() < bound, "{tau} s: {found}, bound {bound}");
+        let floor = variance / FLOOR.powi(2);
+        assert!((floor - 1.0).abs() < bound + 0.02, "{tau} s: {floor}, bound {bound}");
+    }
+}
+
+#[test]
+fn bias_instability_starts_in_its_stationary_distribution() {
+    let (mut sums, seeds) = ([0.0; 2], 300);
+    for seed in 0..seeds {
+        let mut config = perfect();
+        config.seed = seed;
+        config.imu.extensions.gyro_bias_instability = 10.0 * DEG_PER_HOUR;
+        config.imu.extensions.accel_bias_instability = 1000.0 * MICRO_G;
+        for (axis, x) in noise_of(&config, 1)[0].iter().enumerate() {
+            let unit = if axis < 3 { 10.0 * DEG_PER_HOUR } else { 1000.0 * MICRO_G } * DT;
+            sums[axis / 3] += (x / unit).powi(2);
+        }
+    }
+    let n = 3.0 * seeds as f64;
+    let processes = octant_plant::flicker::processes(1.0);
+    let expected: f64 = processes.iter().map(|process| process.sigma.powi(2)).sum();
+    for sum in sums {
+        // The average over one sample has less than the variance of an instant, by a third of
+        // dt / T for each process: 2e-4 of it. Rounding to counts adds below 1e-6.
+        let bound = 5.0 * (2.0 / n).sqrt() + 3e-4;
+        assert!((sum / n / expected - 1.0).abs() < bound, "{}", sum / n / expected);
+    }
+}
+
 fn steps(config: &PlantConfig, samples: u64) -> Vec<PlantStep> {
     run(&mut Plant::new(config).unwrap(), &command(0.0, 0.0), samples)
 }
@@ -179,6 +292,7 @@ fn what_is_added_to_one_sensor_moves_no_other() {
     config.imu.extensions.gyro_gauss_markov =
         Some(GaussMarkov { sigma: DEG_PER_HOUR, correlation_time_s: 100.0 });
     config.imu.extensions.gyro_rate_random_walk = DEG_PER_HOUR;
+    config.imu.extensions.gyro_bias_instability = DEG_PER_HOUR;
     config.imu.extensions.gyro_quantization_rad = 1e-8;
     config.aiding.period_ns = PERIOD_NS;
     config.turntable.encoder_sigma_rad = 1e-5;

@@ -389,7 +389,7 @@ fn what_can_not_be_computed_is_refused_by_name() {
         error.to_string(),
         "aiding.period_ns is 7000000, expected a multiple of the sample period, 5000000 ns"
     );
-    let cases: [(Change, &str); 12] = [
+    let cases: [(Change, &str); 13] = [
         (|c| c.sample_period_ns = 0, "sample_period_ns"),
         (|c| c.site.latitude_rad = 90.0 * DEG, "site.latitude_rad"),
         (|c| c.site.latitude_rad = f64::NAN, "site.latitude_rad"),
@@ -398,6 +398,10 @@ fn what_can_not_be_computed_is_refused_by_name() {
         (|c| c.imu.angle_random_walk = f64::INFINITY, "imu.angle_random_walk"),
         (|c| c.imu.parameters.g_dependent[8] = f64::NAN, "imu.parameters.g_zz"),
         (|c| c.imu.extensions.time_skew_s = -0.001, "imu.extensions.time_skew_s"),
+        (
+            |c| c.imu.extensions.accel_bias_instability = -MICRO_G,
+            "imu.extensions.accel_bias_instability",
+        ),
         (
             |c| c.imu.extensions.gyro_quantization_rad = 1e-12,
             "imu.extensions.gyro_quantization_rad",

@@ -29,6 +29,8 @@ fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
         }),
         accel_gauss_markov: Some(GaussMarkov { sigma: 10.0 * MICRO_G, correlation_time_s: 60.0 }),
         gyro_rate_random_walk: 1e-9,
+        gyro_bias_instability: 0.02 * DEG_PER_HOUR,
+        accel_bias_instability: 15.0 * MICRO_G,
         gyro_quantization_rad: 1e-7,
         accel_quantization_mps: 1e-6,
         gyro_range_radps: 6.0,
@@ -279,6 +281,17 @@ fn the_layout_is_the_stored_one() {
     let loaded = Plant::load(&stored).unwrap();
     assert_eq!(saved(&loaded), stored);
     assert_eq!(Writer::outline(&loaded), Writer::outline(plant));
+}
+
+/// A configuration that an earlier version lacked can't be made up.
+#[test]
+fn a_state_of_an_earlier_version_is_refused_in_words() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
+    let error = Plant::load(&std::fs::read(format!("{folder}/plant-1.bin")).unwrap()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the state of a plant has version 1, this program reads version 2"
+    );
 }
 
 /// Makes a frame with another payload and the right checksum.

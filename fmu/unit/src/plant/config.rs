@@ -214,6 +214,8 @@ fn put_extensions(extensions: &Extensions, values: &mut CellValues) {
         gyro_gauss_markov,
         accel_gauss_markov,
         gyro_rate_random_walk,
+        gyro_bias_instability,
+        accel_bias_instability,
         gyro_quantization_rad,
         accel_quantization_mps,
         gyro_range_radps,
@@ -233,6 +235,8 @@ fn put_extensions(extensions: &Extensions, values: &mut CellValues) {
         }
     }
     values.set_real(slot::RATE_RANDOM_WALK, *gyro_rate_random_walk);
+    values.set_real(slot::GYRO_BIAS_INSTABILITY, *gyro_bias_instability);
+    values.set_real(slot::ACCEL_BIAS_INSTABILITY, *accel_bias_instability);
     values.set_real(slot::GYRO_QUANTIZATION, *gyro_quantization_rad);
     values.set_real(slot::ACCEL_QUANTIZATION, *accel_quantization_mps);
     values.set_real(slot::GYRO_RANGE, *gyro_range_radps);
@@ -276,6 +280,8 @@ fn extensions(values: &CellValues) -> Extensions {
         gyro_gauss_markov: process(slot::GYRO_GAUSS_MARKOV),
         accel_gauss_markov: process(slot::ACCEL_GAUSS_MARKOV),
         gyro_rate_random_walk: values.real(slot::RATE_RANDOM_WALK),
+        gyro_bias_instability: values.real(slot::GYRO_BIAS_INSTABILITY),
+        accel_bias_instability: values.real(slot::ACCEL_BIAS_INSTABILITY),
         gyro_quantization_rad: values.real(slot::GYRO_QUANTIZATION),
         accel_quantization_mps: values.real(slot::ACCEL_QUANTIZATION),
         gyro_range_radps: values.real(slot::GYRO_RANGE),

@@ -44,11 +44,15 @@ group!(AccelMisalignmentKeys, UnitDimension::SMALL_ANGLE, 3, "yx, zx, zy");
 keys! {
     /// `[imu]`.
     pub(crate) struct ImuKeys {
-        #[expect(dead_code, reason = "it has one value")]
+        #[expect(dead_code, reason = "it is read before: its values are the defaults of other keys")]
         model: () = choice! {
                 "table-1" => (), "the reference instrument of the paper (Zheng, Han and Zheng, 2015, Table 1)";
+                "navigation-laser" => (), "laser gyros, navigation grade: Honeywell HG9900";
+                "navigation-fibre-optic" => (), "fibre-optic gyros, navigation grade: the inertial grade of Yazdi, Ayazi and Najafi (1998)";
+                "tactical-fibre-optic" => (), "fibre-optic gyros, tactical grade: Northrop Grumman LN-200";
+                "tactical-mems" => (), "MEMS gyros, tactical grade: Sensonor STIM300";
             }, "table-1",
-            "Instrument whose values stand where no others are given.";
+            "Instrument whose values stand where no others are given, here and in procedure.calibration.prior.";
         rate: At<f64> = within(&[UnitDimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"), "200 Hz",
             "Samples per second; the period is a whole number of nanoseconds.";
         angle_random_walk: f64
@@ -86,6 +90,10 @@ keys! {
         gyro_rate_random_walk: f64
             = si(&[UnitDimension::RATE_RANDOM_WALK], Bounds::NotNegative), "0 deg/h/sqrt(h)",
             "Rate random walk of each gyro.";
+        gyro_bias_instability: f64 = si(&[UnitDimension::GYRO_BIAS], Bounds::NotNegative), "0 deg/h",
+            "Bias instability (1/f noise) of each gyro: coefficient B of IEEE Std 952, the floor of the Allan deviation divided by 0.664.";
+        accel_bias_instability: f64 = si(&[UnitDimension::ACCEL_BIAS], Bounds::NotNegative), "0 ug",
+            "Bias instability (1/f noise) of each accelerometer: coefficient B, the floor of the Allan deviation divided by 0.664.";
         gyro_quantization: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::NotNegative), "0 arcsec",
             "Angle of one gyro count, where coarser than the format's 3e-6 arcsec; 0: none.";
         accel_quantization: f64 = si(&[UnitDimension::VELOCITY], Bounds::NotNegative), "0 m/s",

@@ -45,6 +45,8 @@ pub(super) fn imu(imu: &ImuKeys) -> Result<plant::Imu, Problem> {
             gyro_gauss_markov: gyro.map(|keys| gauss_markov(keys.sigma, keys.correlation_time)),
             accel_gauss_markov: accel.map(|keys| gauss_markov(keys.sigma, keys.correlation_time)),
             gyro_rate_random_walk: more.gyro_rate_random_walk,
+            gyro_bias_instability: more.gyro_bias_instability,
+            accel_bias_instability: more.accel_bias_instability,
             gyro_quantization_rad: more.gyro_quantization,
             accel_quantization_mps: more.accel_quantization,
             gyro_range_radps: more.gyro_range,

@@ -48,9 +48,15 @@ const WANDERING: [DeclaredVariable; 6] = concatenated(&[
     &gauss_markov!("accel_gauss_markov", ACCEL_BIAS, 10.0 * MICRO_G, "accelerometer biases"),
 ]);
 
-const LIMITS: [DeclaredVariable; 5] = variables! {
+const LIMITS: [DeclaredVariable; 7] = variables! {
     parameter("imu.gyro_rate_random_walk", Real) of(&q::RATE_RANDOM_WALK) min(0.0) nominal(1e-9):
         "Rate random walk of the gyros; 0: none.";
+    parameter("imu.gyro_bias_instability", Real) of(&q::GYRO_BIAS) min(0.0)
+        nominal(0.001 * DEG_PER_HOUR):
+        "Bias instability of the gyros, coefficient B of IEEE Std 952; 0: none.";
+    parameter("imu.accel_bias_instability", Real) of(&q::ACCEL_BIAS) min(0.0)
+        nominal(10.0 * MICRO_G):
+        "Bias instability of the accelerometers, coefficient B of IEEE Std 952; 0: none.";
     parameter("imu.gyro_quantization", Real) of(&q::ANGLE_INCREMENT) min(0.0) nominal(1e-6):
         "Quantum of the gyros, coarser than that of the counts; 0: none.";
     parameter("imu.accel_quantization", Real) of(&q::VELOCITY_INCREMENT) min(0.0) nominal(1e-5):

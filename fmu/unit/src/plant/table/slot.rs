@@ -72,6 +72,8 @@ slots! {
     GYRO_GAUSS_MARKOV "imu.gyro_gauss_markov.enabled";
     ACCEL_GAUSS_MARKOV "imu.accel_gauss_markov.enabled";
     RATE_RANDOM_WALK "imu.gyro_rate_random_walk";
+    GYRO_BIAS_INSTABILITY "imu.gyro_bias_instability";
+    ACCEL_BIAS_INSTABILITY "imu.accel_bias_instability";
     GYRO_QUANTIZATION "imu.gyro_quantization";
     ACCEL_QUANTIZATION "imu.accel_quantization";
     GYRO_RANGE "imu.gyro_range";
