@@ -61,6 +61,7 @@ mod master;
 mod messages;
 mod new_scenario;
 mod nightly;
+mod own_sequences;
 mod qualification;
 mod real_recording;
 mod realtime;

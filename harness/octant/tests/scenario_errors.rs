@@ -39,7 +39,7 @@ fn a_key_that_is_unknown_is_told_with_the_nearest_and_the_list() {
     assert_eq!((place, path.as_str()), (at(3, 3), "procedure.calibration.durration"));
     assert_says(
         &message,
-        &["unknown key", "did you mean \"duration\"?", "positions, stops, passes"],
+        &["unknown key", "did you mean \"duration\"?", "positions, stops, name, passes"],
     );
 }
 

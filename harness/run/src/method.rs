@@ -91,10 +91,11 @@ pub fn label(scenario: &Scenario, method: Method) -> String {
         core::Estimator::LeastSquares(_) => "by least squares",
         core::Estimator::ExternalTurntable(_) => "on an external turntable",
     };
-    if calibration.name == "own stops" {
-        format!("own stops {estimator}")
-    } else {
-        format!("{} positions {estimator}", calibration.name)
+    let name = &calibration.name;
+    // A name of the scenario is never that of a published sequence.
+    match octant_calibration::positions::named(name) {
+        Some(_) => format!("{name} positions {estimator}"),
+        None => format!("{name} {estimator}"),
     }
 }
 

@@ -48,11 +48,11 @@ pub fn override_set(document: &mut DocumentTable, argument: &str) -> Result<(), 
             })?;
         }
     }
-    // Giving a sequence in one form removes the other form, and giving a group's values removes its
+    // Giving a sequence in one form removes the other form with its name, and giving a group's values removes its
     // distribution.
     let exclusive: &[&str] = match path.rsplit_once('.').map_or(path, |(_, name)| name) {
         "stops" => &["positions"],
-        "positions" => &["stops"],
+        "positions" => &["stops", "name"],
         _ if section.one_of => &["normal", "uniform", "constant"],
         _ => &[],
     };

@@ -156,6 +156,8 @@ keys! {
             = Of::<String>::kind(Kind::Choice(POSITIONS)), derived("\"eight\", unless stops are given"),
             "Named sequence of positions.";
         stops: At<Option<Vec<StopKeys>>> = stops(), absent("positions are used"), "A sequence of one's own.";
+        name: At<Option<String>> = text(), absent("\"own stops\""),
+            "Name of the sequence of one's own, in tables, reports and on the terminal.";
         passes: u32 = integer(1, 1000), "1", "How often the sequence is walked within the duration.";
         duration: At<f64> = duration(), "4 h", "Whole time: moves and dwells of all passes.";
         estimator: At<EstimatorName> = choice! {
@@ -322,6 +324,10 @@ const fn same(one: &str, other: &str) -> bool {
 pub(super) static BASELINE: Section = section(&[
     as_primary("positions", "Named sequence of positions."),
     as_primary("stops", "A sequence of one's own."),
+    as_primary(
+        "name",
+        "Name of this sequence of one's own; other stops don't inherit the first one's.",
+    ),
     as_primary("passes", "How often the sequence is walked."),
     as_primary("estimator", "How the parameters are estimated."),
     as_primary("error_model", "Form of the filter's system error model."),

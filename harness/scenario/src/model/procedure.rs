@@ -38,7 +38,8 @@ pub enum AlignmentSpec {
 /// One method of calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationSpec {
-    /// Name of the sequence, or `own stops`.
+    /// Name of the sequence: that of a published one, or the scenario's for its own; `own stops` where it
+    /// gives none.
     pub name: String,
     /// Stops.
     pub sequence: octant_calibration::sequence::Sequence,

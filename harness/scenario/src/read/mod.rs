@@ -10,6 +10,7 @@ mod live;
 mod procedure;
 pub(crate) mod reader;
 pub mod requirement;
+mod sequence;
 mod source;
 
 pub(crate) use reader::Reader;
@@ -46,7 +47,8 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         folder,
     };
     let procedure = procedure::procedure(&keys.procedure, &setting)?;
-    let baseline = procedure::baseline(&keys.baseline, &document, &setting)?;
+    let baseline =
+        procedure::baseline(&keys.baseline, &document, &keys.procedure.calibration, &setting)?;
     let endpoint = fmu::endpoint(&keys.endpoint, sample_period_ns)?;
     check_motion(&source, &motion)?;
     let scenario = Scenario {

@@ -1,12 +1,13 @@
 //! The core's procedure: alignment, the methods of calibration, navigation, screening.
 
 use super::reader::Reader;
+use super::sequence::{self, from_degrees, stops};
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use crate::error::Problem;
 use crate::keys::{
     AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, FromTable,
     GateKeys, InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw,
-    Reference, Rotation, ScreeningKeys, StopKeys,
+    Reference, Rotation, ScreeningKeys,
 };
 use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
 use crate::quantity::{self, UnitDimension};
@@ -14,7 +15,6 @@ use octant_calibration::config as core;
 use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_calibration::table::CalibrationTable;
-use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
@@ -139,6 +139,7 @@ fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, P
 pub(super) fn baseline(
     baseline: &At<Option<Raw>>,
     document: &DocumentTable,
+    first: &At<Option<CalibrationKeys>>,
     setting: &Setting<'_>,
 ) -> Result<Option<CalibrationSpec>, Problem> {
     let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
@@ -152,39 +153,27 @@ pub(super) fn baseline(
         return Err(baseline.problem("found positions and stops, expected one of them"));
     }
     let mut merged: DocumentTable = primary.clone();
-    for entry in &overrides.entries {
-        match entry.key.as_str() {
-            "positions" => merged.remove("stops"),
-            "stops" => merged.remove("positions"),
-            _ => {}
+    // A name belongs to its stops: another sequence doesn't inherit it.
+    for (given, replaced) in [("positions", ["stops", "name"]), ("stops", ["positions", "name"])] {
+        if overrides.get(given).is_some() {
+            replaced.into_iter().for_each(|key| merged.remove(key));
         }
+    }
+    for entry in &overrides.entries {
         merged.set(&entry.key, entry.node.clone());
     }
     // The shared keys were already read with the first method, so a problem here belongs to the
     // baseline.
     let second = CalibrationKeys::of(&Reader::new(&merged, &baseline.path, &baseline.place))?;
+    if let Some(first) = &**first {
+        sequence::check_names(first, &second)?;
+    }
     calibration(&second, setting).map(Some)
 }
 
 fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<CalibrationSpec, Problem> {
     let passes = keys.passes;
-    if keys.positions.given && keys.stops.is_some() {
-        return Err(keys.stops.problem("found stops beside positions, expected one of them"));
-    }
-    let positions = &keys.positions;
-    let (name, sequence) = match (&*keys.stops, &**positions) {
-        (Some(own), _) => {
-            let sequence = Sequence::new(&stops(own), passes);
-            ("own stops", sequence.map_err(|error| keys.stops.problem(error.to_string()))?)
-        }
-        (None, name) => {
-            let name = name.as_deref().unwrap_or_default();
-            let stops = positions::named(name)
-                .ok_or_else(|| positions.problem(format!("found {name:?}")))?;
-            let sequence = Sequence::new(&from_degrees(stops), passes);
-            (name, sequence.map_err(|error| positions.problem(error.to_string()))?)
-        }
-    };
+    let (name, sequence) = sequence::of(keys)?;
     let duration_s = *keys.duration;
     if samples_of(duration_s, setting.sample_period_ns).is_none() {
         return Err(not_whole(&keys.duration, setting));
@@ -215,7 +204,7 @@ fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibrat
             (moves_s + weights * shortest_s).ceil(),
         )));
     }
-    Ok(CalibrationSpec { name: name.to_owned(), sequence, duration_s, dwell_s, estimator })
+    Ok(CalibrationSpec { name, sequence, duration_s, dwell_s, estimator })
 }
 
 fn not_whole<T>(time: &At<T>, setting: &Setting<'_>) -> Problem {
@@ -223,24 +212,6 @@ fn not_whole<T>(time: &At<T>, setting: &Setting<'_>) -> Problem {
     time.problem(format!(
         "found {found:?}, expected a multiple of the sample period, {period_ns} ns"
     ))
-}
-
-fn from_degrees(stops: &[positions::Degrees]) -> Vec<Stop> {
-    let stop = |(azimuth_deg, roll_deg, weight): &positions::Degrees| Stop {
-        azimuth_rad: azimuth_deg * DEG,
-        roll_rad: roll_deg * DEG,
-        weight: *weight,
-    };
-    stops.iter().map(stop).collect()
-}
-
-fn stops(keys: &[StopKeys]) -> Vec<Stop> {
-    let stop = |keys: &StopKeys| Stop {
-        azimuth_rad: keys.azimuth,
-        roll_rad: keys.roll,
-        weight: keys.weight,
-    };
-    keys.iter().map(stop).collect()
 }
 
 /// Number of samples in a time, if it is a multiple of the sample period.
