@@ -110,6 +110,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         convergence: watcher.convergence,
         nis: watcher.nis,
         gimbals: watcher.gimbals,
+        stops: octant_run::assemble::stop_labels(&scenario),
         provenance: provenance(&manifest),
         dispositions,
         units: scenario.display.with(arguments.units.unwrap_or_default()),

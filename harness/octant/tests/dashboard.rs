@@ -9,7 +9,7 @@ use octant_watch::plain;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
-fn screen(follow: &Follow, page: Page, width: u16, height: u16) -> String {
+pub fn screen(follow: &Follow, page: Page, width: u16, height: u16) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
     terminal.draw(|frame| dashboard::draw(frame, follow, page)).unwrap();
     terminal.backend().to_string()
@@ -43,7 +43,8 @@ fn the_dashboard_shows_a_known_state() {
             "a known state",
             "20.0 s of 40.0 s, 50.0 %",
             "recorded, and not judged yet",
-            "navigating, stop 5",
+            "mode      navigating",
+            "stop      5",
             "azimuth 0.00°, roll 0.00°",
             "latitude",
             "largest, navigating",
@@ -66,7 +67,7 @@ fn the_dashboard_shows_a_known_state() {
     shows(&plain::line(&follow), &["20.0 s", "50.0 %", "1 of 2 faults fired, spike-1 acts"]);
     // No terminal is too small.
     for (width, height) in [(1, 1), (20, 5), (40, 12), (300, 3)] {
-        for page in [Page::Overview, Page::Curves, Page::Log] {
+        for page in [Page::Overview, Page::Curves, Page::Log, Page::Parameters] {
             screen(&follow, page, width, height);
         }
     }

@@ -77,6 +77,48 @@ fn every_form_of_a_trigger_is_read_into_epochs() {
 }
 
 #[test]
+fn a_position_is_the_stop_of_its_first_visit() {
+    let (mode, delay) = (Mode::Calibrating, 0);
+    for (text, expected) in [
+        // (180°, 90°) is the fifth position again: the first visit is (0°, 270°), the fifth stop.
+        ("position = 5, counted = \"positions\"", Trigger::Position { stop: 4, mode, delay }),
+        ("position = 6, counted = \"positions\"", Trigger::Position { stop: 7, mode, delay }),
+        ("moving_to = 8, counted = \"positions\"", Trigger::Move { stop: 16, mode, delay }),
+        ("position = 6, counted = \"stops\"", Trigger::Position { stop: 5, mode, delay }),
+        (
+            "position = 2, counted = \"positions\", phase = \"navigation\"",
+            Trigger::Position { stop: 1, mode: Mode::Navigating, delay },
+        ),
+    ] {
+        assert_eq!(trigger(text), expected, "{text}");
+    }
+    let more = "trigger = { position = 9, counted = \"positions\" }";
+    let reason = ["found position 9", "the calibration has 8 positions"];
+    assert_problem(more, (1, 24), ".trigger.position", &reason);
+    let more = "trigger = { moving_to = 3, counted = \"positions\", phase = \"navigation\" }";
+    let reason = ["found position 3", "the rotation in navigation has 2 positions"];
+    assert_problem(more, (1, 25), ".trigger.moving_to", &reason);
+
+    // Both methods have one schedule: the fifth position of the six is (90°, 90°), their seventh stop.
+    let with_six = |trigger: &str| {
+        spike(&format!("trigger = {{ {trigger} }}")) + "[baseline]\npositions = \"six\"\n"
+    };
+    let (.., message) = problem(&with_six("position = 5, counted = \"positions\""));
+    for part in [
+        "found position 5, which the calibration visits first at stop 5",
+        "the calibration of the baseline at stop 7",
+        "expected the number of a stop",
+    ] {
+        assert!(message.contains(part), "{part:?} is not in {message:?}");
+    }
+    let (.., message) = problem(&with_six("position = 7, counted = \"positions\""));
+    assert!(message.contains("the calibration of the baseline has 6 positions"), "{message}");
+    let scenario = read(&with_six("position = 1, counted = \"positions\""));
+    let first = Trigger::Position { stop: 0, mode, delay };
+    assert_eq!(scenario.faults[0].spec.schedule.trigger, first);
+}
+
+#[test]
 fn values_are_si_and_what_is_left_out_is_filled_in() {
     let text = format!(
         "{HEAD}[[faults]]\nid = \"first\"\nkind = \"spike\"\nchannels = [\"gyro x\", \"gyro z\"]\n\
@@ -302,8 +344,8 @@ fn a_fault_that_cannot_fire_is_refused_with_the_reason() {
     for (trigger, column, key, expected) in [
         ("at = \"6 h\"", 18, ".at", &["would set in at 21600 s", "the run ends at 18000 s"][..]),
         ("sample = 3600001", 22, ".sample", &["the run ends at 18000 s"]),
-        ("position = 20", 24, ".position", &["position 20", "has 19"]),
-        ("moving_to = 1", 25, ".moving_to", &["at position 1 already"]),
+        ("position = 20", 24, ".position", &["stop 20", "has 19 stops"]),
+        ("moving_to = 1", 25, ".moving_to", &["at stop 1 already"]),
         ("position = 40, phase = \"navigation\"", 24, ".position", &["the run ends at 18000 s"]),
         ("position = 19, after = \"5 h\"", 24, ".position", &["at the earliest"]),
         ("mode = \"aligning\"", 20, ".mode", &["its attitude is handed over"]),
@@ -324,7 +366,7 @@ fn a_fault_that_cannot_fire_is_refused_with_the_reason() {
     // The baseline has six positions, 17 stops.
     let text = spike("trigger = { position = 18 }") + "[baseline]\npositions = \"six\"\n";
     let (.., message) = problem(&text);
-    assert!(message.contains("the calibration of the baseline has 17"), "{message}");
+    assert!(message.contains("the calibration of the baseline has 17 stops"), "{message}");
     let circle = format!(
         "{}{}trigger = {{ after_fault = \"a\" }}\nduration = \"1 s\"\n",
         spike("trigger = { after_fault = \"b\" }\nduration = \"1 s\""),

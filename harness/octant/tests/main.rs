@@ -23,6 +23,8 @@ mod core_spikes;
 mod covariance_golden;
 #[cfg(feature = "dashboard")]
 mod dashboard;
+#[cfg(feature = "dashboard")]
+mod dashboard_small;
 mod diff;
 mod document_links;
 mod ensemble_against;

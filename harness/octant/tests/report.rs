@@ -190,6 +190,7 @@ fn data() -> ReportData {
     judge(&mut summary, &requirements, &[]).unwrap();
     let fact = |a: &str, b: &str| (a.to_owned(), b.to_owned());
     ReportData {
+        stops: Vec::new(),
         solution: SolutionSeries::default(),
         baseline_solution: SolutionSeries::default(),
         navigation_start_h: Some(24.0),
@@ -259,6 +260,7 @@ fn gimbals() -> Vec<GimbalPoint> {
                 azimuth_deg: f64::from(*azimuth),
                 roll_deg: f64::from(*roll),
                 moving,
+                stop: None,
             });
         }
     }

@@ -24,6 +24,8 @@ pub struct ReportData {
     pub nis: Vec<NisPoint>,
     /// Gimbal angles of the whole run; any rate that shows the moves.
     pub gimbals: Vec<GimbalPoint>,
+    /// Stops of the calibration, over all passes.
+    pub stops: Vec<StopLabel>,
     /// Errors of attitude and velocity over the navigation.
     pub solution: SolutionSeries,
     /// The same of the baseline; empty without one.
@@ -82,6 +84,19 @@ pub struct GimbalPoint {
     pub roll_deg: f64,
     /// True while the gimbals move.
     pub moving: bool,
+    /// Stop of the calibration that the core reports, from 0 over all passes; `None` in other modes.
+    pub stop: Option<u16>,
+}
+
+/// Label of a stop of the calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StopLabel {
+    /// Planned angle of the inner gimbal, deg.
+    pub azimuth_deg: f64,
+    /// Planned angle of the outer gimbal, deg.
+    pub roll_deg: f64,
+    /// Number and position, such as `7 of 19, position 3 of 8`.
+    pub text: String,
 }
 
 /// Health event that the core reported.

@@ -32,7 +32,7 @@ fn phase(title: &str, points: &[GimbalPoint]) -> Markup {
     if points.len() < 2 {
         return html! {};
     }
-    let (moves, _) = phases(points);
+    let (moves, _) = phases(points, &[]);
     let (from, to) = (points[0].hours, points[points.len() - 1].hours);
     let moving_h: f64 = moves.iter().map(|(start, end, _)| end - start).sum();
     let still = 100.0 * (1.0 - moving_h / (to - from).max(f64::MIN_POSITIVE));

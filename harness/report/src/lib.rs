@@ -29,5 +29,7 @@ pub mod series;
 mod solution;
 pub mod units;
 
-pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance};
+pub use run::{
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance, StopLabel,
+};
 pub use series::SolutionSeries;

@@ -1,7 +1,7 @@
 //! Markers of a run for its plots over time: moves, stops, faults, reports of the core.
 
 use super::chart::json_text;
-use super::data::{GimbalPoint, ReportData};
+use super::data::{GimbalPoint, ReportData, StopLabel};
 use maud::{Markup, PreEscaped, html};
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ type TimelineMark = (f64, f64, String);
 
 /// Renders the data block of the markers.
 pub(super) fn marks(data: &ReportData) -> Markup {
-    let (moves, stops) = phases(&data.gimbals);
+    let (moves, stops) = phases(&data.gimbals, &data.stops);
     let noticed = data
         .events
         .iter()
@@ -39,28 +39,46 @@ pub(super) fn marks(data: &ReportData) -> Markup {
     html! { script #marks type="application/json" { (PreEscaped(json)) } }
 }
 
-/// Divides the run into moves of the gimbals and the stops between them.
-pub(super) fn phases(gimbals: &[GimbalPoint]) -> (Vec<TimelineMark>, Vec<TimelineMark>) {
+/// Largest distance from a planned angle at which a stop is the planned one, deg.
+const SAME_DEG: f64 = 0.1;
+
+/// Divides the run into moves of the gimbals and the stops between them. A stop of the calibration has
+/// its label, others their number in the run.
+pub(super) fn phases(
+    gimbals: &[GimbalPoint],
+    labels: &[StopLabel],
+) -> (Vec<TimelineMark>, Vec<TimelineMark>) {
     let (mut moves, mut stops) = (Vec::<TimelineMark>::new(), Vec::<TimelineMark>::new());
     let Some(first) = gimbals.first() else { return (moves, stops) };
-    let mut since = first.hours;
-    for pair in gimbals.windows(2) {
+    // A unit may count its stops as it likes: the angles tell whether it is at the planned one.
+    let label = |points: &[GimbalPoint], number: usize| {
+        let planned = points.iter().find_map(|point| {
+            let label = labels.get(usize::from(point.stop?))?;
+            let off_deg = (point.azimuth_deg - label.azimuth_deg)
+                .abs()
+                .max((point.roll_deg - label.roll_deg).abs());
+            (off_deg < SAME_DEG).then(|| label.text.clone())
+        });
+        planned.unwrap_or_else(|| number.to_string())
+    };
+    let (mut since, mut from) = (first.hours, 0);
+    for (before, pair) in gimbals.windows(2).enumerate() {
         if pair[0].moving == pair[1].moving {
             continue;
         }
         let at = pair[1].hours;
         if pair[1].moving {
-            stops.push((since, at, (stops.len() + 1).to_string()));
+            stops.push((since, at, label(&gimbals[from..=before], stops.len() + 1)));
         } else {
             moves.push((since, at, String::new()));
         }
-        since = at;
+        (since, from) = (at, before + 1);
     }
     if let Some(last) = gimbals.last().filter(|last| last.hours > since) {
         if last.moving {
             moves.push((since, last.hours, String::new()));
         } else {
-            stops.push((since, last.hours, (stops.len() + 1).to_string()));
+            stops.push((since, last.hours, label(&gimbals[from..], stops.len() + 1)));
         }
     }
     (moves, stops)
@@ -95,6 +113,7 @@ mod tests {
             azimuth_deg: 0.0,
             roll_deg: 0.0,
             moving,
+            stop: None,
         };
         let gimbals = [
             point(0.0, false),
@@ -103,8 +122,38 @@ mod tests {
             point(1.75, false),
             point(3.0, false),
         ];
-        let (moves, stops) = phases(&gimbals);
+        let (moves, stops) = phases(&gimbals, &[]);
         assert_eq!(moves, [(1.5, 1.75, String::new())]);
         assert_eq!(stops, [(0.0, 1.5, "1".to_owned()), (1.75, 3.0, "2".to_owned())]);
+    }
+
+    #[test]
+    fn stops_of_the_calibration_have_their_positions_where_the_angles_are_the_planned_ones() {
+        let point = |hours: f64, roll_deg: f64, moving: bool, stop: Option<u16>| GimbalPoint {
+            hours,
+            azimuth_deg: 0.0,
+            roll_deg,
+            moving,
+            stop,
+        };
+        let labels = [(0.0, "1 of 3, position 1 of 2"), (90.0, "2 of 3, position 2 of 2")].map(
+            |(roll_deg, text)| StopLabel { azimuth_deg: 0.0, roll_deg, text: text.to_owned() },
+        );
+        let gimbals = [
+            // The alignment at the first stop belongs to no stop of the calibration.
+            point(0.0, 0.0, false, None),
+            point(0.5, 0.0, false, Some(0)),
+            point(1.0, 0.0, true, Some(1)),
+            point(1.1, 90.05, false, Some(1)),
+            point(2.0, 90.05, true, Some(0)),
+            // A unit that tells another stop than the one that it commands, and one beyond the plan.
+            point(2.1, 45.0, false, Some(0)),
+            point(3.0, 45.0, true, Some(9)),
+            point(3.1, 0.0, false, Some(9)),
+            point(4.0, 0.0, false, Some(9)),
+        ];
+        let (_, stops) = phases(&gimbals, &labels);
+        let texts: Vec<&str> = stops.iter().map(|(.., text)| text.as_str()).collect();
+        assert_eq!(texts, ["1 of 3, position 1 of 2", "2 of 3, position 2 of 2", "3", "4"]);
     }
 }

@@ -1,7 +1,7 @@
 //! `report.html` of one run, for the reader who assesses it.
 
 pub use super::data::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
+    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance, StopLabel,
 };
 
 use super::calibration::calibration;

@@ -52,6 +52,7 @@ fn gimbals() -> Vec<GimbalPoint> {
                 azimuth_deg: 90.0 * (k % 4) as f64,
                 roll_deg: 45.0 * (k % 3) as f64,
                 moving,
+                stop: None,
             });
         }
     }
@@ -91,6 +92,7 @@ fn data() -> ReportData {
     };
     let chi = |k: usize| (0..3).map(|axis| 3.0 * chance(3 * k + axis).powi(2)).sum::<f64>();
     ReportData {
+        stops: Vec::new(),
         summary: Summary::from_json(include_str!("summary.json")).unwrap(),
         facts: vec![("site".to_owned(), "30.5° latitude".to_owned())],
         truth: Some(Parameters::from_array(&[0.0; PARAMETER_COUNT])),

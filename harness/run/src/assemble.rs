@@ -6,10 +6,11 @@ use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
 use octant_base::display::DisplayUnits;
 use octant_base::number;
+use octant_calibration::sequence::Stop;
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
-use octant_report::{ReportData, ReportProvenance, SolutionSeries};
+use octant_report::{ReportData, ReportProvenance, SolutionSeries, StopLabel};
 use octant_requirements::Verdict;
 use octant_requirements::decision::{DecisionRule, NavigationContext};
 use octant_requirements::equipment::Day;
@@ -182,6 +183,7 @@ pub fn assemble_with(
         convergence: primary.watcher.convergence,
         nis: primary.watcher.nis,
         gimbals: primary.watcher.gimbals,
+        stops: stop_labels(scenario),
         dispositions: Dispositions::default(),
         provenance: ReportProvenance::default(),
     };
@@ -192,6 +194,20 @@ pub fn assemble_with(
 #[must_use]
 pub fn requirement_texts(scenario: &Scenario) -> BTreeMap<String, String> {
     scenario.requirements.iter().map(|r| (r.check.id.clone(), r.text.clone())).collect()
+}
+
+/// Lists the stops of a scenario's calibration with their positions, over all passes.
+#[must_use]
+pub fn stop_labels(scenario: &Scenario) -> Vec<StopLabel> {
+    let Some(calibration) = &scenario.calibration else { return Vec::new() };
+    let numbered = calibration.numbered_stops();
+    let all = calibration.sequence.stops().iter().cycle().take(numbered.count);
+    let label = |(stop, at): (usize, &Stop)| StopLabel {
+        azimuth_deg: at.azimuth_rad.to_degrees(),
+        roll_deg: at.roll_rad.to_degrees(),
+        text: numbered.describe(stop),
+    };
+    all.enumerate().map(label).collect()
 }
 
 /// Lists the setting of a run for the head of the report.

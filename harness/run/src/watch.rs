@@ -332,8 +332,9 @@ impl Watcher {
                 Some(last) if output.moving => (last.azimuth_deg, last.roll_deg),
                 _ => (azimuth_deg, roll_deg),
             };
-            let moving = output.moving;
-            self.gimbals.push(GimbalPoint { hours: hours(output), azimuth_deg, roll_deg, moving });
+            let stop = (output.mode == Mode::Calibrating).then_some(output.stop);
+            let (hours, moving) = (hours(output), output.moving);
+            self.gimbals.push(GimbalPoint { hours, azimuth_deg, roll_deg, moving, stop });
         }
     }
 

@@ -37,9 +37,9 @@ pub use keys::SCHEMA;
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
     EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made,
-    Mapped, Messages, Method, MotionComponent, MotionSpec, ParameterDistribution, Process,
-    Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting, ShipSpectrum, SourceSpec,
-    Speaks, UnknownFault,
+    Mapped, Messages, Method, MotionComponent, MotionSpec, NumberedStops, ParameterDistribution,
+    Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting, ShipSpectrum,
+    SourceSpec, Speaks, UnknownFault,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;

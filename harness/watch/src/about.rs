@@ -1,11 +1,11 @@
 //! Description of a run, from the head of its recording.
 
 use octant_base::number::plain;
-use octant_faults::trigger::{Schedule, Trigger};
+use octant_faults::trigger::Trigger;
 use octant_recorder::reader::Info;
-use octant_sample::Parameters;
+use octant_sample::{Mode, Parameters};
 use octant_scenario::resolve::{DrawnValues, Seeded};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{CalibrationSpec, Fault, Method, NumberedStops, Scenario};
 use std::path::Path;
 
 /// Fault that is armed.
@@ -30,10 +30,8 @@ pub struct About {
     pub seed: u64,
     /// Length of the whole procedure, ns; `None` where it lasts until the source ends.
     pub length_ns: Option<u64>,
-    /// Stops of the calibration, over all passes.
-    pub stops: usize,
-    /// Positions of the sequence: the stops of one pass.
-    pub positions: usize,
+    /// Stops of the calibration with their positions; `None` without one.
+    pub stops: Option<NumberedStops>,
     /// True if the run goes by the clock.
     pub by_clock: bool,
     /// Lateness from which a sample is an overrun, µs, in a run by the clock.
@@ -62,16 +60,14 @@ impl About {
             (Method::Primary, &scenario.calibration)
         };
         let seed = info.run.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(scenario.seed);
+        let stops = calibration.as_ref().map(CalibrationSpec::numbered_stops);
         let has_truth = info.run.get("true_parameters").is_some_and(|text| text == "true");
         Self {
             title: scenario.title.clone(),
             method: octant_run::method::label(&scenario, method),
             seed,
             length_ns: scenario.samples().map(|n| n.saturating_mul(scenario.sample_period_ns)),
-            stops: calibration
-                .as_ref()
-                .map_or(0, |c| c.sequence.stops().len() * c.sequence.passes() as usize),
-            positions: calibration.as_ref().map_or(0, |c| c.sequence.stops().len()),
+            stops,
             by_clock: scenario.realtime.by_clock,
             overrun_us: (scenario.realtime.by_clock)
                 .then(|| scenario.realtime.overrun_ns as f64 / 1e3),
@@ -79,7 +75,7 @@ impl About {
                 .map(|fault| Armed {
                     id: fault.spec.id.clone(),
                     kind: fault.spec.kind.name.to_owned(),
-                    when: when(&fault.spec.schedule, &fault.fires, scenario.sample_period_ns),
+                    when: when(fault, stops.as_ref(), scenario.sample_period_ns),
                 })
                 .collect(),
             truth: has_truth.then(|| DrawnValues::of(&scenario, &Seeded(seed)).parameters),
@@ -89,20 +85,28 @@ impl About {
 }
 
 /// Describes the condition that a fault waits for.
-fn when(schedule: &Schedule, fires: &[u64], period_ns: u64) -> String {
+fn when(fault: &Fault, stops: Option<&NumberedStops>, period_ns: u64) -> String {
+    let fires = &fault.fires;
     // A fault that sets in at time t first alters the interval that begins there.
     let at = |epoch: u64| time(epoch.saturating_sub(1), period_ns);
     let after = |delay: u64| match delay {
         0 => String::new(),
         delay => format!(", {} later", time(delay, period_ns)),
     };
-    match &schedule.trigger {
+    let place = |stop: u16, mode: Mode| {
+        let stop = usize::from(stop);
+        match stops.filter(|_| mode == Mode::Calibrating) {
+            Some(stops) => format!("stop {}", stops.describe(stop)),
+            None => format!("stop {} while {}", stop + 1, mode.name()),
+        }
+    };
+    match &fault.spec.schedule.trigger {
         Trigger::Epoch(epoch) => format!("at {}", at(*epoch)),
         Trigger::Position { stop, mode, delay } => {
-            format!("at stop {} while {}{}", stop + 1, mode.name(), after(*delay))
+            format!("at {}{}", place(*stop, *mode), after(*delay))
         }
         Trigger::Move { stop, mode, delay } => {
-            format!("on the way to stop {} while {}{}", stop + 1, mode.name(), after(*delay))
+            format!("on the way to {}{}", place(*stop, *mode), after(*delay))
         }
         Trigger::Mode { mode, delay } => format!("once {}{}", mode.name(), after(*delay)),
         Trigger::Condition { delay, .. } => format!("on a condition{}", after(*delay)),

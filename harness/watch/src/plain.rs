@@ -4,8 +4,9 @@ use super::follow::{Follow, Stage};
 use super::state::{FaultState, RunState};
 use octant_base::number::{counted, fixed, significant};
 use octant_requirements::Verdict;
-use octant_sample::Mode;
 use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_sample::{Mode, Output};
+use octant_scenario::NumberedStops;
 use std::fmt::Write as _;
 
 /// Renders a time of a run: `9 h 34 min`, `12.5 s`.
@@ -48,21 +49,21 @@ pub fn mode(state: &RunState) -> String {
     let Some(output) = &state.output else { return "no output yet".to_owned() };
     let mut text = output.mode.name().to_owned();
     if matches!(output.mode, Mode::Calibrating | Mode::Navigating) {
-        let _ = write!(text, ", stop {}", output.stop + 1);
-        if output.mode == Mode::Calibrating && state.about.stops > 0 {
-            let (stops, positions) = (state.about.stops, state.about.positions);
-            let _ = write!(text, " of {stops}");
-            // With several passes the stop isn't the position of the sequence.
-            if (1..stops).contains(&positions) {
-                let position = usize::from(output.stop) % positions + 1;
-                let _ = write!(text, " (position {position} of {positions})");
-            }
-        }
+        let _ = write!(text, ", stop {}", stop(output, state.about.stops.as_ref()));
         if output.moving {
             text += ", moving";
         }
     }
     text
+}
+
+/// Describes the stop of an output: `7 of 19, position 3 of 8`; in navigation its number alone.
+pub(crate) fn stop(output: &Output, stops: Option<&NumberedStops>) -> String {
+    let stop = usize::from(output.stop);
+    match stops.filter(|_| output.mode == Mode::Calibrating) {
+        Some(stops) => stops.describe(stop),
+        None => (stop + 1).to_string(),
+    }
 }
 
 /// Names the core's present health reports.

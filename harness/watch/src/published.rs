@@ -4,6 +4,7 @@ use super::state::RunState;
 use octant_recorder::Event;
 use octant_recorder::reader::Item;
 use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_sample::{Mode, Output};
 use serde_json::{Map, Value, json};
 
 /// Channel of messages.
@@ -78,6 +79,10 @@ impl PublishedChannel {
                     number("", "0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done"),
                 ),
                 ("stop", number("", "Number of the stop, from 1")),
+                (
+                    "position",
+                    number("", "Position of a stop of the calibration, from 1; else null"),
+                ),
                 ("moving", json!({ "type": "boolean" })),
                 ("health", json!({ "type": "array", "items": { "type": "string" } })),
                 ("health_bits", number("", "Flags of the core's health")),
@@ -146,6 +151,13 @@ fn object(properties: &[(&str, Value)]) -> Value {
     json!({ "type": "object", "properties": properties })
 }
 
+/// Position of the stop of an output in a calibration, from 1.
+fn position(state: &RunState, output: &Output) -> Option<usize> {
+    let stop = usize::from(output.stop);
+    let stops = state.about.stops.filter(|stops| stop < stops.count)?;
+    (output.mode == Mode::Calibrating).then(|| stops.visited.at(stop))
+}
+
 /// Publishes the messages that follow from an item of the recording, with the state after it.
 pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(PublishedChannel, Value)) {
     match item {
@@ -158,6 +170,7 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
                     "mode": output.mode.name(),
                     "mode_number": output.mode as u8,
                     "stop": output.stop + 1,
+                    "position": position(state, output),
                     "moving": output.moving,
                     "health": output.health.iter().map(octant_score::health::name).collect::<Vec<_>>(),
                     "health_bits": output.health.bits(),

@@ -11,6 +11,7 @@
 //! |---|---|
 //! | [`config`] | configuration of the core, given before the first sample |
 //! | [`sequence`], [`positions`], [`schedule`] | stops, published sequences, timing of the moves |
+//! | [`visits`] | positions that the stops of a sequence visit, for those who describe it |
 //! | [`monitor`] | plain faults of a sample: gaps, stuck channels, saturation |
 //! | [`screen`] | increments that jump further than any motion allows |
 //! | [`continuity`] | discontinuities of rates, by spikes too small to show in a single sample |
@@ -45,6 +46,7 @@ pub mod sequence;
 pub mod state_machine;
 pub mod strapdown;
 pub mod table;
+pub mod visits;
 
 pub use config::CoreConfig;
 pub use state_machine::Core;

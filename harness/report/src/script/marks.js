@@ -34,7 +34,9 @@ function drawMarks(plot) {
   if (stops.length < most) for (const [start, end, label] of stops) {
     const from = at(start), to = at(end);
     parts.push(element("path", { class: "stop", d: `M${from} ${plot.bottom}v-6` }));
-    if (to - from > 6.4 * label.length) parts.push(element("text", { class: "tick x", x: (from + to) / 2, y: plot.bottom - 4 }, label));
+    // Where the position has no room, the number stands alone.
+    const text = [label, label.split(" ")[0]].find((text) => to - from > 6.4 * text.length);
+    if (text) titled(element("text", { class: "tick x", x: (from + to) / 2, y: plot.bottom - 4 }, text), `stop ${label}`);
   }
   let last = -Infinity;
   for (const [start, end, label] of inside("faults")) {

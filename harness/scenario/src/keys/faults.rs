@@ -191,13 +191,32 @@ const fn stop() -> Of<u16> {
 
 const fn phase() -> Of<Mode> {
     choice! {
-        "calibration" => Mode::Calibrating, "the positions of the calibration";
-        "navigation" => Mode::Navigating, "those of the rotation in navigation";
+        "calibration" => Mode::Calibrating, "that of the calibration";
+        "navigation" => Mode::Navigating, "the rotation in navigation";
+    }
+}
+
+/// Meaning of the number of a trigger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Counted {
+    /// Stops, over all passes.
+    Stops,
+    /// Positions, by their first visits.
+    Positions,
+}
+
+const fn counted() -> Of<Counted> {
+    choice! {
+        "stops" => Counted::Stops, "stops of the sequence, over all passes";
+        "positions" => Counted::Positions,
+            "distinct directions of gravity in the body, by their first visits: the first stop there";
     }
 }
 
 const AFTER: &str = "How long after that.";
-const PHASE: &str = "Which positions are counted.";
+const PHASE: &str = "Which sequence is counted.";
+const COUNTED: &str = "What the number counts.";
+const STOPS: &str = "stops";
 const FROM: &str = "Time of the run before which it waits.";
 const UNTIL: &str = "Time of the run after which it sets in no more.";
 const TO_THE_END: &str = "the end of the run";
@@ -237,20 +256,22 @@ keys! {
 keys! {
     /// Trigger at a position.
     pub(crate) struct PositionKeys {
-        position: u16 = stop(), required,
-            "The core arrives at this position, counted from 1 over all passes.";
+        position: At<u16> = stop(), required,
+            "The core arrives at this stop, counted from 1 over all passes.";
         after: Quantity = delay(), "0 s", AFTER;
         phase: Mode = phase(), "calibration", PHASE;
+        counted: Option<Counted> = counted(), absent(STOPS), COUNTED;
     }
 }
 
 keys! {
     /// Trigger at the start of a move.
     pub(crate) struct MovingToKeys {
-        moving_to: u16 = stop(), required,
-            "The core sets out for this position, counted from 1 over all passes.";
+        moving_to: At<u16> = stop(), required,
+            "The core sets out for this stop, counted from 1 over all passes.";
         after: Quantity = delay(), "0 s", AFTER;
         phase: Mode = phase(), "calibration", PHASE;
+        counted: Option<Counted> = counted(), absent(STOPS), COUNTED;
     }
 }
 

@@ -21,7 +21,7 @@ pub use instrument::{Instrument, Messages, Speaks};
 pub use motion::{DocksideSpec, MotionComponent, MotionSpec, ShipSpectrum};
 pub(crate) use motion::{MOTIONS, case_attitude};
 pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
-pub use procedure::{AlignmentSpec, CalibrationSpec, Method};
+pub use procedure::{AlignmentSpec, CalibrationSpec, Method, NumberedStops};
 pub use scenario::{
     ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault,
 };

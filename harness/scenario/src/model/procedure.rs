@@ -1,6 +1,7 @@
 //! Procedure of the core: alignment and the methods of calibration.
 
 use octant_calibration::config as core;
+use octant_calibration::visits::VisitedPositions;
 use octant_sample::parameters::ParameterGroup;
 
 /// One of the two methods of a scenario.
@@ -51,7 +52,39 @@ pub struct CalibrationSpec {
     pub estimator: core::Estimator,
 }
 
+/// Stops of a calibration with their positions, to describe them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberedStops {
+    /// Number of stops, over all passes.
+    pub count: usize,
+    /// Positions that they visit.
+    pub visited: VisitedPositions,
+}
+
+impl NumberedStops {
+    /// Describes a stop, which counts from 0: `7 of 19, position 3 of 8`. A stop that the sequence
+    /// doesn't have, as a unit under test may report, has its number alone.
+    #[must_use]
+    pub fn describe(&self, stop: usize) -> String {
+        let (number, count, visited) = (stop + 1, self.count, &self.visited);
+        if number > count {
+            return format!("{number} of {count}");
+        }
+        format!("{number} of {count}, position {} of {}", visited.at(stop), visited.count())
+    }
+}
+
 impl CalibrationSpec {
+    /// Stops over all passes, with their positions.
+    #[must_use]
+    pub fn numbered_stops(&self) -> NumberedStops {
+        let stops = self.sequence.stops();
+        NumberedStops {
+            count: stops.len() * self.sequence.passes() as usize,
+            visited: VisitedPositions::of(stops),
+        }
+    }
+
     /// True if the filter estimates a group of parameters; always true for other estimators, which have
     /// no such choice.
     #[must_use]

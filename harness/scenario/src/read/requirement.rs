@@ -237,7 +237,9 @@ pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureTextError> {
 /// Unit of a measure, from its name: that of a parameter, or the suffix of a part of the path; with
 /// `slope_per_day` and `rate_per_h` it is divided by the time.
 fn unit_of(measure: &str) -> Option<(String, Quantity)> {
-    if measure.ends_with(".normalized") {
+    // A shift in posterior σ of the twin is a ratio, unlike the σ of an estimate.
+    let of_twin = measure.contains("counterfactual.parameters.") && measure.ends_with(".sigma");
+    if measure.ends_with(".normalized") || of_twin {
         return None;
     }
     let mut unit: Option<String> = None;
@@ -278,5 +280,21 @@ mod tests {
         assert_eq!(unit("calibration.solution.roll_arcmin.sigma").as_deref(), Some("arcmin"));
         assert_eq!(unit("calibration.solution.roll_arcmin.normalized"), None);
         assert_eq!(unit("calibration.nis_mean"), None);
+        let shift = unit("counterfactual.parameters.g_zz.shift");
+        assert_eq!(shift.as_deref(), Some("deg/h/g"));
+        for shift_in_sigma in [
+            "counterfactual.parameters.g_zz.sigma",
+            "baseline.counterfactual.parameters.gyro_bias_x.sigma",
+            "counterfactual.worst_shift_sigma",
+        ] {
+            assert_eq!(unit(shift_in_sigma), None, "{shift_in_sigma}");
+            assert_eq!(
+                limit_of(shift_in_sigma, "3 deg/h/g"),
+                Err(MeasureTextError::NoUnit {
+                    found: "3 deg/h/g".to_owned(),
+                    measure: shift_in_sigma.to_owned(),
+                })
+            );
+        }
     }
 }

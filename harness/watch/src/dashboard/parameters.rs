@@ -16,6 +16,9 @@ use ratatui::widgets::{Block, Paragraph};
 /// Error, in σ, beyond which a parameter is marked.
 const BEYOND_SIGMA: f64 = 3.0;
 
+/// Width from which a group has its name, its values and its unit on one line, with the borders.
+const FULL_WIDTH: usize = 100;
+
 pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let block = Block::bordered();
     let Some((ns, estimate)) = &state.parameters else {
@@ -26,6 +29,16 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
     let mut title = format!(" Parameters ±1σ, of {} ", plain::time(*ns));
     if let Some(truth) = &state.about.truth {
         title += &format!("· {} ", beyond(estimate, truth));
+    }
+    let full = usize::from(area.width) >= FULL_WIDTH;
+    if !full {
+        // The worst has the lower border for itself.
+        let (of_time, worst) = title.split_once("· ").unwrap_or((title.as_str(), ""));
+        let bottom = if worst.is_empty() { String::new() } else { format!(" {worst}") };
+        let block = block.title(of_time.to_owned()).title_bottom(bottom);
+        let lines = small(estimate, state.about.truth.as_ref());
+        frame.render_widget(Paragraph::new(lines).block(block), area);
+        return;
     }
     let mut lines = Vec::new();
     for group in ParameterGroup::ALL {
@@ -41,6 +54,26 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &RunState) {
         }
     }
     frame.render_widget(Paragraph::new(lines).block(block.title(title)), area);
+}
+
+/// Lists the parameters in seventy-eight columns, each group under its name and unit.
+fn small(estimate: &ParameterEstimate, truth: Option<&Parameters>) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    for group in ParameterGroup::ALL {
+        lines.push(Line::styled(
+            format!("{}, {}", group.name().replace('_', " "), unit(group)),
+            SOFT,
+        ));
+        let indices: Vec<usize> = group.range().collect();
+        for three in indices.chunks(3) {
+            let mut line = Line::raw("  ");
+            for i in three {
+                line.extend(one(*i, group, estimate, truth));
+            }
+            lines.push(line);
+        }
+    }
+    lines
 }
 
 /// Renders axis, value and σ in twenty-five columns.

@@ -1,7 +1,6 @@
-//! Styles and rows of the dashboard.
+//! Styles of the dashboard.
 
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::text::{Line, Span};
 
 /// Style of names.
 pub(super) const SOFT: Style = Style::new().fg(Color::DarkGray);
@@ -13,8 +12,3 @@ pub(super) const ACTS: Style = Style::new().fg(Color::Yellow);
 pub(super) const GOOD: Style = Style::new().fg(Color::Green);
 /// Style of titles.
 pub(super) const STRONG: Style = Style::new().add_modifier(Modifier::BOLD);
-
-/// Renders a name and its value.
-pub(super) fn row<'a>(name: &'a str, value: impl Into<Span<'a>>) -> Line<'a> {
-    Line::from(vec![Span::styled(format!("{name:10}"), SOFT), value.into()])
-}

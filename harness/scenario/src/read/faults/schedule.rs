@@ -3,12 +3,13 @@
 use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
-use crate::keys::{At, TriggerKeys};
+use crate::keys::{At, Counted, TriggerKeys};
 use crate::model::{AlignmentSpec, CalibrationSpec, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
 use octant_calibration::sequence::{Sequence, Stop};
+use octant_calibration::visits::VisitedPositions;
 use octant_faults::catalogue::FaultKind;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Mode;
@@ -61,12 +62,12 @@ impl<'a> Timing<'a> {
         let delay = |after| self.grid.epochs(after);
         Ok(match &**at {
             TriggerKeys::Position(keys) => Trigger::Position {
-                stop: keys.position.saturating_sub(1),
+                stop: self.stop(&keys.position, keys.counted, keys.phase)?,
                 mode: keys.phase,
                 delay: delay(keys.after),
             },
             TriggerKeys::MovingTo(keys) => Trigger::Move {
-                stop: keys.moving_to.saturating_sub(1),
+                stop: self.stop(&keys.moving_to, keys.counted, keys.phase)?,
                 mode: keys.phase,
                 delay: delay(keys.after),
             },
@@ -85,6 +86,40 @@ impl<'a> Timing<'a> {
             }
             _ => return Err(at.problem("missing")),
         })
+    }
+
+    /// Stop of a trigger's number, from 0. A fault has one schedule for both methods, so a position
+    /// has to be first visited at the same stop in both.
+    fn stop(&self, number: &At<u16>, counted: Option<Counted>, mode: Mode) -> Result<u16, Problem> {
+        if counted != Some(Counted::Positions) {
+            return Ok(number.saturating_sub(1));
+        }
+        let position = **number;
+        let mut first: Option<(usize, &str)> = None;
+        for walk in self.walks(mode) {
+            let visited = VisitedPositions::of(walk.sequence.stops());
+            let Some(stop) = visited.first_visit(position.into()) else {
+                return Err(number.problem(format!(
+                    "it can't fire: found position {position}, and {} has {} positions",
+                    walk.name,
+                    visited.count()
+                )));
+            };
+            match first {
+                Some((other, name)) if other != stop => {
+                    return Err(number.problem(format!(
+                        "found position {position}, which {name} visits first at stop {} and {} at \
+                         stop {}; expected the number of a stop, without counted",
+                        other + 1,
+                        walk.name,
+                        stop + 1
+                    )));
+                }
+                _ => first = Some((stop, walk.name)),
+            }
+        }
+        // A run without the phase is refused by `check_phase`.
+        Ok(first.map_or(0, |(stop, _)| u16::try_from(stop).unwrap_or(u16::MAX)))
     }
 
     /// Refuses a fault that can't fire, as far as that is known before the run.
@@ -158,15 +193,15 @@ impl<'a> Timing<'a> {
                 && number > positions
             {
                 let message = format!(
-                    "it can't fire: found position {number}, and {} has {positions}",
+                    "it can't fire: found stop {number}, and {} has {positions} stops",
                     walk.name
                 );
                 return Err(table.problem(key, message));
             }
             if moving && walk.move_to_s(*stop, &self.rates()) < self.grid.period_s() {
                 let message = format!(
-                    "it can't fire: in {} the gimbals are at position {number} already when its \
-                     turn comes",
+                    "it can't fire: in {} the gimbals are at stop {number} already when its turn \
+                     comes",
                     walk.name
                 );
                 return Err(table.problem(key, message));
