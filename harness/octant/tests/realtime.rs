@@ -89,6 +89,17 @@ fn a_bench_that_was_too_late_proves_nothing() {
     assert!(reason.starts_with("the bench was late: 20 of 20 samples left more than"), "{reason}");
     let allowed = run(here, &file, "allowed", &["--realtime", "--set", "realtime.overruns=20"], 0);
     assert_eq!(allowed["verdict"], "none");
+    // Every sample is an interval of its own, and an overrun of it.
+    let over = &allowed["pacing"]["lateness_over_run"];
+    assert_eq!(over["frames_per_interval"], 1);
+    assert_eq!(over["overruns"], Value::from(vec![1; 20]));
+    assert_eq!(over["largest_ns"], over["least_ns"]);
+    let largest = over["largest_ns"].as_array().unwrap().iter().filter_map(Value::as_f64);
+    let max = allowed["pacing"]["lateness_us"]["max"].as_f64().unwrap();
+    assert_eq!(largest.fold(0.0, f64::max) / 1e3, max);
+    let report = std::fs::read_to_string(here.join("allowed/report.html")).unwrap();
+    let chart = report.split("aria-label=\"Lateness over the run\"").nth(1).unwrap();
+    assert!(chart.contains("20 overruns") && chart.contains("smallest to largest in 0.005 s"));
     let p99 =
         ["--realtime", "--set", "realtime.overruns=20", "--set", "realtime.lateness_p99=\"1 ns\""];
     let summary = run(here, &file, "p99", &p99, 3);

@@ -509,6 +509,7 @@ proptest! {
             period_us: 5000.0,
             lateness_us: lateness(p99_us),
             lateness_histogram_ns: Vec::new(),
+            lateness_over_run: None,
             overrun_us: 5000.0,
             overruns,
             overruns_in_a_row: overruns,

@@ -25,3 +25,4 @@ pub mod latency;
 pub mod lateness;
 pub mod pace;
 pub mod schedule;
+pub mod series;

@@ -2,6 +2,7 @@
 
 use crate::clock::{MonotonicTime, now, sleep_until, spin_until};
 use crate::lateness::{Figures, LatenessHistogram};
+use crate::series::LatenessSeries;
 use serde::{Deserialize, Serialize};
 
 /// Pacing of frames.
@@ -25,6 +26,7 @@ pub struct FrameClock {
     start: MonotonicTime,
     frame: u64,
     lateness: LatenessHistogram,
+    series: LatenessSeries,
     /// Time left before the next deadline when the work of a frame was done.
     slack: LatenessHistogram,
     overruns: u64,
@@ -49,6 +51,7 @@ impl FrameClock {
             start,
             frame: 0,
             lateness: LatenessHistogram::new(),
+            series: LatenessSeries::new(),
             slack: LatenessHistogram::new(),
             overruns: 0,
             row: 0,
@@ -102,7 +105,9 @@ impl FrameClock {
     fn begin(&mut self, lateness_ns: u64) {
         self.frame += 1;
         self.lateness.record(lateness_ns);
-        if lateness_ns > self.pacing.overrun_ns {
+        let is_overrun = lateness_ns > self.pacing.overrun_ns;
+        self.series.record(lateness_ns, is_overrun);
+        if is_overrun {
             self.overruns += 1;
             self.row += 1;
             self.longest_row = self.longest_row.max(self.row);
@@ -128,6 +133,12 @@ impl FrameClock {
     #[must_use]
     pub fn lateness(&self) -> &LatenessHistogram {
         &self.lateness
+    }
+
+    /// Lateness of the frames over the run.
+    #[must_use]
+    pub fn series(&self) -> &LatenessSeries {
+        &self.series
     }
 
     /// Results so far.

@@ -10,7 +10,7 @@ mod pacing;
 pub use bench::{BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchTable};
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;
-pub use pacing::{DeviceClock, LatenessQuantiles, PacingRecord};
+pub use pacing::{DeviceClock, LatenessOverRun, LatenessQuantiles, PacingRecord};
 
 use octant_realtime::schedule::Granted;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};

@@ -1,6 +1,6 @@
 //! Time keeping of a run.
 
-use super::chart::{Chart, ChartLine, ChartRole};
+use super::chart::{Band, Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::summary::{LatenessQuantiles, PacingRecord, Summary};
@@ -46,7 +46,53 @@ pub(super) fn pacing(summary: &Summary) -> Markup {
             }
         }
         (later_than(pacing).render())
+        @if let Some(chart) = over_run(pacing) { (chart.render()) }
     }
+}
+
+/// Draws the lateness over the run, from smallest to largest in each interval, with the intervals that
+/// have overruns marked; `None` for a run that kept none, or whose lists don't belong together.
+fn over_run(pacing: &PacingRecord) -> Option<Chart> {
+    let over = pacing.lateness_over_run.as_ref()?;
+    let count = over.largest_ns.len();
+    if count < 2 || over.least_ns.len() != count || over.overruns.len() != count {
+        return None;
+    }
+    let mut chart = Chart::new("Lateness over the run", "hours of the run", "Lateness, µs");
+    chart.logarithmic = true;
+    chart.height = 200.0;
+    chart.run_offset_h = Some(0.0);
+    let interval_h = over.frames_per_interval as f64 * pacing.period_us / 3.6e9;
+    // Below the resolution of the clock there is no logarithm.
+    let us = |ns: u64| ns.max(1) as f64 / 1e3;
+    let at = |k: usize| k as f64 * interval_h;
+    let ends = over.least_ns.iter().zip(&over.largest_ns).enumerate();
+    let interval_s = number::plain(3600.0 * interval_h, 3);
+    chart.bands.push(Band {
+        label: format!("smallest to largest in {interval_s} s"),
+        role: ChartRole::Primary,
+        points: ends.map(|(k, (least, largest))| [at(k), us(*least), us(*largest)]).collect(),
+    });
+    let largest = over.largest_ns.iter().enumerate();
+    chart.lines.push(ChartLine {
+        label: "largest".to_owned(),
+        role: ChartRole::Primary,
+        points: largest.map(|(k, largest)| [at(k), us(*largest)]).collect(),
+    });
+    let late = over.overruns.iter().zip(&over.largest_ns).enumerate();
+    let stems: Vec<[f64; 2]> = late
+        .filter(|(_, (overruns, _))| **overruns > 0)
+        .flat_map(|(k, (_, largest))| {
+            [[at(k), pacing.overrun_us], [at(k), us(*largest)], [at(k), f64::NAN]]
+        })
+        .collect();
+    if !stems.is_empty() {
+        let overruns: u64 = over.overruns.iter().sum();
+        let label = number::counted(overruns, "overrun", "overruns");
+        chart.levels.push((pacing.overrun_us, "limit".to_owned()));
+        chart.lines.push(ChartLine { label, role: ChartRole::Baseline, points: stems });
+    }
+    Some(chart)
 }
 
 /// Draws the share of samples that left later than x.

@@ -229,6 +229,7 @@ mod tests {
             period_us: 5000.0,
             lateness_us,
             lateness_histogram_ns: Vec::new(),
+            lateness_over_run: None,
             overrun_us: 5000.0,
             overruns: 0,
             overruns_in_a_row: 0,

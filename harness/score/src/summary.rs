@@ -8,7 +8,9 @@ pub use super::navigation::{
     ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
 };
 
-pub use octant_recorder::event::{DeviceClock, FaultResult, LatenessQuantiles, PacingRecord};
+pub use octant_recorder::event::{
+    DeviceClock, FaultResult, LatenessOverRun, LatenessQuantiles, PacingRecord,
+};
 
 use super::counterfactual::Counterfactual;
 use super::finding::Finding;

@@ -14,6 +14,9 @@ pub struct PacingRecord {
     /// Histogram of the lateness: an upper edge, ns, and the number of frames up to it and above the
     /// edge before.
     pub lateness_histogram_ns: Vec<[u64; 2]>,
+    /// Lateness over the run; absent in recordings from before it was kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateness_over_run: Option<LatenessOverRun>,
     /// Lateness above which a frame is an overrun, µs.
     pub overrun_us: f64,
     /// Number of overruns.
@@ -36,6 +39,20 @@ pub struct PacingRecord {
     pub device_clock: Option<DeviceClock>,
     /// Number of steps that found no room on their way to the recorder.
     pub dropped_records: u64,
+}
+
+/// Lateness over a run, in at most 1000 intervals of equally many frames: an entry of each list for each
+/// interval, in the order of the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LatenessOverRun {
+    /// Number of frames of an interval; the last one may have fewer.
+    pub frames_per_interval: u64,
+    /// Smallest lateness, ns.
+    pub least_ns: Vec<u64>,
+    /// Largest lateness, ns.
+    pub largest_ns: Vec<u64>,
+    /// Number of overruns.
+    pub overruns: Vec<u64>,
 }
 
 /// Clock of a device against the host's.

@@ -23,9 +23,10 @@ use octant_endpoint::{Endpoint, RemoteClock};
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
 use octant_realtime::schedule;
+use octant_realtime::series::{LatenessInterval, LatenessSeries};
 use octant_recorder::Recorder;
 use octant_scenario::Realtime;
-use octant_score::summary::{DeviceClock, LatenessQuantiles, PacingRecord};
+use octant_score::summary::{DeviceClock, LatenessOverRun, LatenessQuantiles, PacingRecord};
 use octant_source::Source;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -108,6 +109,7 @@ fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>
         lateness_histogram_ns: (found.clock.lateness().rows().iter())
             .map(|(edge_ns, count)| [*edge_ns, *count])
             .collect(),
+        lateness_over_run: Some(over_run(found.clock.series())),
         overrun_us: settings.overrun_ns as f64 / 1e3,
         overruns: report.overruns,
         overruns_in_a_row: report.longest_row_of_overruns,
@@ -124,6 +126,17 @@ fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>
             exchanges: clock.exchanges,
         }),
         dropped_records: found.dropped,
+    }
+}
+
+/// Lists the lateness over the run for its summary.
+fn over_run(series: &LatenessSeries) -> LatenessOverRun {
+    let of = |value: fn(&LatenessInterval) -> u64| series.intervals().iter().map(value).collect();
+    LatenessOverRun {
+        frames_per_interval: series.frames_per_interval(),
+        least_ns: of(|interval| interval.least_ns),
+        largest_ns: of(|interval| interval.largest_ns),
+        overruns: of(|interval| interval.overruns),
     }
 }
 
