@@ -22,7 +22,8 @@ class Section(MutableMapping[str, Any]):
 
 class Baseline(Section):
     """A second method, run on the same seed and noise and compared: what it does differently. Takes a table with
-    positions, stops, passes, estimator, error_model, g_states, not_estimated. Left out: no second method."""
+    positions, stops, name, passes, estimator, error_model, g_states, not_estimated. Left out: no second
+    method."""
 
     error_model: Literal["phi", "psi"]
     """Form of the filter's system error model. Takes one of "phi", "psi". Left out: as in procedure.calibration."""
@@ -32,6 +33,9 @@ class Baseline(Section):
     g_states: bool
     """Whether the filter estimates the g-dependent biases. Takes true or false. Left out: as in
     procedure.calibration."""
+    name: str
+    """Name of this sequence of one's own; other stops don't inherit the first one's. Takes a text in quotes.
+    Left out: as in procedure.calibration."""
     not_estimated: Sequence[Literal["gyro_bias", "gyro_scale", "gyro_misalignment", "g_dependent", "accel_bias", "accel_scale", "accel_misalignment"]]
     """Further groups that the filter does not estimate. Takes a list of some of gyro_bias, gyro_scale,
     gyro_misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment. Left out: as in
@@ -575,9 +579,13 @@ class ImuExtensionsVibration(Section):
 
 class ImuExtensions(Section):
     """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
-    accel_gauss_markov, gyro_rate_random_walk, gyro_quantization, accel_quantization, gyro_range, accel_range,
-    temperature, vibration, lever_arm, time_skew."""
+    accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
+    gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
+    time_skew."""
 
+    accel_bias_instability: str
+    """Bias instability (1/f noise) of each accelerometer: coefficient B, the floor of the Allan deviation
+    divided by 0.664. Takes an acceleration such as "100 ug". Default: "0 ug"."""
     @property
     def accel_gauss_markov(self) -> ImuExtensionsAccelGaussMarkov:
         """First-order Gauss-Markov accelerometer bias. Takes a table with sigma, correlation_time. Left out:
@@ -590,6 +598,9 @@ class ImuExtensions(Section):
     accel_range: str
     """Specific force at which the accelerometers saturate; 0: the format's own range. Takes an acceleration such
     as "9.81 m/s^2". Default: "40 g"."""
+    gyro_bias_instability: str
+    """Bias instability (1/f noise) of each gyro: coefficient B of IEEE Std 952, the floor of the Allan deviation
+    divided by 0.664. Takes an angular rate such as "0.005 deg/h". Default: "0 deg/h"."""
     @property
     def gyro_gauss_markov(self) -> ImuExtensionsGyroGaussMarkov:
         """First-order Gauss-Markov gyro bias. Takes a table with sigma, correlation_time. Left out: none."""
@@ -710,8 +721,9 @@ class Imu(Section):
     @property
     def extensions(self) -> ImuExtensions:
         """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
-        accel_gauss_markov, gyro_rate_random_walk, gyro_quantization, accel_quantization, gyro_range,
-        accel_range, temperature, vibration, lever_arm, time_skew."""
+        accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
+        gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
+        time_skew."""
     @extensions.setter
     def extensions(self, value: ImuExtensions | Mapping[str, Any]) -> None: ...
     @property
@@ -738,8 +750,10 @@ class Imu(Section):
         "30 ppm"}."""
     @gyro_scale.setter
     def gyro_scale(self, value: ImuGyroScale | Mapping[str, Any]) -> None: ...
-    model: Literal["table-1"]
-    """Instrument whose values stand where no others are given. Takes "table-1". Default: "table-1"."""
+    model: Literal["table-1", "navigation-laser", "navigation-fibre-optic", "tactical-fibre-optic", "tactical-mems"]
+    """Instrument whose values stand where no others are given, here and in procedure.calibration.prior. Takes
+    one of "table-1", "navigation-laser", "navigation-fibre-optic", "tactical-fibre-optic", "tactical-mems".
+    Default: "table-1"."""
     rate: str
     """Samples per second; the period is a whole number of nanoseconds. Takes a frequency such as "200 Hz".
     Default: "200 Hz"."""
@@ -908,8 +922,8 @@ class ProcedureCalibrationPrior(Section):
     """Velocity, each axis. Takes a velocity such as "1 mm/s". Default: "0.02 m/s"."""
 
 class ProcedureCalibration(Section):
-    """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops, passes,
-    duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior, aiding,
+    """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops, name,
+    passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior, aiding,
     least_squares. Left out: no calibration: navigate at once."""
 
     @property
@@ -932,6 +946,9 @@ class ProcedureCalibration(Section):
         threshold, shortest."""
     @least_squares.setter
     def least_squares(self, value: ProcedureCalibrationLeastSquares | Mapping[str, Any]) -> None: ...
+    name: str
+    """Name of the sequence of one's own, in tables, reports and on the terminal. Takes a text in quotes. Left
+    out: "own stops"."""
     not_estimated: Sequence[Literal["gyro_bias", "gyro_scale", "gyro_misalignment", "g_dependent", "accel_bias", "accel_scale", "accel_misalignment"]]
     """Further parameter groups that the filter does not estimate. Takes a list of some of gyro_bias, gyro_scale,
     gyro_misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment. Default: []."""
@@ -1001,7 +1018,7 @@ class Procedure(Section):
     @property
     def calibration(self) -> ProcedureCalibration:
         """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops,
-        passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior,
+        name, passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior,
         aiding, least_squares. Left out: no calibration: navigate at once."""
     @calibration.setter
     def calibration(self, value: ProcedureCalibration | Mapping[str, Any]) -> None: ...
@@ -1658,8 +1675,8 @@ class Scenario(Section):
     @property
     def baseline(self) -> Baseline:
         """A second method, run on the same seed and noise and compared: what it does differently. Takes a table
-        with positions, stops, passes, estimator, error_model, g_states, not_estimated. Left out: no second
-        method."""
+        with positions, stops, name, passes, estimator, error_model, g_states, not_estimated. Left out: no
+        second method."""
     @baseline.setter
     def baseline(self, value: Baseline | Mapping[str, Any]) -> None: ...
     @property
