@@ -63,7 +63,7 @@ fn what_a_result_rests_on_is_kept_where_it_is_derived_again() {
         (Ok(0.01), Verdict::Inconclusive),
         (Err("not known"), Verdict::Inconclusive),
     ] {
-        judge_by(&mut summary, &[check.clone()], &[], |_| uncertainty).unwrap();
+        judge_by(&mut summary, std::slice::from_ref(&check), &[], |_| uncertainty).unwrap();
         let result = &summary.requirements[0];
         assert_eq!((result.verdict, summary.verdict), (expected, expected), "{result:?}");
         if let Err(reason) = uncertainty {

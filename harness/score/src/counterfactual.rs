@@ -387,7 +387,8 @@ mod tests {
         let calibration = calibration(1.0, None);
         let between = |latitude_rad: f64, longitude_rad: f64| {
             let (mut here, mut there) = (RunTrace::new(), RunTrace::new());
-            (here.navigation_begins(), there.navigation_begins());
+            here.navigation_begins();
+            there.navigation_begins();
             here.drift(60.0, latitude_rad + 1e-4, longitude_rad);
             there.drift(60.0, 1e-4, 0.0);
             let [faulted, twin] = [&here, &there].map(|trace| CounterfactualSide {
