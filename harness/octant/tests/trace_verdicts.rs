@@ -160,7 +160,7 @@ fn what_is_wrong_beside_all_requirements_is_told_everywhere() {
 
 /// A failure in a case that shows nothing isn't one of the failures that an ensemble may have.
 #[test]
-fn a_failure_without_evidence_is_no_failure_that_an_ensemble_may_have() {
+fn a_failure_without_evidence_is_none_that_draws_may_have() {
     let failed: Change = |index, _, result| {
         if index == 1 {
             check(result, "NAV-1", 11.0, 10.0);
