@@ -184,6 +184,20 @@ fn a_failure_without_evidence_is_none_that_draws_may_have() {
     assert_eq!((&counts["fail"], &counts["inconclusive"]), (&json!(0), &json!(1)), "{counts}");
 }
 
+/// Two machines had different results of one case: none of them counts.
+#[test]
+fn a_case_with_two_results_is_an_error_of_all_that_it_checks() {
+    let (bench, plan, out) = modest_and_filled(|_, _, _| {});
+    let id = &plan.cases[1].id;
+    let file = case::file(&out, id);
+    std::fs::copy(&file, file.with_file_name(format!("{id}.differs-1.json"))).unwrap();
+    let (_, said) = says(&bench, &["campaign", "trace", "out", "--json"]);
+    let traced: Value = serde_json::from_str(&said).unwrap();
+    for id in ["CAL-1", "NAV-1"] {
+        assert_eq!(row_of(&traced, id)["counts"]["error"], 1, "{traced}");
+    }
+}
+
 /// A campaign that names no file of requirements checks those of its scenarios.
 #[test]
 fn requirements_of_scenarios_alone_are_traced() {
