@@ -1,5 +1,7 @@
 """Scenarios as objects, and their types."""
 
+import copy
+import pickle
 import subprocess
 import sys
 
@@ -39,6 +41,17 @@ def test_a_table_comes_to_be_with_its_first_key():
     assert "rate" not in other.imu and scenario.imu.rate == "100 Hz"
 
 
+def test_copies_and_pickles_are_scenarios_of_their_own(lockstep):
+    scenario = octant.Scenario.load(lockstep)
+    for other in (copy.copy(scenario), copy.deepcopy(scenario), pickle.loads(pickle.dumps(scenario))):
+        assert type(other) is octant.Scenario and other == scenario
+        other.imu.rate = "123 Hz"
+        assert scenario.to_toml() == octant.Scenario.load(lockstep).to_toml()
+        other.imu.rate = "200 Hz"
+        other.check()
+    assert copy.deepcopy(scenario.procedure) == scenario.procedure
+
+
 def test_a_key_that_no_scenario_has_is_refused_where_it_is_set(lockstep):
     scenario = octant.Scenario.load(lockstep)
     before = scenario.to_toml()
@@ -49,6 +62,10 @@ def test_a_key_that_no_scenario_has_is_refused_where_it_is_set(lockstep):
     with pytest.raises(octant.InputError, match="title is 'x', a table is needed"):
         scenario.title = "x"
         scenario["title.rate"] = 1
+    with pytest.raises(octant.InputError, match="imu.rate takes a value"):
+        scenario["imu.rate.unit"] = "Hz"
+    with pytest.raises(octant.InputError, match="imu.rate takes a value"):
+        scenario.describe("imu.rate.unit")
     with pytest.raises(AttributeError, match="did you mean imu"):
         scenario.imuu
     with pytest.raises(AttributeError, match="by default it is '200 Hz'"):

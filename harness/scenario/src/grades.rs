@@ -114,6 +114,8 @@ static TACTICAL_MEMS: GradeSheet = GradeSheet {
          compensation.",
         "Its bias instability, 0.5 deg/h and 0.05 mg, is the lowest point of the Allan deviation with the \
          white noise in it (Sensonor, questions on the STIM series): the coefficient is that over 0.664.",
+        "The filter has no state for bias instability, and refuses the calibration of such an instrument; with \
+         zeros in its two keys the noise is left out.",
         REST,
     ],
     imu: &[

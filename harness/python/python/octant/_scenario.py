@@ -71,6 +71,8 @@ class Section(MutableMapping[str, Any]):
             at = self[first] if first in self._keys else self._empty(first)
             if not isinstance(at, Section):
                 raise InputError(f"{self._path(first)} is {at!r}, a table is needed for {self._path(key)}")
+            if not _is_table(self._inner(first)):
+                raise InputError(f"{self._path(first)} takes a value, not the key {self._path(key)}")
             at[rest] = value
             return
         self._attach()
@@ -119,6 +121,10 @@ class Section(MutableMapping[str, Any]):
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self._keys!r})"
 
+    # Copies and pickles hold the keys; what else is here is set past __setattr__.
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Section, (_plain(self._keys), self._node, self._name)
+
     def describe(self, key: str = "") -> str:
         """Meaning of a key, what it takes, and its default, in a line; of the table itself without a key.
 
@@ -132,6 +138,8 @@ class Section(MutableMapping[str, Any]):
         for part in key.split(".") if key else []:
             table = Section({}, node, name)
             table._known(part)
+            if not _is_table(node):
+                raise InputError(f"{name} takes a value, and has no key {part}")
             node, name = table._inner(part), table._path(part)
         if node is None:
             return f"{name}: free"
@@ -171,6 +179,13 @@ class Section(MutableMapping[str, Any]):
         near = difflib.get_close_matches(name, known, n=1)
         meant = f"did you mean {self._path(near[0])}? " if near else ""
         return f"no scenario has the key {self._path(name)}: {meant}{self._name or 'it'} takes {', '.join(known)}"
+
+
+def _is_table(node: Mapping[str, Any] | None) -> bool:
+    """Whether a key of this schema may be a table; the schema says nothing of keys that are free."""
+    if node is None or "properties" in node or node.get("type") == "object":
+        return True
+    return any(_is_table(one) for word in ("anyOf", "oneOf") for one in node.get(word, ()))
 
 
 def _plain(value: Any) -> Any:
@@ -215,6 +230,9 @@ class Scenario(Section):
     def __init__(self, keys: Mapping[str, Any] | None = None, path: PathLike = "scenario.toml") -> None:
         super().__init__({"schema": 1, **_plain(keys or {})}, _schema())
         object.__setattr__(self, "_file", Path(path))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scenario, (_plain(self._keys), self._file)
 
     @classmethod
     def load(cls, path: PathLike) -> Scenario:
