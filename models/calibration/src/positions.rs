@@ -115,6 +115,48 @@ pub const SIXTEEN: &[Degrees] = stops! {
     -180.0: -180.0, 0.0; 0.0: 0.0; -180.0: 0.0, -180.0; 0.0: -180.0;
 };
 
+/// Half of [`TETRAHEDRAL`]: from the first of its attitudes to the last.
+const TETRAHEDRAL_OUT: [Degrees; 15] = [
+    (0.0, 0.0, 1.0),
+    (0.0, 90.0, 1.0),
+    (90.0, 90.0, 0.5),
+    (180.0, 90.0, 0.5),
+    (270.0, 90.0, 1.0),
+    (270.0, 180.0, 1.0),
+    (270.0, 270.0, 0.5),
+    (360.0, 270.0, 1.0),
+    (270.0, 270.0, 0.5),
+    (180.0, 270.0, 1.0),
+    (90.0, 270.0, 1.0),
+    (90.0, 180.0, 1.0),
+    (90.0, 90.0, 0.5),
+    (180.0, 90.0, 0.5),
+    (180.0, 0.0, 1.0),
+];
+
+/// Navigation: the twelve attitudes of the tetrahedral group with equal shares of the time, one gimbal
+/// a move, out and back the same way. The stops of half weight are passed twice on each way.
+///
+/// Over them the mean of `c_nb` is zero, and that of the drift by g-dependent biases is
+/// −g·tr(G)/3 about down: of nine independent terms the isotropic part alone is left, which is the
+/// same in every attitude. Of [`SIXTEEN`] G_zz is left whole.
+pub const TETRAHEDRAL: &[Degrees] = &out_and_back(TETRAHEDRAL_OUT);
+
+const fn out_and_back<const N: usize>(out: [Degrees; N]) -> [Degrees; 30] {
+    assert!(2 * N == 30);
+    let mut all = [(0.0, 0.0, 1.0); 30];
+    let mut index = 0;
+    while index < N {
+        all[index] = out[index];
+        all[29 - index] = out[index];
+        index += 1;
+    }
+    all
+}
+
+/// Navigation: gimbals at zero.
+pub const NONE: &[Degrees] = &[(0.0, 0.0, 1.0)];
+
 /// A body axis to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyAxis {
@@ -278,6 +320,83 @@ mod tests {
         for azimuth in [-90.0, 90.0, 180.0] {
             assert!(unreachable_turn(azimuth, turns).is_some(), "{azimuth}");
         }
+    }
+
+    /// Mean over a scheme's dwells of what `of` makes of each attitude `c_nb` of a case that is level.
+    fn mean(stops: &[Degrees], of: impl Fn(Matrix3<f64>) -> Matrix3<f64>) -> Matrix3<f64> {
+        let weights: f64 = stops.iter().map(|stop| stop.2).sum();
+        let sum = stops.iter().fold(Matrix3::zeros(), |sum, (azimuth, roll, weight)| {
+            sum + of(frames::c_cb(azimuth.to_radians(), roll.to_radians())) * *weight
+        });
+        sum / weights
+    }
+
+    /// Drift in n by the g-dependent bias with a 1 at (row, column) of G, at rest, where the specific
+    /// force is (0, 0, −g): C·G·Cᵀ·(0, 0, −1) for g = 1, as the first column.
+    fn drift(stops: &[Degrees], row: usize, column: usize) -> nalgebra::Vector3<f64> {
+        let mut g = Matrix3::zeros();
+        g[(row, column)] = 1.0;
+        -mean(stops, |c| c * g * c.transpose()).column(2)
+    }
+
+    #[test]
+    fn the_tetrahedral_rotation_leaves_the_isotropic_part_of_g_alone() {
+        assert!(mean(TETRAHEDRAL, |c| c).norm() < 1e-12);
+        for row in 0..3 {
+            for column in 0..3 {
+                let expected = if row == column { -1.0 / 3.0 } else { 0.0 };
+                let found = drift(TETRAHEDRAL, row, column);
+                assert!(
+                    (found - nalgebra::Vector3::new(0.0, 0.0, expected)).norm() < 1e-12,
+                    "G_{row}{column}: {found}"
+                );
+            }
+        }
+        // Products of two attitudes are attitudes of it again: a group of twelve.
+        let mut group: Vec<Matrix3<f64>> = Vec::new();
+        for (azimuth, roll, _) in TETRAHEDRAL {
+            let c = frames::c_cb(azimuth.to_radians(), roll.to_radians());
+            if group.iter().all(|known| (known - c).norm() > 1e-9) {
+                group.push(c);
+            }
+        }
+        assert_eq!(group.len(), 12);
+        for a in &group {
+            for b in &group {
+                assert!(group.iter().any(|known| (known - a * b).norm() < 1e-12));
+            }
+            let share: f64 = TETRAHEDRAL
+                .iter()
+                .filter(|(azimuth, roll, _)| {
+                    (frames::c_cb(azimuth.to_radians(), roll.to_radians()) - a).norm() < 1e-9
+                })
+                .map(|stop| stop.2)
+                .sum();
+            assert_eq!(share, 2.0, "equal shares");
+        }
+    }
+
+    #[test]
+    fn the_sixteen_moves_leave_g_zz_whole() {
+        for row in 0..3 {
+            for column in 0..3 {
+                let whole = f64::from(u8::from((row, column) == (2, 2)));
+                let found = drift(SIXTEEN, row, column);
+                assert!((found.z + whole).abs() < 1e-12, "G_{row}{column}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_tetrahedral_rotation_turns_one_gimbal_a_move_and_closes() {
+        let pairs = TETRAHEDRAL.iter().zip(TETRAHEDRAL.iter().skip(1));
+        let moved: Vec<_> = pairs.map(|(a, b)| ((b.0 - a.0).abs(), (b.1 - a.1).abs())).collect();
+        // At its turning point it stands still: the way back begins where the way out ends.
+        assert!(moved.iter().enumerate().all(|(index, way)| match index {
+            14 => *way == (0.0, 0.0),
+            _ => *way == (90.0, 0.0) || *way == (0.0, 90.0),
+        }));
+        assert_eq!(TETRAHEDRAL[29], TETRAHEDRAL[0]);
     }
 
     #[test]

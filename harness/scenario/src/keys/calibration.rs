@@ -266,6 +266,7 @@ keys! {
 #[derive(Clone, Debug)]
 pub(crate) enum Rotation {
     Sixteen,
+    Tetrahedral,
     None,
     Stops(Vec<StopKeys>),
 }
@@ -280,11 +281,16 @@ const fn rotation() -> Of<Rotation> {
     const STOPS: Kind = Kind::Tables(StopKeys::SECTION, 1, STOPS_MAX);
     const NAMES: Kind = Kind::Choice(&[
         ("sixteen", "sixteen moves of 180° about both gimbals, that average out most drifts"),
+        (
+            "tetrahedral",
+            "the twelve attitudes of the tetrahedral group, equally long, out and back: of the drifts by \
+             g-dependent biases the isotropic part alone is left",
+        ),
         ("none", "gimbals stand at zero"),
     ]);
     Of::or_choice(
         const { Kind::Either(&[NAMES, STOPS]) },
-        const { &[Rotation::Sixteen, Rotation::None] },
+        const { &[Rotation::Sixteen, Rotation::Tetrahedral, Rotation::None] },
     )
 }
 

@@ -362,8 +362,9 @@ fn navigation(
         _ => {}
     }
     let stops = match &*keys.rotation {
-        Rotation::None => vec![Stop { azimuth_rad: 0.0, roll_rad: 0.0, weight: 1.0 }],
+        Rotation::None => from_degrees(positions::NONE),
         Rotation::Sixteen => from_degrees(positions::SIXTEEN),
+        Rotation::Tetrahedral => from_degrees(positions::TETRAHEDRAL),
         Rotation::Stops(own) => stops(own),
     };
     let rotation =

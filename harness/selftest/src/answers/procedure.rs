@@ -21,9 +21,12 @@ pub(super) fn found() -> Result<Found, String> {
             stops(&mut all, name, &calibration.sequence);
         }
     }
-    let navigation = "[procedure.navigation]\nduration = \"24 h\"\nrotation = \"sixteen\"\n";
-    let navigation = read(navigation)?.navigation.ok_or("read a navigation")?;
-    stops(&mut all, "sixteen", &navigation.rotation);
+    for name in ["sixteen", "tetrahedral"] {
+        let navigation =
+            format!("[procedure.navigation]\nduration = \"24 h\"\nrotation = \"{name}\"\n");
+        let navigation = read(&navigation)?.navigation.ok_or("read a navigation")?;
+        stops(&mut all, name, &navigation.rotation);
+    }
     Ok(all)
 }
 

@@ -4,7 +4,7 @@ use super::field::{label, no_item, whole};
 use crate::calibrator::error::CalibratorValueError;
 use crate::calibrator::table::slot;
 use crate::values::CellValues;
-use octant_calibration::positions::{Degrees, SEQUENCES, SIXTEEN, from_degrees};
+use octant_calibration::positions::{Degrees, NONE, SEQUENCES, SIXTEEN, TETRAHEDRAL, from_degrees};
 use octant_calibration::sequence::{STOPS_MAX, Sequence, Stop};
 
 /// Value of the enumerations for a sequence that has no name; the named ones follow it.
@@ -50,8 +50,7 @@ pub(super) static ROTATION: Slots = Slots {
     roll: slot::ROTATION_ROLL,
     weight: slot::ROTATION_WEIGHT,
     passes: slot::ROTATION_PASSES,
-    // The second one: gimbals at zero.
-    named: &[SIXTEEN, &[(0.0, 0.0, 1.0)]],
+    named: &[SIXTEEN, NONE, TETRAHEDRAL],
 };
 
 fn bits(sequence: &Sequence) -> impl Iterator<Item = [u64; 3]> {
