@@ -2,6 +2,7 @@
 
 use super::state::RunState;
 use octant_recorder::Event;
+use octant_recorder::further::FurtherChannel;
 use octant_recorder::reader::Item;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output};
@@ -63,6 +64,18 @@ impl PublishedChannel {
             Self::Nis => "octant.Nis",
             Self::Pacing => "octant.Pacing",
             Self::Faults => "octant.Faults",
+        }
+    }
+
+    /// Returns the channel.
+    #[must_use]
+    pub fn channel(self) -> FurtherChannel {
+        FurtherChannel {
+            topic: self.topic(),
+            schema_name: self.schema_name(),
+            schema_encoding: "jsonschema",
+            schema: self.schema().to_string(),
+            message_encoding: "json",
         }
     }
 
@@ -242,7 +255,8 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
         | Item::CleanSample(_)
         | Item::CleanAiding(_)
         | Item::Aiding(_)
-        | Item::Innovation(..) => {}
+        | Item::Innovation(..)
+        | Item::Covariance(..) => {}
     }
 }
 
