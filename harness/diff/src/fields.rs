@@ -1,8 +1,8 @@
 //! Fields of a recorded message by name, from its bytes and the schema of its topic.
 
 use octant_recorder::message::{
-    Topic, encode_aiding, encode_covariance, encode_innovation, encode_output, encode_parameters, encode_sample,
-    encode_truth,
+    Topic, encode_aiding, encode_covariance, encode_innovation, encode_output, encode_parameters,
+    encode_sample, encode_truth,
 };
 use octant_recorder::reader::Item;
 

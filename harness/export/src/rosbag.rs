@@ -8,10 +8,10 @@ use super::resample::Grid;
 use super::rows::each_item;
 use mcap::records::{MessageHeader, Metadata};
 use octant_recorder::further::{FurtherChannel, FurtherMessages, Publisher};
-use octant_recorder::message::Topic;
 use octant_recorder::reader::Item;
 use octant_sample::Sample;
 use octant_topics::about::About;
+use octant_topics::boundary::EpochBoundary;
 use octant_topics::publisher::RunTopics;
 use octant_topics::standard::StandardTopic;
 use std::collections::BTreeMap;
@@ -34,21 +34,24 @@ pub(crate) fn write(job: &Job<'_>) -> Result<Vec<PathBuf>, ExportFailure> {
     topics.begin(&mut messages);
     bag.put(0, &mut messages).map_err(|error| new.format(error))?;
     let mut grid = Grid::new(job.choice.every_ns);
-    let mut epoch = Epoch::default();
+    let mut boundary = EpochBoundary::default();
+    // Whether sample and output of the epoch are on the grid, once one of them was read.
+    let mut on_grid: Option<bool> = None;
     each_item(path, &mut |time_ns, item| {
-        if epoch.is_over(time_ns, item.topic()) {
-            topics.end_epoch(epoch.is_due(), &mut messages);
-            bag.put(epoch.time_ns, &mut messages).map_err(|error| new.format(error))?;
-            epoch = Epoch::default();
+        if let Some(before_ns) = boundary.take(time_ns, item.topic()) {
+            topics.end_epoch(on_grid.take() == Some(true), &mut messages);
+            bag.put(before_ns, &mut messages).map_err(|error| new.format(error))?;
         }
-        epoch.take(time_ns, &item, &mut grid);
+        if matches!(item, Item::Sample(_) | Item::Output(_)) {
+            on_grid.get_or_insert_with(|| grid.keeps(time_ns));
+        }
         // Parameters are rare, and all of them are kept.
-        let is_due = epoch.is_due() || matches!(item, Item::Parameters(..));
+        let is_due = on_grid == Some(true) || matches!(item, Item::Parameters(..));
         topics.take(time_ns, &item, is_due, &mut messages);
         bag.put(time_ns, &mut messages).map_err(|error| new.format(error))
     })?;
-    topics.end_epoch(epoch.is_due(), &mut messages);
-    bag.put(epoch.time_ns, &mut messages).map_err(|error| new.format(error))?;
+    topics.end_epoch(on_grid == Some(true), &mut messages);
+    bag.put(boundary.time_ns(), &mut messages).map_err(|error| new.format(error))?;
     bag.mcap.finish().map_err(|error| new.format(error))?;
     drop(bag);
     Ok(vec![new.finish()?])
@@ -73,38 +76,6 @@ fn measured_period_ns(path: &Path) -> Result<Option<u64>, ExportFailure> {
         }
     }
     Ok(None)
-}
-
-/// Epoch whose messages are being read.
-#[derive(Default)]
-struct Epoch {
-    time_ns: u64,
-    last: Option<Topic>,
-    /// Whether its sample and output are on the grid of the export, once one of them was read.
-    is_due: Option<bool>,
-}
-
-impl Epoch {
-    /// Returns whether a message belongs to the next epoch. Events belong to none.
-    fn is_over(&self, time_ns: u64, topic: Topic) -> bool {
-        topic != Topic::Event
-            && self.last.is_some_and(|last| time_ns != self.time_ns || topic <= last)
-    }
-
-    fn take(&mut self, time_ns: u64, item: &Item, grid: &mut Grid) {
-        if matches!(item, Item::Event(_)) {
-            return;
-        }
-        self.last = Some(item.topic());
-        self.time_ns = time_ns;
-        if matches!(item, Item::Sample(_) | Item::Output(_)) && self.is_due.is_none() {
-            self.is_due = Some(grid.keeps(time_ns));
-        }
-    }
-
-    fn is_due(&self) -> bool {
-        self.is_due == Some(true)
-    }
 }
 
 /// File under construction.

@@ -11,7 +11,7 @@ use octant_recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterEstimate, ParameterGroup};
 use octant_sample::{
-    GimbalAngles, Health, Innovation, InnovationOf, Mode, Output, Reference, Sample, Truth,
+    GimbalAngles, Health, Innovation, InnovationOf, Output, Reference, Sample, Truth,
 };
 use octant_topics::solution::{NavigationErrors, is_solution, unit_attitude};
 use std::collections::BTreeMap;

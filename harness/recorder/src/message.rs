@@ -9,8 +9,8 @@ pub use super::cdr::MessageError;
 pub use super::topic::Topic;
 
 use super::cdr::{Decoder, Encoder};
-use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, InnovationOf, Mode,

@@ -18,9 +18,6 @@ impl Measured {
         if !output.nis.is_finite() {
             return Self::default();
         }
-        Self {
-            innovation: endpoint.innovation(),
-            covariance: endpoint.navigation_covariance(),
-        }
+        Self { innovation: endpoint.innovation(), covariance: endpoint.navigation_covariance() }
     }
 }

@@ -7,6 +7,7 @@
 //! A recording, a live run and an export have the same messages, because all three are made here.
 
 pub mod about;
+pub mod boundary;
 pub mod published;
 pub mod publisher;
 mod ros;

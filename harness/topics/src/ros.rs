@@ -140,7 +140,11 @@ mod tests {
     use octant_earth::rotation::exp;
 
     /// Message with a header and these numbers, behind another one in the same buffer.
-    fn behind_another(time_ns: u64, frame_id: &str, finish: impl Fn(&mut RosMessage<'_>)) -> Vec<u8> {
+    fn behind_another(
+        time_ns: u64,
+        frame_id: &str,
+        finish: impl Fn(&mut RosMessage<'_>),
+    ) -> Vec<u8> {
         let mut bytes = vec![9; 3];
         finish(&mut RosMessage::new(&mut bytes, time_ns, frame_id));
         bytes.split_off(3)

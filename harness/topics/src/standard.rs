@@ -198,8 +198,7 @@ impl StandardEpochs {
     /// Makes the message of the mean rates of a sample's interval. A sample that the instrument marks
     /// as invalid, or whose interval is unknown, has none.
     fn imu(&self, channel: usize, messages: &mut FurtherMessages) {
-        let valid =
-            self.sample.filter(|sample| !sample.status.contains(Status::INERTIAL_INVALID));
+        let valid = self.sample.filter(|sample| !sample.status.contains(Status::INERTIAL_INVALID));
         let (Some(sample), Some(interval_s)) = (valid, self.interval_s) else { return };
         let rate = |count: i32, lsb: f64| f64::from(count) * lsb / interval_s;
         let q_nb = self.output.and_then(|output| unit_attitude(&output.navigation.q_nb));

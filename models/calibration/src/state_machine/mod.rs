@@ -40,7 +40,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{
-    DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, Mode, NavigationCovariance, Output, Parameters,
+    DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, Mode, NavigationCovariance,
+    Output, Parameters,
 };
 use slips::Slips;
 use stretch::Bridge;
