@@ -17,7 +17,8 @@ from websockets.sync.client import connect
 
 OCTANT = sys.argv[1]
 FIXTURES = pathlib.Path(__file__).resolve().parents[2] / "fixtures"
-TOPICS = {f"/octant/{name}" for name in "state error parameters gimbals nis pacing faults".split()}
+STANDARD = {"/imu/data", "/fix", "/error/position", "/error/velocity", "/error/attitude"}
+TOPICS = STANDARD | {f"/octant/{name}" for name in "state error parameters gimbals nis pacing faults".split()}
 # Waiting for longer than this is a failure, not a slow host.
 PATIENCE_S = 600
 
@@ -81,7 +82,8 @@ class Client:
             self.server = message
         elif message["op"] == "advertise":
             for channel in message["channels"]:
-                assert channel["encoding"] == "json" and channel["schemaEncoding"] == "jsonschema"
+                wanted = ("cdr", "ros2msg") if channel["topic"] in STANDARD else ("json", "jsonschema")
+                assert (channel["encoding"], channel["schemaEncoding"]) == wanted, channel
                 self.channels[channel["id"]] = channel
 
     def take(self):
@@ -95,8 +97,14 @@ class Client:
         elif message[0] == 1:
             subscription, time_ns = struct.unpack_from("<IQ", message, 1)
             channel = self.channels[subscription - 100]
-            content = json.loads(message[13:])
-            check(content, json.loads(channel["schema"]), channel["topic"])
+            if channel["topic"] in STANDARD:
+                content = message[13:]
+                # Little-endian CDR; the stamp is the time of the message.
+                head = struct.unpack_from("<BBHiI", content)
+                assert head[:2] == (0, 1) and head[3] * 10**9 + head[4] == time_ns, (channel["topic"], head, time_ns)
+            else:
+                content = json.loads(message[13:])
+                check(content, json.loads(channel["schema"]), channel["topic"])
             self.messages.setdefault(channel["topic"], []).append((time_ns, content))
         elif message[0] == 2:
             self.times.append(struct.unpack_from("<Q", message, 1)[0])
@@ -160,6 +168,8 @@ def live(here):
     assert stays.messages["/octant/faults"][0][1]["fired"] == 0, "armed before it fired"
     assert "radial_nmi" in stays.last("/octant/error")[1]
     assert "azimuth_deg" in stays.last("/octant/gimbals")[1]
+    assert STANDARD <= set(stays.messages), sorted(stays.messages)
+    assert stays.messages["/fix"][-1][0] >= 5_000_000_000, stays.messages["/fix"][-1][0]
     assert stays.times == sorted(stays.times) and stays.times, "the server's clock is run time"
     print(f"live: {sum(map(len, stays.messages.values()))} messages of {len(stays.messages)} topics")
 

@@ -1,8 +1,8 @@
 //! Fields of a recorded message by name, from its bytes and the schema of its topic.
 
 use octant_recorder::message::{
-    Topic, encode_aiding, encode_innovation, encode_output, encode_parameters, encode_sample,
-    encode_truth,
+    Topic, encode_aiding, encode_covariance, encode_innovation, encode_output, encode_parameters,
+    encode_sample, encode_truth,
 };
 use octant_recorder::reader::Item;
 
@@ -17,6 +17,7 @@ pub(crate) fn encode(item: &Item, bytes: &mut Vec<u8>) -> bool {
         Item::Aiding(aiding) => encode_aiding(Some(aiding), bytes),
         Item::Output(output) => encode_output(output, bytes),
         Item::Innovation(sequence, innovation) => encode_innovation(*sequence, innovation, bytes),
+        Item::Covariance(sequence, covariance) => encode_covariance(*sequence, covariance, bytes),
         Item::Parameters(sequence, estimate) => encode_parameters(*sequence, estimate, bytes),
         Item::Truth(truth) => encode_truth(truth, bytes),
         Item::Event(_) => return false,

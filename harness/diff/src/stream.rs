@@ -185,12 +185,14 @@ impl Found {
         }
     }
 
-    /// Counts a message that only one run has; it is a difference where both keep the same samples.
+    /// Counts a message that only one run has; it is a difference where both keep the same samples. How
+    /// many covariances are kept is the choice of another key, and earlier recordings have none.
     fn single(&mut self, key: Option<(u64, Topic)>, is_first: bool) {
         let Some((time_ns, topic)) = key else { return };
         let channel = &mut self.channels[topic as usize];
         *(if is_first { &mut channel.only_first } else { &mut channel.only_second }) += 1;
-        if self.diff.first.is_none() && self.diff.is_same_policy {
+        let is_stream = topic != Topic::Covariance;
+        if self.diff.first.is_none() && self.diff.is_same_policy && is_stream {
             let words = |is_there: bool| if is_there { "recorded" } else { "missing" }.to_owned();
             self.diff.first = Some(FirstDiff {
                 channel: topic.name(),

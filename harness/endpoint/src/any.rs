@@ -7,7 +7,7 @@ use super::{
 use octant_faults::wire::Wired;
 use octant_realtime::clock::MonotonicTime;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Epoch, Output, Parameters};
+use octant_sample::{Epoch, Innovation, NavigationCovariance, Output, Parameters};
 
 /// An endpoint of any kind.
 pub struct AnyEndpoint(Kind);
@@ -75,6 +75,14 @@ impl Endpoint for AnyEndpoint {
 
     fn parameters(&self) -> ParameterEstimate {
         each!(&self.0, endpoint => endpoint.parameters())
+    }
+
+    fn innovation(&self) -> Option<Innovation> {
+        each!(&self.0, endpoint => endpoint.innovation())
+    }
+
+    fn navigation_covariance(&self) -> Option<NavigationCovariance> {
+        each!(&self.0, endpoint => endpoint.navigation_covariance())
     }
 
     fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {

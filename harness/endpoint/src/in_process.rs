@@ -3,7 +3,7 @@
 use super::{Conclusion, Endpoint, EndpointError};
 use octant_calibration::{Core, CoreConfig};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Epoch, Innovation};
+use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
 
 /// The calibration core, called directly.
@@ -74,6 +74,10 @@ impl Endpoint for InProcess {
 
     fn innovation(&self) -> Option<Innovation> {
         Some(*self.core.innovation())
+    }
+
+    fn navigation_covariance(&self) -> Option<NavigationCovariance> {
+        self.core.navigation_covariance()
     }
 
     /// Ends the stream: see [`Core::end_of_stream`].

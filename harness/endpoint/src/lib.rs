@@ -23,7 +23,7 @@ use octant_mapping::stepper::UseError;
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::Event;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Epoch, Innovation};
+use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
 use octant_scenario::{self as scenario, Scenario};
 
@@ -86,6 +86,12 @@ pub trait Endpoint {
     /// Returns the innovation of the measurement whose NIS the last output has; `None` from a core
     /// that answers with outputs alone.
     fn innovation(&self) -> Option<Innovation> {
+        None
+    }
+
+    /// Returns the covariance of the solution after the filter's last measurement; `None` from a core
+    /// that answers with outputs alone, and while no filter runs.
+    fn navigation_covariance(&self) -> Option<NavigationCovariance> {
         None
     }
 

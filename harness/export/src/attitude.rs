@@ -1,16 +1,8 @@
-//! Attitudes of a row: of the case, and the error of an estimate.
+//! Attitude of the case in a row.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use octant_earth::rotation::{log, rx, rz};
+use nalgebra::{Matrix3, UnitQuaternion};
+use octant_earth::rotation::{rx, rz};
 use octant_sample::GimbalAngles;
-
-/// Attitude as a unit quaternion; `None` for one that isn't: a core that hasn't aligned yet has zeros.
-pub(crate) fn unit(q_wxyz: &[f64; 4]) -> Option<UnitQuaternion<f64>> {
-    let [w, x, y, z] = *q_wxyz;
-    let q = Quaternion::new(w, x, y, z);
-    let norm = q.norm();
-    ((norm - 1.0).abs() < 1e-3).then(|| UnitQuaternion::new_normalize(q))
-}
 
 /// Roll, pitch and heading of the case, rad: rotations about z, then y, then x take n into c.
 ///
@@ -28,18 +20,10 @@ pub(crate) fn of_case(q_nb: &UnitQuaternion<f64>, gimbal: GimbalAngles) -> [f64;
     ]
 }
 
-/// Rotation vector in n, rad, that turns the true attitude into the estimated one.
-pub(crate) fn error(
-    estimated_nb: &UnitQuaternion<f64>,
-    true_nb: &UnitQuaternion<f64>,
-) -> Vector3<f64> {
-    log(&(estimated_nb * true_nb.inverse()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_earth::rotation::{exp, ry};
+    use octant_earth::rotation::ry;
 
     #[test]
     fn the_case_keeps_its_attitude_while_the_gimbals_turn() {
@@ -54,20 +38,5 @@ mod tests {
                 assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
             }
         }
-    }
-
-    #[test]
-    fn an_error_is_told_about_the_axis_it_is_made_about() {
-        let truth = exp(&Vector3::new(0.3, -1.0, 0.4));
-        let phi = Vector3::new(1e-4, -2e-4, 3e-4);
-        let found = error(&(exp(&phi) * truth), &truth);
-        assert!((found - phi).norm() < 1e-12, "{found}");
-    }
-
-    #[test]
-    fn zeros_are_no_attitude() {
-        assert_eq!(unit(&[0.0; 4]), None);
-        assert!(unit(&[1.0, 0.0, 0.0, 0.0]).is_some());
-        assert_eq!(unit(&[f64::NAN, 0.0, 0.0, 0.0]), None);
     }
 }

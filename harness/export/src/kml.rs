@@ -6,9 +6,10 @@
 
 use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile};
-use super::rows::{each_row, is_solution};
+use super::rows::each_row;
 use super::table::{ExportCell, ExportTable};
 use octant_sample::Mode;
+use octant_topics::solution::is_solution;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use std::io::{BufWriter, Write};

@@ -17,7 +17,6 @@ mod kml;
 mod mat;
 mod parquet;
 pub mod resample;
-mod ros;
 mod rosbag;
 pub mod rows;
 pub mod survey;

@@ -4,7 +4,6 @@ use super::attitude;
 use super::error::ExportFailure;
 use super::resample::Grid;
 use super::table::{ExportCell, ExportTable};
-use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_recorder::Event;
 use octant_recorder::message::Topic;
@@ -12,8 +11,9 @@ use octant_recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterEstimate, ParameterGroup};
 use octant_sample::{
-    GimbalAngles, Health, Innovation, InnovationOf, Mode, Output, Reference, Sample, Truth,
+    GimbalAngles, Health, Innovation, InnovationOf, Output, Reference, Sample, Truth,
 };
+use octant_topics::solution::{NavigationErrors, is_solution, unit_attitude};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -90,7 +90,7 @@ pub fn each_row(
             Item::Parameters(sequence, estimate) => {
                 rows.parameters(time_ns, sequence, &estimate)?;
             }
-            Item::CleanAiding(_) | Item::Event(_) => {}
+            Item::CleanAiding(_) | Item::Covariance(..) | Item::Event(_) => {}
         }
         Ok(())
     })?;
@@ -224,7 +224,7 @@ impl Rows<'_> {
         ]);
         self.numbers(&navigation.velocity_mps);
         self.numbers(&navigation.q_nb);
-        let q_nb = attitude::unit(&navigation.q_nb);
+        let q_nb = unit_attitude(&navigation.q_nb);
         match q_nb.zip(gimbal) {
             Some((q_nb, gimbal)) => {
                 self.numbers(&attitude::of_case(&q_nb, gimbal).map(f64::to_degrees));
@@ -337,45 +337,5 @@ impl Rows<'_> {
             self.end(ExportTable::Events)?;
         }
         Ok(())
-    }
-}
-
-/// Returns whether a core in this mode has a solution that can be compared with the truth.
-pub(crate) const fn is_solution(mode: Mode) -> bool {
-    matches!(mode, Mode::Calibrating | Mode::Navigating | Mode::Done)
-}
-
-/// Errors of a solution: navigation minus truth, north, east, down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct NavigationErrors {
-    /// Position, m, with the radii of curvature at the true position.
-    pub(crate) position_ned_m: [f64; 3],
-    /// Velocity, m/s.
-    pub(crate) velocity_ned_mps: [f64; 3],
-    /// Rotation vector that turns the true attitude into the estimated one, rad.
-    pub(crate) attitude_ned_rad: Option<[f64; 3]>,
-}
-
-impl NavigationErrors {
-    pub(crate) fn of(output: &Output, truth: &Truth) -> Self {
-        let navigation = &output.navigation;
-        let earth = Ellipsoid::at(truth.latitude_rad, truth.height_m);
-        let latitude_rad = navigation.latitude_rad - truth.latitude_rad;
-        let longitude_rad = navigation.longitude_rad - truth.longitude_rad;
-        let q_nb = attitude::unit(&navigation.q_nb);
-        let attitude_ned_rad = q_nb
-            .zip(attitude::unit(&truth.q_nb))
-            .map(|(estimated, truth)| attitude::error(&estimated, &truth).into());
-        Self {
-            position_ned_m: [
-                latitude_rad * earth.meridian_radius_m,
-                longitude_rad * earth.transverse_radius_m * earth.cos_latitude,
-                truth.height_m - navigation.height_m,
-            ],
-            velocity_ned_mps: std::array::from_fn(|i| {
-                navigation.velocity_mps[i] - truth.velocity_mps[i]
-            }),
-            attitude_ned_rad,
-        }
     }
 }

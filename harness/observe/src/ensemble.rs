@@ -21,7 +21,7 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_nc;
 use octant_earth::units::{ARCSEC, NAUTICAL_MILE_M};
 use octant_plant::config as plant;
-use octant_run::method::{SetupError, label};
+use octant_run::method::SetupError;
 use octant_sample::GimbalAngles;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::resolve::{DrawnValues, Seeded};
@@ -165,7 +165,7 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         scenario: scenario.title.clone(),
-        method: label(scenario, method),
+        method: scenario.method_label(method),
         calibration_h: calibration.duration_s / 3600.0,
         states: states.collect(),
         drift: drift

@@ -16,7 +16,6 @@ use octant_observe::covariance::{AnalysisError, PredictedDrift, predict, state_n
 use octant_observe::ensemble::state_unit;
 use octant_observe::static_rank;
 use octant_requirements::Verdict;
-use octant_run::method::label;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_source::configure::configurations;
@@ -154,7 +153,7 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
         Err(error) => return Err(Failure::input(format!("failed to {error}"))),
     };
     Ok(Observation {
-        method: label(scenario, method),
+        method: scenario.method_label(method),
         rank: horizontal.rank,
         unknowns: horizontal.unknowns,
         null_space: horizontal.null_space,

@@ -198,7 +198,7 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
             watcher.truth(output, truth);
         }
     }
-    let concluded = epochs.last_event().and_then(octant_run::concluded::estimate);
+    let concluded = epochs.last_event().and_then(octant_recorder::concluded::estimate);
     if let (Some(output), Some(estimate)) = (last, concluded) {
         watcher.parameters(&output, &estimate);
     }

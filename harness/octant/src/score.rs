@@ -94,7 +94,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let planned = plan.map(planned_of).unwrap_or_default();
     let scores = Scores {
         scenario: scenario.title.clone(),
-        method: octant_run::method::label(&scenario, method),
+        method: scenario.method_label(method),
         nis_mean: watcher.health.nis_mean(),
         nees: nees(&parameters),
         worst_normalized_error: worst_normalized_error(&parameters, &planned),

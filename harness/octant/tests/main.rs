@@ -67,6 +67,7 @@ mod own_sequences;
 mod qualification;
 mod real_recording;
 mod realtime;
+mod recorded_topics;
 mod recording;
 #[cfg(unix)]
 mod recording_killed;

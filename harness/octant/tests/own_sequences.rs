@@ -1,7 +1,6 @@
 //! Names of sequences that a scenario gives itself.
 
 use crate::common::program::{ended, octant_in};
-use octant_run::method::label;
 use octant_scenario::{Method, Place, Problem, Scenario};
 use serde_json::Value;
 use std::path::Path;
@@ -18,7 +17,7 @@ fn parse(text: &str, set: &[&str]) -> Result<Scenario, Vec<Problem>> {
 
 fn labels(text: &str, set: &[&str]) -> [String; 2] {
     let scenario = parse(text, set).unwrap();
-    [Method::Primary, Method::Baseline].map(|method| label(&scenario, method))
+    [Method::Primary, Method::Baseline].map(|method| scenario.method_label(method))
 }
 
 #[track_caller]

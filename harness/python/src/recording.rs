@@ -109,7 +109,7 @@ fn topics(path: &Path) -> Result<(Topics, Head), ReadError> {
             Item::Parameters(_, estimate) => topics.parameters.push((time_s, *estimate)),
             Item::Truth(truth) => topics.truths.push(truth),
             Item::Event(event) => topics.events.push((time_s, text(&event))),
-            Item::CleanSample(_) | Item::CleanAiding(_) => {}
+            Item::CleanSample(_) | Item::CleanAiding(_) | Item::Covariance(..) => {}
         }
     }
     topics.truncated = recording.truncated();

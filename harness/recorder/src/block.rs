@@ -4,7 +4,7 @@ use super::{EpochFrame, Event, Extra};
 use octant_sample::Epoch;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
-use octant_sample::{Innovation, Truth};
+use octant_sample::{Innovation, NavigationCovariance, Truth};
 
 /// Epochs in columns, with rare parts in lists of their own: a plain epoch costs two short copies.
 ///
@@ -29,6 +29,8 @@ pub(super) struct Block {
     pub(super) due: Vec<u32>,
     /// Innovations, by position.
     pub(super) innovations: Vec<(u32, Innovation)>,
+    /// Covariances of the solution, by position.
+    pub(super) covariances: Vec<(u32, NavigationCovariance)>,
     /// Truth, by position.
     pub(super) truth: Vec<(u32, Truth)>,
     /// Changed parameters, by position.
@@ -48,6 +50,7 @@ impl Block {
             added: Vec::with_capacity(64),
             due: Vec::with_capacity(64),
             innovations: Vec::with_capacity(64),
+            covariances: Vec::with_capacity(64),
             truth: Vec::with_capacity(64),
             parameters: Vec::with_capacity(64),
             events: Vec::new(),
@@ -112,6 +115,7 @@ impl Block {
         let position = self.position();
         match extra {
             Extra::Innovation(innovation) => self.innovations.push((position, *innovation)),
+            Extra::Covariance(covariance) => self.covariances.push((position, *covariance)),
             Extra::Truth(truth) => self.truth.push((position, *truth)),
             Extra::Parameters(estimate) => self.parameters.push((position, *estimate)),
         }
@@ -130,6 +134,7 @@ impl Block {
         self.added.clear();
         self.due.clear();
         self.innovations.clear();
+        self.covariances.clear();
         self.truth.clear();
         self.parameters.clear();
         self.events.clear();

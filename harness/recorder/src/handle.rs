@@ -8,9 +8,10 @@
 
 use super::block::Block;
 use super::digest::Digest;
+use super::grid::next_on_grid;
 use super::summary::RecorderSummary;
 use super::trouble::{Disk, RecorderTrouble};
-use super::writer::{RecordingWriter, next_on_grid};
+use super::writer::RecordingWriter;
 use super::{EpochFrame, Event, Extra, FLUSH_INTERVAL, RecorderError, RecorderOptions};
 use octant_sample::Epoch;
 use octant_sample::{Mode, Output};
@@ -36,7 +37,8 @@ pub struct Recorder {
     truth_due: bool,
     /// Mode of the last output; `None` before the first.
     mode: Option<Mode>,
-    records_truth: bool,
+    /// True if a file is written.
+    writes: bool,
     revision: u32,
     parameters_due: bool,
     worker: Option<Worker>,
@@ -125,7 +127,7 @@ impl Recorder {
             period_ns: 1,
             truth_due: false,
             mode: None,
-            records_truth: false,
+            writes: false,
             revision: 0,
             parameters_due: false,
             worker: None,
@@ -167,7 +169,7 @@ impl Recorder {
                 reason: format!("no thread for the recorder: {error}"),
             })?;
         recorder.worker = Some(Worker::Thread(Thread { full, empty, wanted, thread }));
-        recorder.records_truth = true;
+        recorder.writes = true;
         Ok(recorder)
     }
 
@@ -274,7 +276,7 @@ impl Recorder {
     #[must_use]
     #[inline]
     pub fn truth_due(&self) -> bool {
-        self.truth_due && self.records_truth
+        self.truth_due && self.writes
     }
 
     /// True if the last output announced new parameters, which have to come before the next frame.
@@ -287,6 +289,10 @@ impl Recorder {
     /// Takes an addition to the last frame. Parameters that the frame didn't announce are not recorded.
     pub fn extra(&mut self, extra: &Extra) {
         if self.worker.is_none() {
+            return;
+        }
+        // Hashes alone need neither.
+        if !self.writes && matches!(extra, Extra::Innovation(_) | Extra::Covariance(_)) {
             return;
         }
         if let Extra::Parameters(estimate) = extra {

@@ -7,21 +7,28 @@
 mod altered;
 mod block;
 mod cdr;
+pub mod concluded;
 mod digest;
 pub mod event;
+pub mod further;
+mod grid;
 mod handle;
+mod item;
 pub mod message;
+mod published;
 pub mod reader;
 mod recorded;
 pub mod records;
 mod sink;
 mod stream_hash;
 mod summary;
+mod topic;
 mod trouble;
 mod writer;
 
 pub use altered::AlteredStreams;
 pub use event::Event;
+pub use further::Publishing;
 pub use handle::Recorder;
 pub use stream_hash::StreamHash;
 pub use summary::RecorderSummary;
@@ -30,7 +37,7 @@ pub use trouble::RecorderTrouble;
 use octant_sample::Epoch;
 use octant_sample::Output;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Innovation, Truth};
+use octant_sample::{Innovation, NavigationCovariance, Truth};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -63,6 +70,8 @@ pub enum Extra {
     Truth(Truth),
     /// Innovation of the measurement whose NIS the last frame's output has.
     Innovation(Innovation),
+    /// Covariance of the solution after the same measurement.
+    Covariance(NavigationCovariance),
     /// Parameters that changed with the last frame.
     Parameters(ParameterEstimate),
 }
@@ -127,6 +136,8 @@ pub struct RecorderOptions {
     pub blocks: usize,
     /// Faults of disk and thread.
     pub trouble: RecorderTrouble,
+    /// Further topics for other tools, if any.
+    pub publishing: Option<Publishing>,
 }
 
 impl Default for RecorderOptions {
@@ -138,6 +149,7 @@ impl Default for RecorderOptions {
             epochs_per_block: 256,
             blocks: 4,
             trouble: RecorderTrouble::default(),
+            publishing: None,
         }
     }
 }

@@ -1,14 +1,13 @@
 //! Reading of recordings: message by message, or epoch by epoch for replay and scoring.
 
-use super::message::{self, MessageError, Topic};
+pub use super::item::Item;
+use super::message::{MessageError, Topic};
 pub use super::recorded::RecordedEpoch;
 use super::records::{FileEnd, Records, RecordsError};
 
 use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
 use super::{Event, FORMAT_VERSION, Samples, StreamHash};
 use mcap::records::{Record, op};
-use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Aiding, Innovation, Output, Sample, Truth};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -75,79 +74,6 @@ pub struct Info {
     pub scenario: String,
     /// Metadata of the run.
     pub run: BTreeMap<String, String>,
-}
-
-/// One message of a recording.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Item {
-    /// Sample that the source delivered, if it differs from the one that reached the core.
-    CleanSample(Sample),
-    /// Aiding that the source delivered, if it differs from that which reached the core.
-    CleanAiding(Option<Aiding>),
-    /// Aiding that reached the core.
-    Aiding(Aiding),
-    /// A sample that reached the core.
-    Sample(Sample),
-    /// An output of the core.
-    Output(Output),
-    /// Innovation with the sequence number of its epoch.
-    Innovation(u64, Innovation),
-    /// Parameters with the sequence number of their epoch.
-    Parameters(u64, Box<ParameterEstimate>),
-    /// Truth.
-    Truth(Truth),
-    /// An event.
-    Event(Event),
-}
-
-impl Item {
-    fn decode(topic: Topic, data: &[u8]) -> Result<Self, MessageError> {
-        Ok(match topic {
-            Topic::ImuClean => Self::CleanSample(message::decode_sample(data)?),
-            Topic::Imu => Self::Sample(message::decode_sample(data)?),
-            Topic::AidingClean => Self::CleanAiding(message::decode_aiding(data)?),
-            Topic::Aiding => match message::decode_aiding(data)? {
-                Some(aiding) => Self::Aiding(aiding),
-                None => {
-                    return Err(MessageError::Value {
-                        field: "kind",
-                        found: 255,
-                        expected: "0 (velocity) or 1 (position)",
-                    });
-                }
-            },
-            Topic::Output => Self::Output(message::decode_output(data)?),
-            Topic::Innovation => {
-                let (sequence, innovation) = message::decode_innovation(data)?;
-                Self::Innovation(sequence, innovation)
-            }
-            Topic::Parameters => {
-                let (sequence, estimate) = message::decode_parameters(data)?;
-                Self::Parameters(sequence, Box::new(estimate))
-            }
-            Topic::Truth => Self::Truth(message::decode_truth(data)?),
-            Topic::Event => Self::Event(
-                serde_json::from_slice(data)
-                    .map_err(|error| MessageError::Json { reason: error.to_string() })?,
-            ),
-        })
-    }
-
-    /// Topic of the message.
-    #[must_use]
-    pub const fn topic(&self) -> Topic {
-        match self {
-            Self::CleanSample(_) => Topic::ImuClean,
-            Self::CleanAiding(_) => Topic::AidingClean,
-            Self::Aiding(_) => Topic::Aiding,
-            Self::Sample(_) => Topic::Imu,
-            Self::Output(_) => Topic::Output,
-            Self::Innovation(..) => Topic::Innovation,
-            Self::Parameters(..) => Topic::Parameters,
-            Self::Truth(_) => Topic::Truth,
-            Self::Event(_) => Topic::Event,
-        }
-    }
 }
 
 /// Meaning of one record of the container.
@@ -415,6 +341,7 @@ impl<R: Read> Epochs<R> {
                 Item::Sample(sample) => epoch.sample = Some(sample),
                 Item::Output(output) => epoch.output = Some(output),
                 Item::Innovation(_, innovation) => epoch.innovation = Some(innovation),
+                Item::Covariance(_, covariance) => epoch.covariance = Some(covariance),
                 Item::Parameters(_, estimate) => epoch.parameters = Some(*estimate),
                 Item::Truth(truth) => epoch.truth = Some(truth),
                 Item::Event(_) => {}

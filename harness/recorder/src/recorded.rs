@@ -2,7 +2,7 @@
 
 use super::Event;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Aiding, Innovation, Output, Sample, Truth};
+use octant_sample::{Aiding, Innovation, NavigationCovariance, Output, Sample, Truth};
 
 /// Recorded data of one epoch. With decimation any part can be missing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct RecordedEpoch {
     pub output: Option<Output>,
     /// Innovation of the measurement.
     pub innovation: Option<Innovation>,
+    /// Covariance of the solution after the measurement.
+    pub covariance: Option<NavigationCovariance>,
     /// Parameters recorded with this epoch.
     pub parameters: Option<ParameterEstimate>,
     /// Truth.

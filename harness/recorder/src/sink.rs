@@ -1,8 +1,12 @@
 //! End of the pipe, which counts written bytes and writes nothing after a failure.
 
-use std::io::{self, Write};
+use mcap::write::NoSeek;
+use std::io::{self, BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Container that a recording is written into.
+pub(super) type Container<W> = mcap::Writer<NoSeek<BufWriter<Sink<W>>>>;
 
 /// Writes through to `inner` until it fails once. Every later write fails: a summary after a torn
 /// record would look like a complete file.

@@ -16,8 +16,11 @@
 //! - After a failed write nothing more is written; data before the failure is readable.
 
 use super::block::Block;
+use super::grid::next_on_grid;
+use super::item::Item;
 use super::message::{self, Topic};
-use super::sink::Sink;
+use super::published::Published;
+use super::sink::{Container, Sink};
 use super::{
     Event, FLUSH_INTERVAL, FORMAT_VERSION, MessageCounts, Policy, RecorderError, RecorderOptions,
     Samples,
@@ -25,7 +28,7 @@ use super::{
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Mode, Output};
+use octant_sample::{Mode, NavigationCovariance, Output};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
@@ -44,7 +47,7 @@ const CHUNK_BYTES: u64 = 512 * 1024;
 
 /// File side of a recorder.
 pub(super) struct RecordingWriter<W: Write> {
-    mcap: mcap::Writer<NoSeek<BufWriter<Sink<W>>>>,
+    mcap: Container<W>,
     written: Arc<AtomicU64>,
     channels: [u16; Topic::ALL.len()],
     counts: [u64; Topic::ALL.len()],
@@ -64,6 +67,8 @@ pub(super) struct RecordingWriter<W: Write> {
     /// Last parameters, until they are in the file.
     unwritten_parameters: Option<(u64, ParameterEstimate)>,
     next_parameters_ns: u64,
+    /// Further topics, if any.
+    published: Option<Published>,
 }
 
 impl<W: Write> RecordingWriter<W> {
@@ -85,23 +90,23 @@ impl<W: Write> RecordingWriter<W> {
             .disable_seeking(true)
             .create(NoSeek::new(BufWriter::new(sink)))
             .map_err(fail)?;
-        mcap.write_metadata(&Metadata {
-            name: FORMAT_METADATA.into(),
-            metadata: BTreeMap::from([
-                ("version".into(), FORMAT_VERSION.to_string()),
-                ("octant".into(), env!("CARGO_PKG_VERSION").into()),
-                ("samples".into(), policy.samples.name().into()),
-                ("period_ns".into(), policy.period_ns.to_string()),
-                ("parameters_period_ns".into(), policy.parameters_period_ns.to_string()),
-                ("log_time".into(), "simulated time, ns since the start of the run".into()),
-                (
-                    "clean".into(),
-                    "/imu/clean and /aiding/clean hold only what differs from /imu and /aiding"
-                        .into(),
-                ),
-            ]),
-        })
-        .map_err(fail)?;
+        let mut format = BTreeMap::from([
+            ("version".into(), FORMAT_VERSION.to_string()),
+            ("octant".into(), env!("CARGO_PKG_VERSION").into()),
+            ("samples".into(), policy.samples.name().into()),
+            ("period_ns".into(), policy.period_ns.to_string()),
+            ("parameters_period_ns".into(), policy.parameters_period_ns.to_string()),
+            ("log_time".into(), "simulated time, ns since the start of the run".into()),
+            (
+                "clean".into(),
+                "/imu/clean and /aiding/clean hold only what differs from /imu and /aiding".into(),
+            ),
+        ]);
+        if let Some(publishing) = &options.publishing {
+            format.insert("topics_period_ns".into(), publishing.period_ns.to_string());
+        }
+        mcap.write_metadata(&Metadata { name: FORMAT_METADATA.into(), metadata: format })
+            .map_err(fail)?;
         mcap.write_metadata(&Metadata {
             name: RUN_METADATA.into(),
             metadata: options.metadata.clone(),
@@ -125,8 +130,10 @@ impl<W: Write> RecordingWriter<W> {
                 .add_channel(schema, topic.name(), message_encoding, &BTreeMap::new())
                 .map_err(fail)?;
         }
-        mcap.flush().map_err(fail)?;
-        Ok(Self {
+        let publishing = options.publishing.as_ref();
+        let published = publishing.map(|publishing| Published::begin(publishing, &mut mcap));
+        let published = published.transpose().map_err(fail)?;
+        let mut writer = Self {
             mcap,
             written,
             channels,
@@ -142,7 +149,12 @@ impl<W: Write> RecordingWriter<W> {
             revision: 0,
             unwritten_parameters: None,
             next_parameters_ns: 0,
-        })
+            published,
+        };
+        writer.put_published()?;
+        writer.mcap.flush().map_err(|error| error_of(error, &writer.written))?;
+        writer.dirty = false;
+        Ok(writer)
     }
 
     /// Writes the data of a block that the policy keeps.
@@ -151,6 +163,7 @@ impl<W: Write> RecordingWriter<W> {
         let mut altered = block.altered.iter().peekable();
         let mut due = block.due.iter().peekable();
         let mut innovations = block.innovations.iter().peekable();
+        let mut covariances = block.covariances.iter().peekable();
         let mut truth = block.truth.iter().peekable();
         let mut parameters = block.parameters.iter().peekable();
         let mut events = block.events.iter().peekable();
@@ -162,7 +175,11 @@ impl<W: Write> RecordingWriter<W> {
                 if self.last_kept {
                     message::encode_innovation(self.last_sequence, innovation, &mut self.bytes);
                     self.put(Topic::Innovation)?;
+                    self.tell(|sequence| Item::Innovation(sequence, *innovation))?;
                 }
+            }
+            while let Some((_, covariance)) = covariances.next_if(|(at, _)| *at == position) {
+                self.covariance(covariance)?;
             }
             while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
                 self.parameters_changed(estimate)?;
@@ -170,10 +187,12 @@ impl<W: Write> RecordingWriter<W> {
             while let Some((_, truth)) = truth.next_if(|(at, _)| *at == position) {
                 message::encode_truth(truth, &mut self.bytes);
                 self.put(Topic::Truth)?;
+                self.tell(|_| Item::Truth(*truth))?;
             }
             while let Some((_, event)) = events.next_if(|(at, _)| *at == position) {
                 self.event(event)?;
             }
+            self.end_epoch()?;
             let index = position as usize;
             let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index))
             else {
@@ -190,6 +209,12 @@ impl<W: Write> RecordingWriter<W> {
                 step.unwrap_or_else(|| clean.map_or(sample, |epoch| &epoch.sample).device_time.ns);
             self.last_sequence = sample.sequence;
             self.last_kept = keep;
+            if keep && !lost {
+                let changes_mode = self.mode != Some(output.mode);
+                if let Some(published) = &mut self.published {
+                    published.decide(self.last_time_ns, on_grid, changes_mode);
+                }
+            }
             if let Some(epoch) = clean {
                 if keep && (lost || epoch.sample != *sample) {
                     message::encode_sample(&epoch.sample, &mut self.bytes);
@@ -212,8 +237,10 @@ impl<W: Write> RecordingWriter<W> {
             if keep {
                 message::encode_sample(sample, &mut self.bytes);
                 self.put(Topic::Imu)?;
+                self.tell(|_| Item::Sample(*sample))?;
                 message::encode_output(output, &mut self.bytes);
                 self.put(Topic::Output)?;
+                self.tell(|_| Item::Output(*output))?;
             }
             if self.mode != Some(output.mode) {
                 self.mode_changed(output)?;
@@ -235,6 +262,7 @@ impl<W: Write> RecordingWriter<W> {
         if let Some((sequence, estimate)) = self.unwritten_parameters.take() {
             message::encode_parameters(sequence, &estimate, &mut self.bytes);
             self.put(Topic::Parameters)?;
+            self.tell(|_| Item::Parameters(sequence, Box::new(estimate)))?;
             self.next_parameters_ns =
                 next_on_grid(self.last_time_ns, self.policy.parameters_period_ns);
         }
@@ -261,23 +289,63 @@ impl<W: Write> RecordingWriter<W> {
         self.bytes.clear();
         serde_json::to_writer(&mut self.bytes, event)
             .map_err(|error| RecorderError::Format { reason: error.to_string() })?;
-        self.put(Topic::Event)
+        self.put(Topic::Event)?;
+        self.tell(|_| Item::Event(event.clone()))
+    }
+
+    /// Writes the covariance with the further topics, which state it too.
+    fn covariance(&mut self, covariance: &NavigationCovariance) -> Result<(), RecorderError> {
+        if self.published.as_ref().is_some_and(Published::is_due) {
+            message::encode_covariance(self.last_sequence, covariance, &mut self.bytes);
+            self.put(Topic::Covariance)?;
+            self.tell(|sequence| Item::Covariance(sequence, *covariance))?;
+        }
+        Ok(())
     }
 
     /// Writes the message in `self.bytes`.
     fn put(&mut self, topic: Topic) -> Result<(), RecorderError> {
-        let header = MessageHeader {
-            channel_id: self.channels[topic as usize],
-            // The sequence number of MCAP has 32 bits and is only informative.
-            sequence: self.last_sequence as u32,
-            log_time: self.last_time_ns,
-            publish_time: self.last_time_ns,
-        };
+        let header = self.header(self.channels[topic as usize]);
         self.mcap
             .write_to_known_channel(&header, &self.bytes)
             .map_err(|error| error_of(error, &self.written))?;
         self.counts[topic as usize] += 1;
         self.dirty = true;
+        Ok(())
+    }
+
+    /// Header of a message of the last frame's epoch.
+    fn header(&self, channel_id: u16) -> MessageHeader {
+        MessageHeader {
+            channel_id,
+            // The sequence number of MCAP has 32 bits and is only informative.
+            sequence: self.last_sequence as u32,
+            log_time: self.last_time_ns,
+            publish_time: self.last_time_ns,
+        }
+    }
+
+    /// Passes a message of the last frame's epoch on to the further topics, with its sequence number.
+    fn tell(&mut self, item: impl FnOnce(u64) -> Item) -> Result<(), RecorderError> {
+        let Some(published) = &mut self.published else { return Ok(()) };
+        published.take(self.last_time_ns, &item(self.last_sequence));
+        self.put_published()
+    }
+
+    /// Ends the last frame's epoch for the further topics.
+    fn end_epoch(&mut self) -> Result<(), RecorderError> {
+        let Some(published) = &mut self.published else { return Ok(()) };
+        published.end_epoch();
+        self.put_published()
+    }
+
+    /// Writes the messages on further topics.
+    fn put_published(&mut self) -> Result<(), RecorderError> {
+        let header = self.header(0);
+        if let Some(published) = &mut self.published {
+            let put = published.put(&mut self.mcap, header);
+            self.dirty |= put.map_err(|error| error_of(error, &self.written))?;
+        }
         Ok(())
     }
 
@@ -295,7 +363,11 @@ impl<W: Write> RecordingWriter<W> {
 
     /// Writes the summary. Returns the number of messages by topic, and the size of the file in bytes.
     pub(super) fn finish(mut self) -> Result<(MessageCounts, u64), RecorderError> {
+        if let Some(published) = &mut self.published {
+            published.decide_last();
+        }
         self.write_parameters()?;
+        self.end_epoch()?;
         self.mcap.finish().map_err(|error| error_of(error, &self.written))?;
         let counts =
             Topic::ALL.iter().map(|topic| (topic.name(), self.counts[*topic as usize])).collect();
@@ -307,12 +379,6 @@ impl<W: Write> RecordingWriter<W> {
         })?;
         Ok((counts, written.load(Ordering::Relaxed)))
     }
-}
-
-/// First multiple of the period after a time.
-pub(super) fn next_on_grid(time_ns: u64, period_ns: u64) -> u64 {
-    let period_ns = period_ns.max(1);
-    (time_ns / period_ns).saturating_add(1).saturating_mul(period_ns)
 }
 
 fn error_of(error: mcap::McapError, written: &AtomicU64) -> RecorderError {

@@ -9,6 +9,7 @@
 pub use super::ended::{Ended, RunError};
 
 use super::faulted::{Behind, Faulted, occurrence_event};
+use super::measured::Measured;
 use super::unit;
 use super::watch::Watcher;
 use octant_endpoint::{Endpoint, Sent};
@@ -18,7 +19,7 @@ use octant_faults::station::{Delivered, Occurrence};
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, GimbalCommand, Innovation, Output, Truth};
+use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
 use octant_source::{Epoch, Source};
 
 /// Parts of a run that its samples go through.
@@ -366,14 +367,14 @@ impl<'a> Books<'a> {
         Self { recorder, watcher, names }
     }
 
-    /// Takes the answer to an epoch, the innovation where there is one, and the parameters where
+    /// Takes the answer to an epoch, what the filter tells about a measurement, and the parameters where
     /// they are new; asks for the truth where it is needed. `altered` tells whether faults changed the epoch.
     #[inline(always)]
     pub(super) fn answered(
         &mut self,
         (step, sent, altered): (InStep<'_>, &Epoch, bool),
         output: &Output,
-        (innovation, estimate): (Option<&Innovation>, Option<&ParameterEstimate>),
+        (measured, estimate): (&Measured, Option<&ParameterEstimate>),
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
         let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
@@ -388,9 +389,12 @@ impl<'a> Books<'a> {
             }
         }
         let watched = watcher.answer(sent, altered, output);
-        if let Some(innovation) = innovation {
+        if let Some(innovation) = &measured.innovation {
             recorder.extra(&Extra::Innovation(*innovation));
             watcher.innovation(output, innovation);
+        }
+        if let Some(covariance) = &measured.covariance {
+            recorder.extra(&Extra::Covariance(*covariance));
         }
         if let Some(estimate) = estimate {
             recorder.extra(&Extra::Parameters(*estimate));

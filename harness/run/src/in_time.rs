@@ -2,6 +2,7 @@
 
 use super::drive::{Books, InStep, Keeps, Line, NoFaults, drive};
 use super::ended::{Ended, RunError, over};
+use super::measured::Measured;
 use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::Endpoint;
@@ -43,10 +44,10 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
         let is_new = output.parameters_revision != self.revision;
         self.revision = output.parameters_revision;
         let estimate = is_new.then(|| endpoint.parameters());
-        let innovation = if output.nis.is_finite() { endpoint.innovation() } else { None };
+        let measured = Measured::of(endpoint, output);
         let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
         let answered = (step, sent, !untouched);
-        let additions = (innovation.as_ref(), estimate.as_ref());
+        let additions = (&measured, estimate.as_ref());
         self.books.answered(answered, output, additions, || source.truth())?;
         let misbehaved = self.books.watcher.misbehaved.is_some();
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })

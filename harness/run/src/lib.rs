@@ -4,14 +4,13 @@
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
-//! from its scenario to its scores; [`concluded`] stores a calibration that ended with the stream;
+//! from its scenario to its scores;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made.
 
 mod aligned;
 pub mod assemble;
-pub mod concluded;
 pub mod done;
 pub mod drive;
 mod ended;
@@ -22,6 +21,7 @@ pub mod follow;
 pub mod host;
 pub mod in_time;
 mod interfere;
+mod measured;
 pub mod method;
 pub mod minimise;
 pub mod paired;

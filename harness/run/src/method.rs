@@ -4,7 +4,6 @@ pub use super::error::{MethodError, SetupError, core_problem};
 pub use super::recording::StreamKeeping;
 
 use super::aligned::{self, uncertainty_of};
-use super::concluded;
 use super::done::PlannedWork;
 use super::drive::{Ended, Line, RunError};
 use super::faulted::Faulted;
@@ -21,7 +20,7 @@ use octant_faults::Receipt;
 use octant_recorder::event::{BenchRecord, LinkRecord};
 use octant_recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble,
-    Samples,
+    Samples, concluded,
 };
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{NAMES, ParameterGroup};
@@ -35,6 +34,8 @@ use octant_score::summary::{
 use octant_score::trace::RunTrace;
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source, SourceError};
+use octant_topics::about::About;
+use octant_topics::publishing;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -73,30 +74,6 @@ pub struct MethodRun {
     pub bench: Option<Box<BenchRecord>>,
     /// Description of the point where the source ended in the middle of something.
     pub cut_short: Option<String>,
-}
-
-/// Returns the name of a method.
-#[must_use]
-pub fn label(scenario: &Scenario, method: Method) -> String {
-    let calibration = match method {
-        Method::Primary => scenario.calibration.as_ref(),
-        Method::Baseline => scenario.baseline.as_ref(),
-    };
-    let Some(calibration) = calibration else { return "navigation alone".to_owned() };
-    let estimator = match &calibration.estimator {
-        core::Estimator::Kalman(_) => {
-            let g = octant_sample::parameters::ParameterGroup::GDependent;
-            if calibration.estimates(g) { "with G states" } else { "without G states" }
-        }
-        core::Estimator::LeastSquares(_) => "by least squares",
-        core::Estimator::ExternalTurntable(_) => "on an external turntable",
-    };
-    let name = &calibration.name;
-    // A name of the scenario is never that of a published sequence.
-    match octant_calibration::positions::named(name) {
-        Some(_) => format!("{name} positions {estimator}"),
-        None => format!("{name} {estimator}"),
-    }
 }
 
 /// The configuration of the core of a method, as a run has it.
@@ -345,7 +322,7 @@ pub(super) fn recorder_options(
     (true_parameters, tells): (bool, Tells),
 ) -> RecorderOptions {
     let record = &scenario.record;
-    let method = match method {
+    let method_name = match method {
         Method::Primary => "primary",
         Method::Baseline => "baseline",
     };
@@ -357,7 +334,7 @@ pub(super) fn recorder_options(
         },
         scenario: scenario.to_resolved_toml(seed, draws),
         metadata: [
-            ("method", method.to_owned()),
+            ("method", method_name.to_owned()),
             ("seed", seed.to_string()),
             ("true_parameters", true_parameters.to_string()),
             (TELLS_VELOCITY, tells.velocity.to_string()),
@@ -365,6 +342,10 @@ pub(super) fn recorder_options(
         ]
         .map(|(key, value)| (key.to_owned(), value))
         .into(),
+        publishing: record.topics_period_ns.map(|period_ns| {
+            let truth = true_parameters.then_some(draws.parameters);
+            publishing(About::of_run(scenario, method, seed, truth), period_ns)
+        }),
         ..RecorderOptions::default()
     }
 }
@@ -439,7 +420,7 @@ pub(super) fn finish(
     };
     let ended = if broken.is_some() { Ended::Broken } else { ended };
     Ok(MethodRun {
-        label: label(scenario, method),
+        label: scenario.method_label(method),
         ended,
         alignment: aligned::alignment(scenario, method, &watcher),
         calibration,

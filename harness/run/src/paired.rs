@@ -1,7 +1,7 @@
 //! Runs two methods over many seeds, on the same instruments with the same noise.
 
 use super::drive::Ended;
-use super::method::{MethodError, StreamKeeping, label, run_method};
+use super::method::{MethodError, StreamKeeping, run_method};
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
 use octant_scenario::{Method, MotionSpec, Scenario};
@@ -90,7 +90,7 @@ pub fn paired(
     )
     .at_heading(heading_rad)
     .maxima(&hours, FLOOR_MEMBERS, scenario.seed);
-    let [a, b] = [first, second].map(|side| label(&side.scenario, side.method));
+    let [a, b] = [first, second].map(|side| side.scenario.method_label(side.method));
     let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };
     let comparison = compare(&scenario.title, &a, &b, &runs, &floor, navigation_h);
     // Refusals of every seed are a result too.

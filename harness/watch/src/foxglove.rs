@@ -5,13 +5,17 @@
 
 use super::follow::Follow;
 use super::published::{PublishedChannel, faults, messages};
+use super::state::RunState;
 use super::tail::TailError;
 use foxglove::websocket::{Capability, ChannelView, Client, ServerListener};
 use foxglove::{
     ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, SinkId,
     WebSocketServer, WebSocketServerHandle,
 };
-use serde_json::Value;
+use octant_recorder::further::{FurtherChannel, FurtherMessages};
+use octant_recorder::reader::Item;
+use octant_topics::boundary::EpochBoundary;
+use octant_topics::standard::{StandardEpochs, StandardTopic};
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -20,7 +24,9 @@ use std::time::Duration;
 /// Number of messages per channel that are kept for late subscribers.
 const HISTORY: usize = 1000;
 /// Number of messages queued for a client: room for the history of all channels.
-const BACKLOG: usize = 2 * HISTORY * PublishedChannel::ALL.len();
+const BACKLOG: usize = 2 * HISTORY * (STANDARD + PublishedChannel::ALL.len());
+/// Number of topics with standard messages, whose channels come first.
+const STANDARD: usize = StandardTopic::BRIEF.len();
 
 /// Time for the last messages to be sent before the connections end.
 const SETTLE: Duration = Duration::from_millis(300);
@@ -88,8 +94,10 @@ pub struct FoxgloveServer {
     channels: Vec<Arc<RawChannel>>,
     history: Vec<History>,
     subscribed: Receiver<(Option<SinkId>, String)>,
-    /// True if the armed faults have been published.
-    told: bool,
+    /// Epochs of the run, once its first message was read.
+    epochs: Option<StandardEpochs>,
+    boundary: EpochBoundary,
+    standard: FurtherMessages,
     /// Kept alive with its channels.
     _context: Arc<Context>,
 }
@@ -121,13 +129,15 @@ impl FoxgloveServer {
         };
         let context = Context::new();
         let (sender, subscribed) = channel();
-        let channels = (PublishedChannel::ALL.iter())
+        let standard = StandardTopic::BRIEF.map(StandardTopic::channel);
+        let channels = (standard.into_iter())
+            .chain(PublishedChannel::ALL.map(PublishedChannel::channel))
             .map(|channel| {
-                let schema = channel.schema().to_string().into_bytes();
-                ChannelBuilder::new(channel.topic())
+                let FurtherChannel { schema_name, schema_encoding, schema, .. } = channel;
+                ChannelBuilder::new(channel.topic)
                     .context(&context)
-                    .message_encoding("json")
-                    .schema(Schema::new(channel.schema_name(), "jsonschema", schema))
+                    .message_encoding(channel.message_encoding)
+                    .schema(Schema::new(schema_name, schema_encoding, schema.into_bytes()))
                     .build_raw()
             })
             .collect::<Result<Vec<_>, _>>()
@@ -141,8 +151,16 @@ impl FoxgloveServer {
             .listener(Arc::new(Listener(Mutex::new(sender))))
             .start_blocking()
             .map_err(failed)?;
-        let history = PublishedChannel::ALL.iter().map(|_| History::default()).collect();
-        Ok(Self { handle, channels, history, subscribed, told: false, _context: context })
+        Ok(Self {
+            handle,
+            history: channels.iter().map(|_| History::default()).collect(),
+            channels,
+            subscribed,
+            epochs: None,
+            boundary: EpochBoundary::default(),
+            standard: FurtherMessages::default(),
+            _context: context,
+        })
     }
 
     /// Returns the port that is served.
@@ -159,34 +177,61 @@ impl FoxgloveServer {
     pub fn look(&mut self, follow: &mut Follow) -> Result<bool, TailError> {
         self.answer();
         let before_ns = follow.state.time_ns;
-        let more = follow.look(|state, time_ns, item| {
-            if !self.told {
-                self.told = true;
-                self.publish(PublishedChannel::Faults, time_ns, &faults(state));
-            }
-            messages(state, item, |channel, message| self.publish(channel, time_ns, &message));
-        })?;
+        let more = follow.look(|state, time_ns, item| self.take(state, time_ns, item))?;
+        if !more {
+            // A run hands over whole epochs.
+            self.end_epoch(self.boundary.time_ns());
+        }
         if follow.state.time_ns != before_ns {
             self.handle.broadcast_time(follow.state.time_ns);
         }
         Ok(more)
     }
 
-    fn publish(&mut self, channel: PublishedChannel, time_ns: u64, message: &Value) {
-        let bytes = message.to_string().into_bytes();
+    /// Publishes what follows from a message of the run.
+    fn take(&mut self, state: &RunState, time_ns: u64, item: &Item) {
+        if self.epochs.is_none() {
+            let period_ns = state.about.sample_period_ns;
+            self.epochs = Some(StandardEpochs::new(&StandardTopic::BRIEF, 0, period_ns));
+            let message = faults(state).to_string();
+            self.publish(STANDARD + PublishedChannel::Faults as usize, time_ns, message.as_bytes());
+        }
+        if let Some(before_ns) = self.boundary.take(time_ns, item.topic()) {
+            self.end_epoch(before_ns);
+        }
+        if let Some(epochs) = &mut self.epochs {
+            epochs.take(time_ns, item);
+        }
+        messages(state, item, |channel, message| {
+            self.publish(STANDARD + channel as usize, time_ns, message.to_string().as_bytes());
+        });
+    }
+
+    /// Publishes the standard messages of an epoch.
+    fn end_epoch(&mut self, time_ns: u64) {
+        let Some(epochs) = &mut self.epochs else { return };
+        let mut standard = std::mem::take(&mut self.standard);
+        epochs.end(true, &mut standard);
+        for (channel, message) in standard.iter() {
+            self.publish(channel, time_ns, message);
+        }
+        standard.clear();
+        self.standard = standard;
+    }
+
+    fn publish(&mut self, channel: usize, time_ns: u64, message: &[u8]) {
         let metadata = PartialMetadata { log_time: Some(time_ns) };
-        self.channels[channel as usize].log_with_meta(&bytes, metadata);
-        self.history[channel as usize].push(time_ns, &bytes);
+        self.channels[channel].log_with_meta(message, metadata);
+        self.history[channel].push(time_ns, message);
     }
 
     /// Sends the earlier messages to new subscribers.
     fn answer(&mut self) {
         while let Ok((sink, topic)) = self.subscribed.try_recv() {
-            let Some(channel) = PublishedChannel::ALL.iter().find(|c| c.topic() == topic) else {
+            let all = self.channels.iter().zip(&self.history);
+            let Some((raw, history)) = all.into_iter().find(|(raw, _)| raw.topic() == topic) else {
                 continue;
             };
-            let (raw, history) =
-                (&self.channels[*channel as usize], &self.history[*channel as usize]);
             for (time_ns, message) in history.messages.iter().chain(&history.last) {
                 let metadata = PartialMetadata { log_time: Some(*time_ns) };
                 raw.log_with_meta_to_sink(message, metadata, sink);

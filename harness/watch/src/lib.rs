@@ -8,7 +8,6 @@
 //! Nothing here communicates with the run: it can't be delayed, and doesn't know that it is
 //! watched.
 
-pub mod about;
 #[cfg(feature = "dashboard")]
 pub mod dashboard;
 pub mod follow;
@@ -16,7 +15,6 @@ pub mod follow;
 pub mod foxglove;
 pub mod place;
 pub mod plain;
-pub mod published;
-pub mod series;
-pub mod state;
 pub mod tail;
+
+pub use octant_topics::{about, published, series, state};

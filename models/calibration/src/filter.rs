@@ -8,6 +8,7 @@ mod checkpoint;
 mod measurement;
 mod noise;
 mod recovery;
+mod solution;
 mod sub_step;
 
 pub use measurement::MeasurementResult;

@@ -1,9 +1,10 @@
 //! Messages from the real-time thread to the rest of the program about a step.
 
+use crate::measured::Measured;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Innovation, Output, Truth};
+use octant_sample::{Output, Truth};
 use octant_source::Epoch;
 
 /// One message. Placed into a ring that has room for the largest: a box would be an allocation on
@@ -53,16 +54,16 @@ impl std::fmt::Display for Broke {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     pub(super) output: Output,
-    /// Innovation, if there was a measurement.
-    pub(super) innovation: Option<Innovation>,
+    /// What the filter tells, if there was a measurement.
+    pub(super) measured: Measured,
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
     pub(super) truth: Option<Truth>,
 }
 
 impl Answer {
-    /// Innovation and parameters that came with the output.
-    pub(super) fn additions(&self) -> (Option<&Innovation>, Option<&ParameterEstimate>) {
-        (self.innovation.as_ref(), self.estimate.as_ref())
+    /// What the filter tells and the parameters that came with the output.
+    pub(super) fn additions(&self) -> (&Measured, Option<&ParameterEstimate>) {
+        (&self.measured, self.estimate.as_ref())
     }
 }

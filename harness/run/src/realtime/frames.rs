@@ -3,6 +3,7 @@
 use super::entry::{Answer, Broke, Entry};
 use crate::drive::{InStep, Keeps, Owed};
 use crate::ended::{Ended, RunError, over};
+use crate::measured::Measured;
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, Sent};
 use octant_faults::rule::UnitEvent;
@@ -152,8 +153,8 @@ impl<'a> Frames<'a> {
     ) {
         let is_new = output.parameters_revision != self.revision;
         let estimate = is_new.then(|| endpoint.parameters());
-        let innovation = if output.nis.is_finite() { endpoint.innovation() } else { None };
-        let answer = Answer { output: *output, innovation, estimate, truth };
+        let measured = Measured::of(endpoint, output);
+        let answer = Answer { output: *output, measured, estimate, truth };
         let is_in = self.lay(match step {
             InStep::First(clean) => Entry::Frame { clean: *clean, faulted: *sent, answer },
             InStep::Further { step_ns } => Entry::Added { step_ns, faulted: *sent, answer },

@@ -6,7 +6,7 @@ use super::faults::FAULT;
 use super::fmu::EndpointFmuKeys;
 use super::instrument::{ImuKeys, TurntableKeys};
 use super::link::LinkKeys;
-use super::screening::ScreeningKeys;
+use super::screening::{ScreeningKeys, on_off};
 use super::source::SourceKeys;
 use super::table::{
     At, Of, Raw, boolean, choice, integer, keys, si, si_array, table, tables, text, time, within,
@@ -297,6 +297,10 @@ keys! {
             "Which samples are kept.";
         parameters: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "10 s",
             "Shortest time between two records of the estimated parameters.";
+        topics: bool = on_off(), "on",
+            "Topics for other tools in the recording: standard messages of ROS 2, and the JSON of a live run.";
+        topics_period: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "10 s",
+            "Shortest time between two messages on each of these topics; at changes of mode there is one too.";
     }
 }
 

@@ -30,7 +30,7 @@ keys! {
     }
 }
 
-const fn on_off() -> Of<bool> {
+pub(super) const fn on_off() -> Of<bool> {
     choice! { "on" => true, "done"; "off" => false, "not done"; }
 }
 

@@ -4,7 +4,7 @@ use super::drive::Drive;
 use super::endpoint::EndpointSpec;
 use super::fault::Fault;
 use super::motion::MotionSpec;
-use super::procedure::{AlignmentSpec, CalibrationSpec};
+use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use octant_base::display::DisplayUnits;
@@ -13,7 +13,6 @@ use octant_calibration::config as core;
 use octant_faults::station::FaultSpec;
 use octant_faults::{FaultBuildError, Setup, Station};
 use octant_plant::config as plant;
-#[cfg(doc)]
 use octant_sample::parameters::ParameterGroup;
 use std::path::PathBuf;
 
@@ -112,6 +111,8 @@ pub struct RecordSpec {
     pub full_samples: bool,
     /// Shortest time between two records of the parameters, ns.
     pub parameters_period_ns: u64,
+    /// Shortest time between two messages on a topic for other tools, ns; `None` without these.
+    pub topics_period_ns: Option<u64>,
 }
 
 /// Pacing of a run by the clock, and its limits.
@@ -193,6 +194,30 @@ impl Scenario {
         }
         let keep: Vec<bool> = ids.iter().map(|id| faults.iter().any(|kept| kept == id)).collect();
         Ok(self.with_faults(|index| keep.get(index).copied().unwrap_or(false)))
+    }
+
+    /// Name of a method, as terminal, tables and reports show it.
+    #[must_use]
+    pub fn method_label(&self, method: Method) -> String {
+        let calibration = match method {
+            Method::Primary => self.calibration.as_ref(),
+            Method::Baseline => self.baseline.as_ref(),
+        };
+        let Some(calibration) = calibration else { return "navigation alone".to_owned() };
+        let estimator = match &calibration.estimator {
+            core::Estimator::Kalman(_) => {
+                let g = ParameterGroup::GDependent;
+                if calibration.estimates(g) { "with G states" } else { "without G states" }
+            }
+            core::Estimator::LeastSquares(_) => "by least squares",
+            core::Estimator::ExternalTurntable(_) => "on an external turntable",
+        };
+        let name = &calibration.name;
+        // A name of the scenario is never that of a published sequence.
+        match octant_calibration::positions::named(name) {
+            Some(_) => format!("{name} positions {estimator}"),
+            None => format!("{name} {estimator}"),
+        }
     }
 
     /// Number of samples of the calibration phase.

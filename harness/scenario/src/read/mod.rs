@@ -144,6 +144,7 @@ fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<RecordSpec, Proble
         every_samples: every_samples as u64,
         full_samples: keys.samples,
         parameters_period_ns: ns(keys.parameters),
+        topics_period_ns: keys.topics.then(|| ns(keys.topics_period)),
     })
 }
 

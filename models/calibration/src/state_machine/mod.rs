@@ -40,7 +40,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{
-    DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, Mode, Output, Parameters,
+    DeviceTime, GimbalAngles, GimbalCommand, Health, Innovation, Mode, NavigationCovariance,
+    Output, Parameters,
 };
 use slips::Slips;
 use stretch::Bridge;
@@ -357,6 +358,12 @@ impl Core {
     #[must_use]
     pub fn innovation(&self) -> &Innovation {
         &self.innovation
+    }
+
+    /// Covariance of the solution after the filter's last measurement; `None` while no filter runs.
+    #[must_use]
+    pub fn navigation_covariance(&self) -> Option<NavigationCovariance> {
+        self.filter().map(|filter| filter.navigation_covariance(&self.strapdown))
     }
 
     /// Reason why the calibration was refused, if it was.

@@ -1,4 +1,4 @@
-//! Description of a run, from the head of its recording.
+//! Description of a run, from its scenario.
 
 use octant_base::number::plain;
 use octant_faults::trigger::Trigger;
@@ -28,6 +28,8 @@ pub struct About {
     pub method: String,
     /// Seed of every draw.
     pub seed: u64,
+    /// Sample period, ns.
+    pub sample_period_ns: Option<u64>,
     /// Length of the whole procedure, ns; `None` where it lasts until the source ends.
     pub length_ns: Option<u64>,
     /// Stops of the calibration with their positions; `None` without one.
@@ -54,18 +56,31 @@ impl About {
             Err(error) => return Self { unread: Some(error.to_string()), ..Self::default() },
         };
         let is_baseline = info.run.get("method").is_some_and(|method| method == "baseline");
-        let (method, calibration) = if is_baseline {
-            (Method::Baseline, &scenario.baseline)
-        } else {
-            (Method::Primary, &scenario.calibration)
-        };
+        let method = if is_baseline { Method::Baseline } else { Method::Primary };
         let seed = info.run.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(scenario.seed);
-        let stops = calibration.as_ref().map(CalibrationSpec::numbered_stops);
         let has_truth = info.run.get("true_parameters").is_some_and(|text| text == "true");
+        let truth = has_truth.then(|| DrawnValues::of(&scenario, &Seeded(seed)).parameters);
+        Self::of_run(&scenario, method, seed, truth)
+    }
+
+    /// Describes a run of a scenario, whose true parameters are known or not.
+    #[must_use]
+    pub fn of_run(
+        scenario: &Scenario,
+        method: Method,
+        seed: u64,
+        truth: Option<Parameters>,
+    ) -> Self {
+        let calibration = match method {
+            Method::Primary => &scenario.calibration,
+            Method::Baseline => &scenario.baseline,
+        };
+        let stops = calibration.as_ref().map(CalibrationSpec::numbered_stops);
         Self {
             title: scenario.title.clone(),
-            method: octant_run::method::label(&scenario, method),
+            method: scenario.method_label(method),
             seed,
+            sample_period_ns: Some(scenario.sample_period_ns),
             length_ns: scenario.samples().map(|n| n.saturating_mul(scenario.sample_period_ns)),
             stops,
             by_clock: scenario.realtime.by_clock,
@@ -78,7 +93,7 @@ impl About {
                     when: when(fault, stops.as_ref(), scenario.sample_period_ns),
                 })
                 .collect(),
-            truth: has_truth.then(|| DrawnValues::of(&scenario, &Seeded(seed)).parameters),
+            truth,
             unread: None,
         }
     }

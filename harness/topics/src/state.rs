@@ -4,14 +4,12 @@ use super::about::About;
 use super::series::Series;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
-use octant_recorder::Event;
-use octant_recorder::event::Pace;
+use octant_recorder::event::{FaultResult, Pace, PacingRecord};
 use octant_recorder::reader::Item;
-use octant_run::concluded;
+use octant_recorder::{Event, concluded};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalAngles, Health, Mode, Output, Truth};
 use octant_score::health;
-use octant_score::summary::{FaultResult, PacingRecord};
 use std::collections::VecDeque;
 
 /// Maximum number of lines of the log.
@@ -205,7 +203,8 @@ impl RunState {
             Item::CleanSample(_)
             | Item::CleanAiding(_)
             | Item::Aiding(_)
-            | Item::Innovation(..) => {}
+            | Item::Innovation(..)
+            | Item::Covariance(..) => {}
         }
     }
 

@@ -3,8 +3,7 @@
 //! Messages on `/parameters` belong to an output, and an output to a sample. After the last sample
 //! there is none.
 
-use octant_recorder::Event;
-use octant_recorder::event::by_name;
+use super::event::{Event, by_name};
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
 use octant_sample::parameters::ParameterEstimate;

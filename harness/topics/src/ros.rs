@@ -8,7 +8,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Type of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum RosType {
+pub(super) enum RosType {
     Imu,
     NavSatFix,
     Vector3Stamped,
@@ -29,7 +29,7 @@ const NAV_SAT_STATUS: &str = "MSG: sensor_msgs/NavSatStatus\n\
     uint16 SERVICE_GALILEO = 8\nuint16 service\n";
 
 impl RosType {
-    pub(crate) const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Imu => "sensor_msgs/msg/Imu",
             Self::NavSatFix => "sensor_msgs/msg/NavSatFix",
@@ -38,7 +38,7 @@ impl RosType {
     }
 
     /// Definition in the form `ros2msg` of MCAP.
-    pub(crate) fn definition(self) -> String {
+    pub(super) fn definition(self) -> String {
         let (own, parts) = match self {
             Self::Imu => (
                 "std_msgs/Header header\n\
@@ -69,55 +69,62 @@ impl RosType {
     }
 }
 
-/// Message under construction.
-pub(crate) struct RosMessage(Vec<u8>);
+/// Message that is appended to a buffer.
+pub(super) struct RosMessage<'a> {
+    bytes: &'a mut Vec<u8>,
+    /// End of the encapsulation, from which alignment counts.
+    start: usize,
+}
 
 /// Encapsulation of little-endian plain CDR.
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
-impl RosMessage {
+impl<'a> RosMessage<'a> {
     /// Begins a message with its header.
-    pub(crate) fn new(time_ns: u64, frame_id: &str) -> Self {
-        let mut message = Self(ENCAPSULATION.to_vec());
+    pub(super) fn new(bytes: &'a mut Vec<u8>, time_ns: u64, frame_id: &str) -> Self {
+        bytes.extend_from_slice(&ENCAPSULATION);
+        let start = bytes.len();
+        let mut message = Self { bytes, start };
         // Run time of 68 years is beyond every run; a larger one stays at the largest.
         let seconds = i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX);
         message.put(&seconds.to_le_bytes());
         message.put(&((time_ns % 1_000_000_000) as u32).to_le_bytes());
         message.put(&(frame_id.len() as u32 + 1).to_le_bytes());
-        message.0.extend_from_slice(frame_id.as_bytes());
-        message.0.push(0);
+        message.bytes.extend_from_slice(frame_id.as_bytes());
+        message.bytes.push(0);
         message
     }
 
     /// Appends a field at a multiple of its size.
-    pub(crate) fn put<const N: usize>(&mut self, bytes: &[u8; N]) {
-        let head = ENCAPSULATION.len();
-        let start = (self.0.len() - head).next_multiple_of(N) + head;
-        self.0.resize(start, 0);
-        self.0.extend_from_slice(bytes);
+    pub(super) fn put<const N: usize>(&mut self, field: &[u8; N]) {
+        let at = (self.bytes.len() - self.start).next_multiple_of(N) + self.start;
+        self.bytes.resize(at, 0);
+        self.bytes.extend_from_slice(field);
     }
 
-    pub(crate) fn numbers(&mut self, values: &[f64]) {
+    pub(super) fn numbers(&mut self, values: &[f64]) {
         values.iter().for_each(|value| self.put(&value.to_le_bytes()));
-    }
-
-    pub(crate) fn bytes(&self) -> &[u8] {
-        &self.0
     }
 }
 
 /// Vector of axes forward, right, down in the axes of REP 103: forward, left, up.
-pub(crate) fn flu([x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(super) fn flu([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, -y, -z]
 }
 
 /// Vector of axes north, east, down in the axes of REP 103: east, north, up.
-pub(crate) fn enu([north, east, down]: [f64; 3]) -> [f64; 3] {
+pub(super) fn enu([north, east, down]: [f64; 3]) -> [f64; 3] {
     [east, north, -down]
 }
 
+/// Covariance of a vector of axes north, east, down, by its upper triangle, as the nine elements of that
+/// of axes east, north, up.
+pub(super) fn enu_covariance([nn, ne, nd, ee, ed, dd]: [f64; 6]) -> [f64; 9] {
+    [ee, ne, -ed, ne, nn, -nd, -ed, -nd, dd]
+}
+
 /// Attitude of REP 103, x y z w: takes a vector in forward, left, up into east, north, up.
-pub(crate) fn orientation(q_nb: &UnitQuaternion<f64>) -> [f64; 4] {
+pub(super) fn orientation(q_nb: &UnitQuaternion<f64>) -> [f64; 4] {
     let half = core::f64::consts::FRAC_1_SQRT_2;
     // Half turns: about the line between north and east, and about the forward axis.
     let enu_of_ned = Quaternion::new(0.0, half, half, 0.0);
@@ -132,22 +139,45 @@ mod tests {
     use nalgebra::Vector3;
     use octant_earth::rotation::exp;
 
+    /// Message with a header and these numbers, behind another one in the same buffer.
+    fn behind_another(
+        time_ns: u64,
+        frame_id: &str,
+        finish: impl Fn(&mut RosMessage<'_>),
+    ) -> Vec<u8> {
+        let mut bytes = vec![9; 3];
+        finish(&mut RosMessage::new(&mut bytes, time_ns, frame_id));
+        bytes.split_off(3)
+    }
+
     #[test]
     fn fields_stand_at_multiples_of_their_size() {
         // "abc" ends at byte 16 after the encapsulation: sec 4, nanosec 4, length 4, text 4.
-        let mut message = RosMessage::new(1_500_000_007, "abc");
-        message.numbers(&[1.0]);
-        message.put(&[7u8]);
-        message.put(&3u16.to_le_bytes());
-        let bytes = message.bytes();
+        let bytes = behind_another(1_500_000_007, "abc", |message| {
+            message.numbers(&[1.0]);
+            message.put(&[7u8]);
+            message.put(&3u16.to_le_bytes());
+        });
         assert_eq!(&bytes[4..12], [1, 0, 0, 0, 0x07, 0x65, 0xcd, 0x1d]);
         assert_eq!(&bytes[12..20], [4, 0, 0, 0, b'a', b'b', b'c', 0]);
         assert_eq!(bytes[20..28], 1f64.to_le_bytes());
         assert_eq!(&bytes[28..], [7, 0, 3, 0]);
         // A longer name moves the number to the next multiple of eight.
-        let mut message = RosMessage::new(0, "abcd");
-        message.numbers(&[1.0]);
-        assert_eq!(message.bytes()[28..], 1f64.to_le_bytes());
+        let bytes = behind_another(0, "abcd", |message| message.numbers(&[1.0]));
+        assert_eq!(bytes[28..], 1f64.to_le_bytes());
+    }
+
+    #[test]
+    fn a_covariance_turns_as_its_vector() {
+        // The covariance of one vector that is certain is its outer product.
+        let [n, e, d] = [2.0, -3.0, 5.0];
+        let found = enu_covariance([n * n, n * e, n * d, e * e, e * d, d * d]);
+        let turned = enu([n, e, d]);
+        for (i, row) in turned.iter().enumerate() {
+            for (j, column) in turned.iter().enumerate() {
+                assert_eq!(found[3 * i + j], row * column, "{i} {j}");
+            }
+        }
     }
 
     #[test]

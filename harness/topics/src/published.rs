@@ -2,6 +2,7 @@
 
 use super::state::RunState;
 use octant_recorder::Event;
+use octant_recorder::further::FurtherChannel;
 use octant_recorder::reader::Item;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output};
@@ -63,6 +64,18 @@ impl PublishedChannel {
             Self::Nis => "octant.Nis",
             Self::Pacing => "octant.Pacing",
             Self::Faults => "octant.Faults",
+        }
+    }
+
+    /// Returns the channel.
+    #[must_use]
+    pub fn channel(self) -> FurtherChannel {
+        FurtherChannel {
+            topic: self.topic(),
+            schema_name: self.schema_name(),
+            schema_encoding: "jsonschema",
+            schema: self.schema().to_string(),
+            message_encoding: "json",
         }
     }
 
@@ -242,7 +255,8 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
         | Item::CleanSample(_)
         | Item::CleanAiding(_)
         | Item::Aiding(_)
-        | Item::Innovation(..) => {}
+        | Item::Innovation(..)
+        | Item::Covariance(..) => {}
     }
 }
 
@@ -269,59 +283,4 @@ pub fn faults(state: &RunState) -> Value {
 /// JSON has no NaN.
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn strings<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
-        match value {
-            Value::String(text) => found.push(text),
-            Value::Array(values) => values.iter().for_each(|value| strings(value, found)),
-            Value::Object(values) => values.values().for_each(|value| strings(value, found)),
-            _ => {}
-        }
-    }
-
-    #[test]
-    fn the_layout_shows_what_is_published_and_all_of_its_panels() {
-        let path =
-            concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/foxglove/octant-layout.json");
-        let layout: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
-        let panels = layout["configById"].as_object().unwrap();
-        let (mut texts, mut placed) = (Vec::new(), Vec::new());
-        strings(&layout["configById"], &mut texts);
-        strings(&layout["layout"], &mut placed);
-        strings(&layout["configById"]["Tab!parameters"]["tabs"], &mut placed);
-        for panel in panels.keys() {
-            assert!(placed.contains(&panel.as_str()), "{panel} has no place");
-        }
-        for id in placed.iter().filter(|text| text.contains('!')) {
-            assert!(panels.contains_key(*id), "there is no panel {id}");
-        }
-        let mut shown: Vec<PublishedChannel> = Vec::new();
-        let paths: Vec<&str> = texts.into_iter().filter(|text| text.starts_with('/')).collect();
-        for path in &paths {
-            let (topic, fields) = path.split_once('.').unwrap_or((path, ""));
-            let channel =
-                PublishedChannel::ALL.into_iter().find(|channel| channel.topic() == topic);
-            let channel = channel.unwrap_or_else(|| panic!("nobody publishes {topic}"));
-            let mut schema = channel.schema();
-            for field in fields.split('.').filter(|field| !field.is_empty()) {
-                schema = schema["properties"][field].clone();
-                assert!(!schema.is_null(), "{path}: there is no {field}");
-            }
-            shown.push(channel);
-        }
-        for channel in PublishedChannel::ALL {
-            assert!(shown.contains(&channel), "{} is not shown", channel.topic());
-        }
-        for name in NAMES {
-            for part in ["value", "sigma"] {
-                let path = format!("/octant/parameters.{name}.{part}");
-                assert!(paths.contains(&path.as_str()), "{path} is not shown");
-            }
-        }
-    }
 }

@@ -1,0 +1,4 @@
+//! The layouts that are shipped show what recordings and live runs have.
+#![allow(clippy::unwrap_used)]
+
+mod layouts;
