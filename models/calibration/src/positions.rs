@@ -244,7 +244,10 @@ pub fn from_degrees(stops: &[Degrees], passes: u32) -> Result<Sequence, Sequence
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
+    use std::vec::Vec;
 
     fn moves(stops: &[Degrees]) -> impl Iterator<Item = (bool, bool)> + '_ {
         stops.windows(2).map(|pair| (pair[0].0 != pair[1].0, pair[0].1 != pair[1].1))
