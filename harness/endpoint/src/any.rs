@@ -4,10 +4,11 @@ use super::{
     Conclusion, Endpoint, EndpointError, FmuEndpoint, InProcess, LiveEndpoint, RemoteClock, Sent,
     Tells,
 };
+use octant_calibration::covariance::SolutionCovariance;
 use octant_faults::wire::Wired;
 use octant_realtime::clock::MonotonicTime;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Epoch, Output, Parameters};
+use octant_sample::{Epoch, Innovation, Output, Parameters};
 
 /// An endpoint of any kind.
 pub struct AnyEndpoint(Kind);
@@ -75,6 +76,14 @@ impl Endpoint for AnyEndpoint {
 
     fn parameters(&self) -> ParameterEstimate {
         each!(&self.0, endpoint => endpoint.parameters())
+    }
+
+    fn innovation(&self) -> Option<Innovation> {
+        each!(&self.0, endpoint => endpoint.innovation())
+    }
+
+    fn covariance(&self) -> Option<SolutionCovariance> {
+        each!(&self.0, endpoint => endpoint.covariance())
     }
 
     fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {

@@ -1,6 +1,7 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
+use octant_calibration::covariance::SolutionCovariance;
 use octant_calibration::{Core, CoreConfig};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation};
@@ -74,6 +75,10 @@ impl Endpoint for InProcess {
 
     fn innovation(&self) -> Option<Innovation> {
         Some(*self.core.innovation())
+    }
+
+    fn covariance(&self) -> Option<SolutionCovariance> {
+        self.core.filter().map(|filter| filter.covariance().solution())
     }
 
     /// Ends the stream: see [`Core::end_of_stream`].

@@ -89,6 +89,12 @@ pub trait Endpoint {
         None
     }
 
+    /// Returns the covariance of attitude and velocity as of the last output, while a filter estimates
+    /// them; `None` from a core that answers with outputs alone.
+    fn covariance(&self) -> Option<SolutionCovariance> {
+        None
+    }
+
     /// Returns the wire to the core, where faults can be injected on one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         None

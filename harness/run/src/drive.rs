@@ -11,6 +11,7 @@ pub use super::ended::{Ended, RunError};
 use super::faulted::{Behind, Faulted, occurrence_event};
 use super::unit;
 use super::watch::Watcher;
+use octant_calibration::covariance::SolutionCovariance;
 use octant_endpoint::{Endpoint, Sent};
 use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
@@ -343,6 +344,17 @@ pub(super) trait Keeps<S: ?Sized, E: Endpoint + ?Sized> {
     }
 }
 
+/// What a core tells beside an output.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Additions<'a> {
+    /// Innovation, if there was a measurement.
+    pub(super) innovation: Option<&'a Innovation>,
+    /// Covariance of attitude and velocity after the measurement, where a filter tells it.
+    pub(super) covariance: Option<&'a SolutionCovariance>,
+    /// Parameters, if they are new.
+    pub(super) estimate: Option<&'a ParameterEstimate>,
+}
+
 /// Recorder and watcher of a run.
 #[derive(Debug)]
 pub(super) struct Books<'a> {
@@ -366,14 +378,14 @@ impl<'a> Books<'a> {
         Self { recorder, watcher, names }
     }
 
-    /// Takes the answer to an epoch, the innovation where there is one, and the parameters where
-    /// they are new; asks for the truth where it is needed. `altered` tells whether faults changed the epoch.
+    /// Takes the answer to an epoch with what came beside it; asks for the truth where it is needed.
+    /// `altered` tells whether faults changed the epoch.
     #[inline(always)]
     pub(super) fn answered(
         &mut self,
         (step, sent, altered): (InStep<'_>, &Epoch, bool),
         output: &Output,
-        (innovation, estimate): (Option<&Innovation>, Option<&ParameterEstimate>),
+        additions: Additions<'_>,
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
         let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
@@ -388,11 +400,14 @@ impl<'a> Books<'a> {
             }
         }
         let watched = watcher.answer(sent, altered, output);
-        if let Some(innovation) = innovation {
+        if let Some(innovation) = additions.innovation {
             recorder.extra(&Extra::Innovation(*innovation));
             watcher.innovation(output, innovation);
         }
-        if let Some(estimate) = estimate {
+        if let Some(covariance) = additions.covariance {
+            watcher.covariance(sent, output, covariance);
+        }
+        if let Some(estimate) = additions.estimate {
             recorder.extra(&Extra::Parameters(*estimate));
             watcher.parameters(output, estimate);
         }

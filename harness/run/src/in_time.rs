@@ -1,6 +1,6 @@
 //! Runs in simulated time: they wait for nothing, and keep every result at once.
 
-use super::drive::{Books, InStep, Keeps, Line, NoFaults, drive};
+use super::drive::{Additions, Books, InStep, Keeps, Line, NoFaults, drive};
 use super::ended::{Ended, RunError, over};
 use super::watch::Watcher;
 use octant_base::control::Control;
@@ -43,10 +43,16 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
         let is_new = output.parameters_revision != self.revision;
         self.revision = output.parameters_revision;
         let estimate = is_new.then(|| endpoint.parameters());
-        let innovation = if output.nis.is_finite() { endpoint.innovation() } else { None };
+        let measured = output.nis.is_finite();
+        let innovation = if measured { endpoint.innovation() } else { None };
+        let covariance = if measured { endpoint.covariance() } else { None };
         let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
         let answered = (step, sent, !untouched);
-        let additions = (innovation.as_ref(), estimate.as_ref());
+        let additions = Additions {
+            innovation: innovation.as_ref(),
+            covariance: covariance.as_ref(),
+            estimate: estimate.as_ref(),
+        };
         self.books.answered(answered, output, additions, || source.truth())?;
         let misbehaved = self.books.watcher.misbehaved.is_some();
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })

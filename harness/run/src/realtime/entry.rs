@@ -1,5 +1,7 @@
 //! Messages from the real-time thread to the rest of the program about a step.
 
+use crate::drive::Additions;
+use octant_calibration::covariance::SolutionCovariance;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;
@@ -55,14 +57,20 @@ pub(super) struct Answer {
     pub(super) output: Output,
     /// Innovation, if there was a measurement.
     pub(super) innovation: Option<Innovation>,
+    /// Covariance of attitude and velocity after the measurement, where a filter tells it.
+    pub(super) covariance: Option<SolutionCovariance>,
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
     pub(super) truth: Option<Truth>,
 }
 
 impl Answer {
-    /// Innovation and parameters that came with the output.
-    pub(super) fn additions(&self) -> (Option<&Innovation>, Option<&ParameterEstimate>) {
-        (self.innovation.as_ref(), self.estimate.as_ref())
+    /// What came beside the output.
+    pub(super) fn additions(&self) -> Additions<'_> {
+        Additions {
+            innovation: self.innovation.as_ref(),
+            covariance: self.covariance.as_ref(),
+            estimate: self.estimate.as_ref(),
+        }
     }
 }

@@ -152,8 +152,10 @@ impl<'a> Frames<'a> {
     ) {
         let is_new = output.parameters_revision != self.revision;
         let estimate = is_new.then(|| endpoint.parameters());
-        let innovation = if output.nis.is_finite() { endpoint.innovation() } else { None };
-        let answer = Answer { output: *output, innovation, estimate, truth };
+        let measured = output.nis.is_finite();
+        let innovation = if measured { endpoint.innovation() } else { None };
+        let covariance = if measured { endpoint.covariance() } else { None };
+        let answer = Answer { output: *output, innovation, covariance, estimate, truth };
         let is_in = self.lay(match step {
             InStep::First(clean) => Entry::Frame { clean: *clean, faulted: *sent, answer },
             InStep::Further { step_ns } => Entry::Added { step_ns, faulted: *sent, answer },
