@@ -12,7 +12,8 @@ matplotlib.use("Agg")
 
 def test_every_figure_of_a_run_is_drawn(quick):
     figures = plot.report(quick)
-    assert {"position", "velocity", "attitude", "nis", "gimbals", "ground_track", "correlation"} <= set(figures)
+    expected = {"position", "velocity", "attitude", "nis", "gimbals", "ground_track", "correlation", "allan"}
+    assert expected <= set(figures)
     assert "parameters.g_dependent" in figures
     for name, figure in figures.items():
         drawn = [line for axis in figure.axes for line in axis.lines if len(line.get_xdata()) > 10]
@@ -45,6 +46,21 @@ def test_the_allan_deviation_of_a_run_is_its_random_walk(lockstep, tmp_path):
         assert deviations[at] * np.sqrt(times[at]) == pytest.approx(0.042, rel=0.25)
 
 
-def test_allan_wants_every_sample(quick):
+def test_the_stored_allan_deviation_is_drawn_without_every_sample(quick):
+    stored = quick.summary["allan_deviation"]
+    figure = plot.allan(quick)
+    for axis, sensor in zip(figure.axes, ("gyro", "accelerometer")):
+        for line, direction in zip(axis.lines, "xyz"):
+            rows = np.array(stored[sensor][direction]["series"])
+            assert len(rows) > 10
+            assert np.array_equal(line.get_xdata(), rows[:, 0])
+            assert np.array_equal(line.get_ydata(), rows[:, 1])
+    # Table 1 at one second: 0.042 deg/h of each gyro, 50 ug of each accelerometer.
+    walk = np.array(stored["gyro"]["x"]["series"])
+    at = np.argmin(np.abs(walk[:, 0] - 1.28))
+    assert walk[at, 1] * np.sqrt(walk[at, 0]) == pytest.approx(0.042, rel=0.02)
+
+
+def test_a_part_of_a_run_wants_every_sample(quick):
     with pytest.raises(ValueError, match="every sample"):
-        plot.allan(quick)
+        plot.allan(quick, end_h=0.1)

@@ -18,10 +18,11 @@ use octant_recorder::reader::{Epochs, Recording};
 use octant_report::{ReportData, ReportProvenance, SolutionSeries};
 use octant_requirements::Verdict;
 use octant_run::done::PlannedWork;
+use octant_run::filtered::FilteredSeries;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
-use octant_scenario::Scenario;
+use octant_scenario::{Method, Scenario};
 use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
@@ -88,13 +89,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         None => Dispositions::default(),
         Some(path) => disposed(&summary, path, folder)?,
     };
-    let (watcher, _) = watch(&folder.join("recording.mcap"), &scenario)?;
+    let (watcher, _) = watch(&folder.join("recording.mcap"), &scenario, Method::Primary)?;
     let baseline = folder.join(BASELINE);
-    let baseline_solution = if baseline.exists() {
+    let (baseline_solution, baseline_calibration_errors) = if baseline.exists() {
         manifest.check_file(folder, BASELINE).map_err(failed)?;
-        watch(&baseline, &scenario)?.0.solution
+        let (watcher, _) = watch(&baseline, &scenario, Method::Baseline)?;
+        (watcher.solution, calibration_errors(watcher.filtered))
     } else {
-        SolutionSeries::default()
+        Default::default()
     };
     let data = ReportData {
         truth: truth(&summary),
@@ -103,6 +105,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         navigation_start_h: watcher.navigation_start_h(),
         solution: watcher.solution,
         baseline_solution,
+        calibration_errors: calibration_errors(watcher.filtered),
+        baseline_calibration_errors,
         latitude_rad: Some(scenario.site.latitude_rad),
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
         covariance: covariance(&manifest, folder)?,
@@ -162,8 +166,17 @@ fn disposed(summary: &Summary, path: &Path, run: &Path) -> Result<Dispositions, 
         .map_err(|error| Failure::input(format!("failed to {error}")))
 }
 
-/// Feeds a recording to a watcher; returns it with the recording's last event.
-pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option<Event>), Failure> {
+/// Errors of attitude and velocity of a calibration by a filter.
+fn calibration_errors(filtered: Option<FilteredSeries>) -> SolutionSeries {
+    filtered.map(|filtered| filtered.errors).unwrap_or_default()
+}
+
+/// Feeds the recording of a method to a watcher; returns it with the recording's last event.
+pub(super) fn watch(
+    path: &Path,
+    scenario: &Scenario,
+    method: Method,
+) -> Result<(Watcher, Option<Event>), Failure> {
     let bad = |error: &dyn std::fmt::Display| {
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
@@ -171,6 +184,7 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
     let mut watcher = Watcher::new(PlannedWork::lasting(scenario));
     watcher.recorded(&recording.info().run);
+    watcher.filtered = FilteredSeries::of(scenario, method);
     let mut epochs = Epochs::new(recording);
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {

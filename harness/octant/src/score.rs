@@ -72,7 +72,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let path = &crate::run_folder::recording_of(&arguments.run)?;
     let (scenario, method, seed) = scenario_of(path)?;
-    let (watcher, last_event) = super::report::watch(path, &scenario)?;
+    let (watcher, last_event) = super::report::watch(path, &scenario, method)?;
     let navigation = match watcher.drift() {
         Some(drift) => Some(
             drift

@@ -117,6 +117,7 @@ impl Bench {
                 worst_normalized_error: None,
                 refused: None,
                 health: HealthCounts::default(),
+                sigma_hours: Vec::new(),
             }),
             navigation: Some(NavigationScore {
                 duration_h: 1.0,
@@ -137,6 +138,7 @@ impl Bench {
             counterfactual: None,
             baseline: None,
             reference: None,
+            allan_deviation: None,
             pacing: None,
             stream_hash: format!("{run:064x}"),
         }

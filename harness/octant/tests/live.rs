@@ -138,6 +138,41 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
     assert!(replayed.status.success() && said.contains("bit for bit"), "{said}");
 }
 
+/// Three seconds by the clock over a port. Nothing here says how late a sample may be.
+#[test]
+fn a_run_by_the_clock_over_a_port_shows_its_lateness_over_the_run() {
+    let bench = Bench::new(
+        "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\nmethod = \"given\"\n\
+         [procedure.navigation]\nduration = \"3 s\"\n[realtime]\noverrun = \"10 s\"\n",
+    );
+    let expected = bench.hash("in-process", &[]);
+    for endpoint in ["udp:0", "pty:"] {
+        let served = Served::new(endpoint, &bench.scenario);
+        let out = endpoint.trim_end_matches([':', '0']);
+        let patient = ["--set", "endpoint.link.answer=30 s", "--realtime"];
+        let words = [&["--endpoint", &served.uri], &patient[..]].concat();
+        assert_eq!(bench.hash(out, &words), expected, "{endpoint}");
+        let pacing = &bench.summary(out)["pacing"];
+        assert_eq!(pacing["frames"], 600);
+        let over = &pacing["lateness_over_run"];
+        let list = |name: &str| -> Vec<u64> {
+            over[name].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect()
+        };
+        let (least, largest) = (list("least_ns"), list("largest_ns"));
+        let per_interval = over["frames_per_interval"].as_u64().unwrap();
+        assert_eq!(largest.len() as u64, 600u64.div_ceil(per_interval));
+        assert!(least.iter().zip(&largest).all(|(least, largest)| least <= largest));
+        let max_us = pacing["lateness_us"]["max"].as_f64().unwrap();
+        assert_eq!(*largest.iter().max().unwrap() as f64 / 1e3, max_us);
+        assert_eq!(Some(list("overruns").iter().sum()), pacing["overruns"].as_u64());
+        let page = std::fs::read_to_string(bench.folder.path().join(out).join("report.html"));
+        let page = page.unwrap();
+        let chart = page.split("aria-label=\"Lateness over the run\"").nth(1).unwrap();
+        assert!(chart.contains("smallest to largest in "), "{endpoint}");
+        served.stop("-TERM");
+    }
+}
+
 #[test]
 fn a_program_that_ends_or_is_not_there_ends_the_run() {
     let bench = Bench::new(SHORT);

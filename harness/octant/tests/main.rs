@@ -5,6 +5,7 @@
 
 mod common;
 
+mod allan;
 mod architecture;
 mod campaign;
 mod campaign_report;

@@ -97,6 +97,7 @@ fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) 
         parameters,
         refused: None,
         health: HealthCounts { measurements: 86_400, ..HealthCounts::default() },
+        sigma_hours: Vec::new(),
     };
     (calibration, estimate)
 }
@@ -171,6 +172,7 @@ fn data() -> ReportData {
         })),
         alignment: None,
         counterfactual: None,
+        allan_deviation: None,
         pacing: None,
         stream_hash: "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855".to_owned(),
     };
@@ -193,6 +195,8 @@ fn data() -> ReportData {
         stops: Vec::new(),
         solution: SolutionSeries::default(),
         baseline_solution: SolutionSeries::default(),
+        calibration_errors: SolutionSeries::default(),
+        baseline_calibration_errors: SolutionSeries::default(),
         navigation_start_h: Some(24.0),
         latitude_rad: Some(LATITUDE),
         sample_period_s: Some(0.005),

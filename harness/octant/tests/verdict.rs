@@ -53,6 +53,7 @@ fn summary() -> Summary {
             worst_normalized_error: None,
             refused: None,
             health: HealthCounts::default(),
+            sigma_hours: Vec::new(),
         }),
         navigation: Some(NavigationScore {
             duration_h: 1.0,
@@ -74,6 +75,7 @@ fn summary() -> Summary {
         altered_streams: None,
         alignment: None,
         counterfactual: None,
+        allan_deviation: None,
         pacing: None,
         stream_hash: "00".to_owned(),
     }

@@ -144,6 +144,7 @@ impl Parts {
             worst_normalized_error: None,
             refused: refused.then(|| "so it was".to_owned()),
             health: HealthCounts::default(),
+            sigma_hours: Vec::new(),
         };
         let slope_per_day = Some(f64::NAN);
         let score = ErrorScore {
@@ -199,6 +200,7 @@ impl Parts {
                 faults: fired.iter().map(fault).collect(),
             }),
             reference: None,
+            allan_deviation: None,
             pacing: None,
             stream_hash: "00".to_owned(),
         };

@@ -3,6 +3,7 @@
 use super::convergence::convergence;
 use super::correlation::correlation;
 use super::data::ReportData;
+use super::filtered::filtered;
 use super::innovations::innovations;
 use super::parameters;
 use maud::{Markup, html};
@@ -29,6 +30,7 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
         }
         (parameters::table(calibration, baseline.and_then(|b| b.calibration.as_ref())))
         (convergence(data))
+        (filtered(data))
         (correlation(data))
         (innovations(data))
     }

@@ -39,7 +39,7 @@ impl Chart {
                     @if self.paired { (frame.pairs(&self.lines)) } @else {
                         @for line in &self.lines {
                             path class={ "line " (line.role.class()) } d=(frame.path(&line.points)) {}
-                            @if self.dots { (frame.dots(line)) }
+                            @if self.dots && line.role.has_dots() { (frame.dots(line)) }
                         }
                     }
                     @if let Some((length, label)) = &self.bracket { (frame.bracket(*length, label)) }

@@ -30,6 +30,10 @@ pub struct ReportData {
     pub solution: SolutionSeries,
     /// The same of the baseline; empty without one.
     pub baseline_solution: SolutionSeries,
+    /// Errors of attitude and velocity over a calibration by a filter, in hours of the run.
+    pub calibration_errors: SolutionSeries,
+    /// The same of the baseline; empty without one.
+    pub baseline_calibration_errors: SolutionSeries,
     /// Time of the run at which the navigation began, h; `None` without one.
     pub navigation_start_h: Option<f64>,
     /// Latitude of the site, rad; `None` if it isn't known.

@@ -7,6 +7,7 @@
 //! - [`page`] is the frame of every page: style, script, contents
 //! - [`series`] collects errors of any number of samples in bounded memory
 
+mod allan;
 mod calibration;
 pub mod chart;
 pub mod compare;
@@ -16,6 +17,7 @@ pub mod counterfactual;
 mod data;
 pub mod discrepancies;
 mod drift;
+mod filtered;
 mod gimbals;
 mod innovations;
 mod marks;

@@ -4,6 +4,7 @@ pub use super::data::{
     GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance, StopLabel,
 };
 
+use super::allan::allan;
 use super::calibration::calibration;
 use super::counterfactual::counterfactual;
 use super::drift::drift;
@@ -36,6 +37,7 @@ pub fn render(data: &ReportData) -> String {
         PageSection::new("navigation", "Navigation", drift(data)),
         PageSection::new("alignment", "Alignment", alignment(summary, &data.units)),
         PageSection::new("calibration", "Calibrated parameters", calibration(data)),
+        PageSection::new("noise", "Noise at rest", allan(summary)),
         PageSection::new("gimbals", "Gimbals", gimbals(data)),
         PageSection::new("health", "Health", events(data)),
         PageSection::new("pacing", "Against the clock", pacing(summary)),

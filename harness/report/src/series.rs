@@ -13,8 +13,8 @@ struct Stretch {
     high: [f64; COLUMNS],
 }
 
-/// Errors of attitude and velocity over the navigation, as extremes of equal stretches of time. Memory
-/// doesn't grow with the length of the run.
+/// Errors of attitude and velocity over a part of a run, as extremes of equal stretches of time. Memory
+/// doesn't grow with its length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolutionSeries {
     stretches: Vec<Stretch>,
@@ -24,7 +24,7 @@ pub struct SolutionSeries {
 
 impl SolutionSeries {
     /// Takes the errors at one time: heading, pitch and roll of the case, arcmin, and velocity north and
-    /// east, m/s; NaN where they aren't known. `hours` is the time since the start of the navigation.
+    /// east, m/s; NaN where they aren't known. `hours` is the time since the start of the series.
     pub fn push(&mut self, hours: f64, errors: [f64; COLUMNS]) {
         if self.in_last < self.per_stretch
             && let Some(last) = self.stretches.last_mut()

@@ -7,7 +7,7 @@ use octant_base::number;
 use octant_score::floor::FloorPoint;
 
 /// Names of the columns of the series, as the scores have them, with their titles.
-const COLUMNS: [(&str, &str); 5] = [
+pub(super) const COLUMNS: [(&str, &str); 5] = [
     ("heading", "Heading error"),
     ("pitch", "Pitch error"),
     ("roll", "Roll error"),

@@ -8,8 +8,10 @@ use octant_report::{
 };
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
+use octant_score::allan::{InstrumentNoise, RestOctave, RestRecord};
 use octant_score::floor::Floor;
-use octant_score::summary::Summary;
+use octant_score::summary::{AllanDeviation, Summary};
+use octant_statistics::allan::DifferenceCounts;
 
 /// Hours of the calibration, and of the navigation after it.
 const CALIBRATION_H: f64 = 4.0;
@@ -39,6 +41,42 @@ fn convergence() -> Vec<ParameterPoint> {
             }
         })
         .collect()
+}
+
+/// Errors that settle within the first half hour.
+fn calibration_errors() -> SolutionSeries {
+    let mut errors = SolutionSeries::default();
+    for k in 0..(3600.0 * CALIBRATION_H) as usize {
+        let hours = k as f64 / 3600.0;
+        let settling = 5.0 * (-8.0 * hours).exp() + 0.1 * chance(k / 600);
+        errors.push(hours, [settling, 0.1 * settling, -0.1 * settling, 1e-3 * settling, 0.0]);
+    }
+    errors
+}
+
+/// Octaves of a gyro with a random walk and a bias instability, and of an accelerometer with white noise
+/// that scatter by a few per cent.
+fn at_rest(base_moves: bool) -> RestRecord {
+    let mut counts = DifferenceCounts::new(2);
+    counts.add_stretch(2000);
+    let octave = |k: usize| {
+        let tau_s = 0.005 * (1u32 << k) as f64;
+        let scatter = |channel: usize| 1.0 + 0.03 * chance(17 * k + channel);
+        let (n, b, v) = (2e-7, 2e-8, 5e-4);
+        let variance = std::array::from_fn(|channel| {
+            let gyro = n * n / tau_s + 0.441_271 * b * b;
+            scatter(channel) * if channel < 3 { gyro } else { v * v / tau_s }
+        });
+        RestOctave { tau_s, variance, counts }
+    };
+    RestRecord {
+        sample_period_s: 0.005,
+        base_moves,
+        stretches: 19,
+        at_rest_s: 14_000.0,
+        longest_s: 1400.0,
+        octaves: (0..16).map(octave).collect(),
+    }
 }
 
 fn gimbals() -> Vec<GimbalPoint> {
@@ -91,9 +129,21 @@ fn data() -> ReportData {
         detail: "3 epochs".to_owned(),
     };
     let chi = |k: usize| (0..3).map(|axis| 3.0 * chance(3 * k + axis).powi(2)).sum::<f64>();
+    let instrument = InstrumentNoise {
+        gyro: [0.0, 2e-7, 2e-8, 0.0, 0.0],
+        accelerometer: [0.0, 5e-4, 0.0, 0.0, 0.0],
+    };
+    let mut summary = Summary::from_json(include_str!("summary.json")).unwrap();
+    summary.allan_deviation = AllanDeviation::of(&at_rest(false), Some(&instrument)).map(Box::new);
+    let sigma = |k: usize| {
+        let hours = CALIBRATION_H * k as f64 / 400.0;
+        let sigma = 6.0 * (-8.0 * hours).exp() + 0.15;
+        [hours, sigma, 0.1 * sigma, 0.1 * sigma, 1e-3 * sigma, 1e-3 * sigma]
+    };
+    summary.calibration.as_mut().unwrap().sigma_hours = (1..=400).map(sigma).collect();
     ReportData {
         stops: Vec::new(),
-        summary: Summary::from_json(include_str!("summary.json")).unwrap(),
+        summary,
         facts: vec![("site".to_owned(), "30.5° latitude".to_owned())],
         truth: Some(Parameters::from_array(&[0.0; PARAMETER_COUNT])),
         convergence: convergence(),
@@ -102,6 +152,8 @@ fn data() -> ReportData {
             .collect(),
         gimbals: gimbals(),
         baseline_solution: solution.clone(),
+        calibration_errors: calibration_errors(),
+        baseline_calibration_errors: SolutionSeries::default(),
         solution,
         navigation_start_h: Some(CALIBRATION_H),
         latitude_rad: Some(0.53),
@@ -144,6 +196,10 @@ fn a_run_of_28_h_is_one_small_file_with_every_plot() {
         "Ground track of the position error",
         "gyro_bias_x",
         "accel_misalignment_zy",
+        "Heading error during the calibration",
+        "Velocity error east during the calibration",
+        "Gyro x, deg/h",
+        "Accelerometer z, ug",
     ] {
         assert!(html.contains(&format!("aria-label=\"{title}\"")), "no drawing of {title}");
     }
@@ -197,6 +253,75 @@ fn attitude_and_velocity_have_the_band_of_the_noise_and_say_so() {
     assert!(!block(&html, "Heading error").contains("random walk"));
     assert!(block(&html, "Latitude error").contains("±1σ of random walk alone"));
     assert!(!html.contains("The core tells no covariance"));
+}
+
+/// Numbers of a drawing: the block for the script.
+fn block<'a>(html: &'a str, title: &str) -> &'a str {
+    let chart = html.split(&format!("aria-label=\"{title}\"")).nth(1).unwrap();
+    let block = chart.split("application/json\">").nth(1).unwrap();
+    block.split("</script>").next().unwrap()
+}
+
+#[test]
+fn the_noise_at_rest_has_points_curve_and_terms_in_the_units_of_data_sheets() {
+    let data = data();
+    let html = page(&data);
+    let gyro = block(&html, "Gyro x, deg/h");
+    for part in ["\"decades\":true", "\"dots\":true", "scenario's instrument", "sum of the terms"] {
+        assert!(gyro.contains(part), "{part} is not in {gyro}");
+    }
+    let columns = gyro.split("\"columns\":[").nth(1).unwrap();
+    let columns: Vec<Vec<f32>> = columns
+        .split(']')
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|column| singles(column.trim_matches('"')))
+        .collect();
+    // The axis of x has the decimal logarithm of the averaging time.
+    let series = &data.summary.allan_deviation.as_ref().unwrap().gyro.x.series;
+    let times = columns.iter().find(|column| column.len() == series.len()).unwrap();
+    assert!((f64::from(times[3]) - 0.04f64.log10()).abs() < 1e-6, "{times:?}");
+    let section = html.split("<h2 id=\"noise\">").nth(1).unwrap().split("</section>").next();
+    let section = section.unwrap();
+    // 2e-7 rad/√s, 2e-8 rad/s; 5e-4 (m/s²)/√Hz.
+    for part in ["19 stretches", "deg/sqrt(h)", "0.000688", "0.00413", "ug/sqrt(Hz)", "51.0"] {
+        assert!(section.contains(part), "{part} is not in {section}");
+    }
+    assert!(section.contains("below ") && !section.contains("The base may move"));
+    assert!(!section.contains("don't describe"));
+}
+
+#[test]
+fn a_deviation_of_a_moving_base_says_so_and_has_no_terms() {
+    let mut data = data();
+    data.summary.allan_deviation = AllanDeviation::of(&at_rest(true), None).map(Box::new);
+    let html = page(&data);
+    let section = html.split("<h2 id=\"noise\">").nth(1).unwrap().split("</section>").next();
+    let section = section.unwrap();
+    assert!(section.contains("The base may move.") && !section.contains("Noise terms"));
+    assert!(!block(&html, "Gyro x, deg/h").contains("sum of the terms"));
+    data.summary.allan_deviation = None;
+    assert!(!page(&data).contains("id=\"noise\""), "a run without a stretch at rest");
+}
+
+#[test]
+fn errors_during_the_calibration_have_the_band_of_the_filter() {
+    let mut data = data();
+    let html = page(&data);
+    let heading = block(&html, "Heading error during the calibration");
+    assert!(heading.contains("±σ of the filter") && heading.contains("\"offset\":0,"));
+    // The first tenth, with errors of 5 arcmin, doesn't set the scale.
+    let range = heading.split("\"range\":[").nth(1).unwrap().split(']').next().unwrap();
+    let high: f64 = range.split(',').nth(1).unwrap().parse().unwrap();
+    assert!((0.2..2.0).contains(&high), "{range}");
+    // A core over a wire tells no σ.
+    data.summary.calibration.as_mut().unwrap().sigma_hours.clear();
+    let html = page(&data);
+    assert!(!html.contains("±σ of the filter"));
+    assert!(html.contains("The filter's σ isn't known"));
+    data.calibration_errors = SolutionSeries::default();
+    assert!(!page(&data).contains("during the calibration\""));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Assembles summary, report and verdict from the methods of a run.
 
+use super::at_rest::instrument_noise;
 use super::findings::findings;
 use super::method::MethodRun;
 use super::scores_text::{alignment_line, navigation_lines, solution_line};
@@ -21,7 +22,7 @@ use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
-    AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results,
+    AllanDeviation, AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results,
 };
 use octant_turntable::TableAxis;
 use std::collections::BTreeMap;
@@ -125,6 +126,12 @@ pub fn assemble_with(
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let baseline_solution =
         baseline.as_ref().map_or_else(SolutionSeries::default, |run| run.watcher.solution.clone());
+    let filtered = |run: &MethodRun| {
+        run.watcher.filtered.as_ref().map_or_else(SolutionSeries::default, |f| f.errors.clone())
+    };
+    let calibration_errors = filtered(&primary);
+    let baseline_calibration_errors =
+        baseline.as_ref().map_or_else(SolutionSeries::default, filtered);
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -157,6 +164,9 @@ pub fn assemble_with(
         }),
         reference: Some(references),
         counterfactual,
+        allan_deviation: primary.watcher.at_rest.take().and_then(|at_rest| {
+            AllanDeviation::of(&at_rest.record(), instrument_noise(scenario).as_ref()).map(Box::new)
+        }),
         pacing: primary.kept.as_ref().map(|kept| kept.pacing.clone()),
         stream_hash: primary.recorder.stream_hash.clone(),
     };
@@ -170,6 +180,8 @@ pub fn assemble_with(
     let report = ReportData {
         solution: primary.watcher.solution.clone(),
         baseline_solution,
+        calibration_errors,
+        baseline_calibration_errors,
         navigation_start_h: primary.watcher.navigation_start_h(),
         latitude_rad: Some(scenario.site.latitude_rad),
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),

@@ -395,6 +395,7 @@ impl<'a> Books<'a> {
         }
         if let Some(covariance) = &measured.covariance {
             recorder.extra(&Extra::Covariance(*covariance));
+            watcher.covariance(sent, output, covariance);
         }
         if let Some(estimate) = estimate {
             recorder.extra(&Extra::Parameters(*estimate));

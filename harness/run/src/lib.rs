@@ -3,19 +3,22 @@
 //! [`drive`] has the loop, the only one over samples; [`in_time`] runs it in simulated time, [`realtime`] by the clock,
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
-//! that answers follow their input, [`done`] counts the completed work; [`method`] runs one method
-//! from its scenario to its scores;
+//! that answers follow their input, [`done`] counts the completed work, [`at_rest`] keeps the noise of
+//! the sensors, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
+//! scores;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made.
 
 mod aligned;
 pub mod assemble;
+pub mod at_rest;
 pub mod done;
 pub mod drive;
 mod ended;
 mod error;
 pub mod faulted;
+pub mod filtered;
 pub mod findings;
 pub mod follow;
 pub mod host;
@@ -32,6 +35,7 @@ pub mod realtime;
 mod recording;
 pub mod replayed;
 pub mod scores_text;
+mod solution;
 pub mod stepped;
 pub mod twin;
 pub mod unit;

@@ -4,9 +4,11 @@ pub use super::error::{MethodError, SetupError, core_problem};
 pub use super::recording::StreamKeeping;
 
 use super::aligned::{self, uncertainty_of};
+use super::at_rest::AtRest;
 use super::done::PlannedWork;
 use super::drive::{Ended, Line, RunError};
 use super::faulted::Faulted;
+use super::filtered::FilteredSeries;
 use super::host::RunHost;
 use super::in_time::drive_in_time;
 use super::realtime::{TimeKeeping, drive_by_clock};
@@ -151,6 +153,7 @@ pub fn run_as_far_as_it_goes(
         StreamKeeping::File(_) | StreamKeeping::None => !scenario.faults.is_empty(),
     };
     watcher.trace = compared.then(RunTrace::new);
+    charts(&mut watcher, scenario, method, recording);
     let samples = scenario.samples().unwrap_or(u64::MAX);
     let realtime =
         scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
@@ -181,6 +184,20 @@ pub fn run_as_far_as_it_goes(
     let truth = true_parameters.then_some(draws.parameters);
     let run = finish(scenario, method, closed, recorder, watcher, truth)?;
     Ok(MethodRun { receipts, ..run })
+}
+
+/// Switches on what only the report shows, for a run that has one: a run with a recording.
+pub(super) fn charts(
+    watcher: &mut Watcher,
+    scenario: &Scenario,
+    method: Method,
+    recording: StreamKeeping<'_>,
+) {
+    if matches!(recording, StreamKeeping::File(_)) {
+        watcher.filtered = FilteredSeries::of(scenario, method);
+        // Both methods have the same instrument.
+        watcher.at_rest = (method == Method::Primary).then(|| Box::new(AtRest::of(scenario)));
+    }
 }
 
 /// State at the end of a loop.
@@ -402,6 +419,10 @@ pub(super) fn finish(
             parameters,
             refused: refused.clone(),
             health,
+            sigma_hours: watcher
+                .filtered
+                .as_mut()
+                .map_or_else(Vec::new, FilteredSeries::take_sigma),
         }
     });
     let navigation = match watcher.drift() {

@@ -144,6 +144,7 @@ impl SteppedRun {
             .filter(|_| foreign_source || !scenario.source.is_plant_alone());
         let mut watcher = Watcher::new(PlannedWork::of(scenario, method, &core, tells, recorded));
         watcher.trace = (!scenario.faults.is_empty()).then(RunTrace::new);
+        method::charts(&mut watcher, scenario, method, recording);
         let functions = Functions::new(parts.faults);
         let injects = faulted.is_some() || !functions.is_empty();
         let total = source.samples_total().filter(|_| injects);

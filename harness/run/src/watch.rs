@@ -4,15 +4,17 @@
 //! [`Watcher::parameters`] and [`Watcher::truth`] where there are any). A rule broken by the unit,
 //! or a real-time limit violated by the bench, ends the observation.
 
+use super::at_rest::AtRest;
 use super::done::{Done, PlannedWork};
+use super::filtered::FilteredSeries;
 use super::follow::RunFollower;
-use octant_earth::units::ARCMIN;
+use super::solution::{attitude_error, errors, velocity_error};
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
 use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, SolutionSeries};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{DeviceTime, Health, Innovation, Mode, Output, Status};
+use octant_sample::{DeviceTime, Health, Innovation, Mode, NavigationCovariance, Output, Status};
 use octant_score::alignment::SolutionPoint;
 use octant_score::attitude::CaseAngles;
 use octant_score::drift::{DriftSample, DriftScorer};
@@ -68,6 +70,10 @@ pub struct Watcher {
     pub calibrated: Option<SolutionPoint>,
     /// Trace for the comparison with a twin, where there is one.
     pub trace: Option<RunTrace>,
+    /// Noise of the sensors at rest, where it is wanted.
+    pub at_rest: Option<Box<AtRest>>,
+    /// Errors and σ of a filter that calibrates, where they are wanted.
+    pub filtered: Option<FilteredSeries>,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
     /// Time of the source at the next output, where faults may have altered its stamp.
@@ -133,6 +139,8 @@ impl Watcher {
             aligned: None,
             calibrated: None,
             trace: None,
+            at_rest: None,
+            filtered: None,
             health: HealthMonitor::new(),
             source_time: None,
             convergence: Vec::new(),
@@ -158,6 +166,9 @@ impl Watcher {
     #[inline]
     pub fn source(&mut self, clean: &Epoch) {
         self.source_time = Some(clean.sample.device_time);
+        if let Some(at_rest) = &mut self.at_rest {
+            at_rest.push(&clean.sample);
+        }
         if clean.aiding.is_some() {
             self.done.reference();
         }
@@ -276,8 +287,8 @@ impl Watcher {
     /// Adds the errors to the noted solution.
     #[cold]
     fn note_errors(&mut self, moment: Moment, output: &Output, truth: &Truth) {
-        let attitude_error = self.attitude_error(output, truth);
-        let velocity_error_mps = self.velocity_error(output, truth);
+        let attitude_error = attitude_error(self.tells, output, truth);
+        let velocity_error_mps = velocity_error(self.tells, output, truth);
         let point = match moment {
             Moment::Aligned => &mut self.aligned,
             Moment::Calibrated => &mut self.calibrated,
@@ -317,11 +328,22 @@ impl Watcher {
         }
     }
 
+    /// Takes the filter's covariance after the measurement in the last output.
+    #[inline(never)]
+    pub fn covariance(&mut self, sent: &Epoch, output: &Output, covariance: &NavigationCovariance) {
+        if let Some(filtered) = &mut self.filtered {
+            filtered.covariance(&sent.sample, output, covariance);
+        }
+    }
+
     #[inline(never)]
     fn gimbals(&mut self, output: &Output) {
         let now_ns = output.device_time.ns;
         // A move is drawn as a line between its ends.
         self.next_standing_ns = now_ns + STANDING_PERIOD_NS;
+        if let (Some(at_rest), true) = (&mut self.at_rest, output.moving != self.was_moving) {
+            at_rest.unit_moves(output.moving);
+        }
         self.was_moving = output.moving;
         if self.gimbals.len() < GIMBAL_POINTS_MAX {
             let target = output.gimbal_command.target;
@@ -364,6 +386,11 @@ impl Watcher {
         if let Some(moment) = self.moment.take() {
             self.note_errors(moment, output, truth);
         }
+        let attitude_error = attitude_error(self.tells, output, truth);
+        let velocity_error_mps = velocity_error(self.tells, output, truth);
+        if let Some(filtered) = &mut self.filtered {
+            filtered.errors(output, errors(attitude_error, velocity_error_mps));
+        }
         let Some(start_ns) = self.navigation_start_ns else { return };
         let now_ns = output.device_time.ns;
         // A drift is a function of time: stamps that a fault puts before the last scored one are
@@ -380,8 +407,8 @@ impl Watcher {
             t_s: (now_ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
-            attitude_error: self.attitude_error(output, truth),
-            velocity_error_mps: self.velocity_error(output, truth),
+            attitude_error,
+            velocity_error_mps,
             latitude_rad: truth.latitude_rad,
             height_m: truth.height_m,
         };
@@ -389,24 +416,8 @@ impl Watcher {
             let (north, east) = (sample.latitude_error_rad, sample.longitude_error_rad);
             trace.drift(sample.t_s, north, east);
         }
-        self.solution.push(sample.t_s / 3600.0, errors(&sample));
+        self.solution.push(sample.t_s / 3600.0, errors(attitude_error, velocity_error_mps));
         self.drift.push(&sample);
-    }
-
-    /// Attitude error of the case; `None` where unit or source don't tell an attitude.
-    fn attitude_error(&self, output: &Output, truth: &Truth) -> Option<CaseAngles> {
-        let known = self.tells.attitude && truth.q_nb.iter().all(|q| q.is_finite());
-        let computed = output.navigation.q_nb;
-        known.then(|| CaseAngles::error(computed, truth.q_nb, truth.gimbal_rad))
-    }
-
-    /// Error of the velocity over ground, north and east, m/s; `None` where unit or source don't tell a
-    /// velocity.
-    fn velocity_error(&self, output: &Output, truth: &Truth) -> Option<[f64; 2]> {
-        let [north, east, _] = truth.velocity_mps;
-        let known = self.tells.velocity && north.is_finite() && east.is_finite();
-        let [computed_north, computed_east, _] = output.navigation.velocity_mps;
-        known.then_some([computed_north - north, computed_east - east])
     }
 
     /// Returns the drift so far; `None` without navigation or without truth.
@@ -466,12 +477,4 @@ impl Watcher {
 
 fn hours(output: &Output) -> f64 {
     output.device_time.seconds() / 3600.0
-}
-
-/// Errors of attitude, arcmin, and velocity, m/s, in the order of [`SolutionSeries::push`].
-fn errors(sample: &DriftSample) -> [f64; 5] {
-    let attitude = sample.attitude_error;
-    let arcmin = |of: fn(&CaseAngles) -> f64| attitude.as_ref().map_or(f64::NAN, of) / ARCMIN;
-    let [north, east] = sample.velocity_error_mps.unwrap_or([f64::NAN; 2]);
-    [arcmin(|a| a.heading_rad), arcmin(|a| a.pitch_rad), arcmin(|a| a.roll_rad), north, east]
 }

@@ -101,8 +101,9 @@ pub struct SolutionUncertainty {
     pub velocity_mps: [f64; 2],
 }
 
-/// σ of heading, pitch and roll, rad, from the covariance of φ in n.
-fn case_sigma(phi: &[[f64; 3]; 3], attitude: &CaseAngles) -> [f64; 3] {
+/// σ of heading, pitch and roll of the case, rad, from the covariance of φ in n, rad².
+#[must_use]
+pub fn case_sigma(phi: &[[f64; 3]; 3], attitude: &CaseAngles) -> [f64; 3] {
     let to_case = case_of_phi(attitude.heading_rad, attitude.pitch_rad);
     let phi = Matrix3::from_fn(|i, j| phi[i][j]);
     let case = to_case * phi * to_case.transpose();

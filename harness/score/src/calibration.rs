@@ -32,6 +32,11 @@ pub struct CalibrationScore {
     pub refused: Option<String>,
     /// Counts of the core's reports.
     pub health: HealthCounts,
+    /// Rows of the filter's σ over the calibration: hours of the run; heading, pitch and roll of the
+    /// case, arcmin; velocity north and east, m/s. Empty where no covariance is known, and in the cases
+    /// of a campaign.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sigma_hours: Vec<[f64; 6]>,
 }
 
 /// One parameter, in its unit.

@@ -294,6 +294,7 @@ mod tests {
             worst_normalized_error: None,
             refused: refused.map(str::to_owned),
             health: HealthCounts::default(),
+            sigma_hours: Vec::new(),
         }
     }
 

@@ -6,7 +6,7 @@
 //! - [`parameters`] compares estimates with truth, normalized by their σ
 //! - [`mod@reference`] and [`floor`] give the physical limits of the scores
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
-//! - [`health`] counts the reports of the core
+//! - [`health`] counts the reports of the core, [`allan`] has the noise of the sensors at rest
 //! - [`summary`] is `summary.json`, [`work`] compares the work planned with the work done
 //! - [`verdict`] compares a measure with its limit, [`judge`] derives the verdict of a summary,
 //!   [`junit`] writes it for CI
@@ -14,6 +14,7 @@
 //!   the same bits, [`equipment`] finds expired certificates
 
 pub mod alignment;
+pub mod allan;
 pub mod attitude;
 mod calibration;
 mod claim;

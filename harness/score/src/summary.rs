@@ -3,6 +3,7 @@
 //! The file contains nothing about host or clock: the same scenario, seed and core give the same bytes.
 
 pub use super::alignment::{AlignmentReference, AlignmentResult, PointScore, SolutionScore};
+pub use super::allan::{AllanDeviation, AxisAllan, NoiseTermScore, SensorAllan};
 pub use super::calibration::{CalibrationScore, HealthCounts, ParameterScore};
 pub use super::navigation::{
     ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow,
@@ -81,6 +82,10 @@ pub struct Summary {
     pub baseline: Option<BaselineMethod>,
     /// Physical references for the scores.
     pub reference: Option<AnalyticReference>,
+    /// Allan deviation of the samples at rest; left out without a stretch at rest, and in the cases of
+    /// a campaign.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub allan_deviation: Option<Box<AllanDeviation>>,
     /// Pacing against a real clock; null in simulated time.
     pub pacing: Option<PacingRecord>,
     /// BLAKE3 of the canonical bytes of samples, aiding and outputs.

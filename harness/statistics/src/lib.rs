@@ -1,5 +1,6 @@
 //! Statistics of many runs.
 //!
+//! - [`mod@allan`] has the Allan variance of a sensor at rest, and the noise terms that describe it
 //! - [`sample`] has the figures of a sample, [`position`] those of position errors: CEP50, R95, drms
 //! - [`mod@deviation`] has the uncertainty of a σ, [`radius`] the distance of a normal error in the
 //!   plane
@@ -15,6 +16,7 @@
 //!
 //! Every function names its source. Nothing in this crate depends on scenarios or files.
 
+pub mod allan;
 pub mod cluster;
 pub mod convergence;
 pub mod deviation;

@@ -263,19 +263,8 @@ def _allan_deviation(rate: np.ndarray, period_s: float) -> tuple[np.ndarray, np.
     return lengths * period_s, np.array(deviations)
 
 
-def allan(run: Method, axes: Any = None, *, start_h: float = 0.0, end_h: float | None = None) -> Any:
-    """Allan deviation of the gyros (deg/h) and accelerometers (ug), over the averaging time.
-
-    The samples have to be complete: a run with ``record.samples = "full"``. The mean of the stretch
-    (Earth rate, gravity, bias) doesn't matter; a turn of the gimbals does, so choose a dwell.
-
-    Parameters
-    ----------
-    run, axes
-        As for :func:`position`.
-    start_h, end_h : float
-        Stretch of the run, h.
-    """
+def _of_samples(run: Method, start_h: float, end_h: float | None) -> Any:
+    """Allan deviations of the recorded samples: sensor, axis, averaging times, deviations."""
     table = run.samples
     time = table["time"]
     chosen = (time >= start_h * 3600) & (time <= (np.inf if end_h is None else end_h * 3600))
@@ -284,15 +273,40 @@ def allan(run: Method, axes: Any = None, *, start_h: float = 0.0, end_h: float |
     if np.any(np.diff(table["sequence"][chosen]) != 1):
         raise ValueError('the recording has not every sample: expected a run with record.samples = "full"')
     period_s = float(np.median(np.diff(time[chosen])))
-    figure, axes = _axes(axes, 2)
-    sensors = [
-        ("delta_theta", "gyro, deg/h", np.degrees(1) * 3600),
-        ("delta_velocity", "accelerometer, ug", 1e6 / 9.80665),
-    ]
-    for axis, (name, label, scale) in zip(axes, sensors):
+    for sensor, (name, scale) in enumerate([("delta_theta", np.degrees(1) * 3600), ("delta_velocity", 1e6 / 9.80665)]):
         for direction in "xyz":
             rate = table[f"{name}_{direction}"][chosen] / period_s * scale
-            axis.loglog(*_allan_deviation(rate - rate.mean(), period_s), marker=".", label=direction)
+            yield sensor, direction, *_allan_deviation(rate - rate.mean(), period_s)
+
+
+def allan(run: Method, axes: Any = None, *, start_h: float | None = None, end_h: float | None = None) -> Any:
+    """Allan deviation of the gyros (deg/h) and accelerometers (ug), over the averaging time.
+
+    Of the whole run, the deviation in its summary is drawn, with its intervals of 95 %: of all
+    stretches in which the gimbals were at rest. Of a part of the run, and of a run without it, that of
+    the recorded samples. They have to be complete then: a run with ``record.samples = "full"``. The mean
+    of the part (Earth rate, gravity, bias) doesn't matter; a turn of the gimbals does, so choose a dwell.
+
+    Parameters
+    ----------
+    run, axes
+        As for :func:`position`.
+    start_h, end_h : float
+        Part of the run, h.
+    """
+    stored = run.summary.get("allan_deviation") if isinstance(run, Run) and start_h is None and end_h is None else None
+    found = None if stored else list(_of_samples(run, start_h or 0.0, end_h))
+    figure, axes = _axes(axes, 2)
+    if stored:
+        for axis, sensor in zip(axes, ("gyro", "accelerometer")):
+            for direction in "xyz":
+                rows = np.array(stored[sensor][direction]["series"], dtype=float).reshape(-1, 5)
+                (line,) = axis.loglog(rows[:, 0], rows[:, 1], marker=".", label=direction)
+                axis.fill_between(rows[:, 0], rows[:, 2], rows[:, 3], color=line.get_color(), alpha=0.15, linewidth=0)
+    else:
+        for sensor, direction, times, deviations in found:
+            axes[sensor].loglog(times, deviations, marker=".", label=direction)
+    for axis, label in zip(axes, ("gyro, deg/h", "accelerometer, ug")):
         axis.set_ylabel(label)
         axis.grid(True, which="both", linewidth=0.3)
     axes[0].legend(fontsize=8)
@@ -317,4 +331,6 @@ def report(run: Run) -> dict[str, Any]:
         figures["correlation"] = correlation(run)
     if len(run.navigation):
         figures["gimbals"] = gimbals(run)
+    if run.summary.get("allan_deviation"):
+        figures["allan"] = allan(run)
     return figures

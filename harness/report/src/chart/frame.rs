@@ -1,7 +1,9 @@
 //! Scales of a static drawing, and its parts as SVG.
 
 use super::model::{Band, Chart, ChartLine};
-use super::ticks::{decades, hour_ticks, is_round, nice_ticks, round, span, thinned, whole_ticks};
+use super::ticks::{
+    decades, exponents, hour_ticks, is_round, nice_ticks, round, span, thinned, whole_ticks,
+};
 use maud::{Markup, html};
 use octant_base::number;
 
@@ -26,7 +28,7 @@ fn labelled(ticks: Vec<f64>, logarithmic: bool) -> Vec<(f64, String)> {
 pub(super) struct Frame {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    x_ticks: Vec<f64>,
+    x_ticks: Vec<(f64, String)>,
     pub(super) y_ticks: Vec<(f64, String)>,
     pub(super) left: f64,
     pub(super) right: f64,
@@ -52,7 +54,13 @@ impl Frame {
         if x[1] <= x[0] {
             return None;
         }
-        let x_ticks = if chart.hours { hour_ticks(x, chart.width / 75.0) } else { whole_ticks(x) };
+        let x_ticks: Vec<(f64, String)> = if chart.decades {
+            exponents(x).into_iter().map(|e| (e, number::plain(libm::pow(10.0, e), 1))).collect()
+        } else {
+            let ticks =
+                if chart.hours { hour_ticks(x, chart.width / 75.0) } else { whole_ticks(x) };
+            ticks.into_iter().map(|tick| (tick, number::plain(tick, 3))).collect()
+        };
         let (y, y_ticks) = if chart.logarithmic {
             decades(chart.y_range.unwrap_or(needed))
         } else if let Some(range) = chart.y_range {
@@ -100,10 +108,10 @@ impl Frame {
                     d={ "M" (self.left) " " (y) "H" (self.right) } {}
                 text class="tick y" x=(self.left - 7.0) y=(y + 3.8) { (label) }
             }
-            @for tick in &self.x_ticks {
+            @for (tick, label) in &self.x_ticks {
                 @let x = round(self.px(*tick));
                 path class="mark" d={ "M" (x) " " (self.bottom) "v5" } {}
-                text class="tick x" x=(x) y=(self.bottom + 18.0) { (number::plain(*tick, 3)) }
+                text class="tick x" x=(x) y=(self.bottom + 18.0) { (label) }
             }
             path class="axis" d={ "M" (self.left) " " (self.bottom) "H" (self.right) } {}
             text class="tick xlabel" x=(self.right) y=(self.bottom + 33.0) { (chart.x_label) }

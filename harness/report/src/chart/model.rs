@@ -14,6 +14,11 @@ pub enum ChartRole {
 }
 
 impl ChartRole {
+    /// True if the points of a line with dots are marked: those that were found, not the expected ones.
+    pub(super) const fn has_dots(self) -> bool {
+        matches!(self, Self::Primary | Self::Baseline)
+    }
+
     pub(super) const fn class(self) -> &'static str {
         match self {
             Self::Primary => "primary",
@@ -61,6 +66,9 @@ pub struct Chart {
     pub height: f64,
     /// True if x is in hours, with ticks at 1, 2, 3, 6, 12, 24 h; else x counts.
     pub hours: bool,
+    /// True if x is the decimal logarithm of what the axis shows: ticks are at 0.1, 1, 10. Zoom and
+    /// cursor work as on any axis.
+    pub decades: bool,
     /// True if y is logarithmic: values that aren't positive are left out.
     pub logarithmic: bool,
     /// Limits of y; `None`: chosen from the lines.
@@ -82,7 +90,7 @@ pub struct Chart {
     /// Time of the run at which x is zero, h, for charts over time: they share zoom, cursor and
     /// markers. `None`: the chart stands alone.
     pub run_offset_h: Option<f64>,
-    /// True if a point of a line is marked by a dot, for lines of few points.
+    /// True if a point of a primary or baseline line is marked by a dot, for lines of few points.
     pub dots: bool,
 }
 
@@ -97,6 +105,7 @@ impl Chart {
             width: 960.0,
             height: 250.0,
             hours: true,
+            decades: false,
             logarithmic: false,
             y_range: None,
             y_step: None,

@@ -48,9 +48,10 @@ pub(super) fn numbers(chart: &Chart) -> String {
     }
     let optional = |value: Option<String>| value.unwrap_or_else(|| "null".to_owned());
     format!(
-        r#"{{"height":{},"hours":{},"log":{},"dots":{},"offset":{},"range":{},"step":{},"xLabel":{},"bracket":{},"levels":[{levels}],"lines":[{lines}],"bands":[{bands}],"columns":[{}]}}"#,
+        r#"{{"height":{},"hours":{},"decades":{},"log":{},"dots":{},"offset":{},"range":{},"step":{},"xLabel":{},"bracket":{},"levels":[{levels}],"lines":[{lines}],"bands":[{bands}],"columns":[{}]}}"#,
         chart.height,
         chart.hours,
+        chart.decades,
         chart.logarithmic,
         chart.dots,
         optional(chart.run_offset_h.filter(|h| h.is_finite()).map(|h| h.to_string())),

@@ -97,6 +97,11 @@ pub(super) fn decades(range: [f64; 2]) -> ([f64; 2], Vec<f64>) {
     ([libm::pow(10.0, low), libm::pow(10.0, high)], ticks)
 }
 
+/// Chooses the exponents of the powers of ten within a range of exponents.
+pub(super) fn exponents(range: [f64; 2]) -> Vec<f64> {
+    multiples(range, 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,6 +114,7 @@ mod tests {
             (0..=12).map(|k| 6.0 * f64::from(k)).collect::<Vec<_>>()
         );
         assert_eq!(decades([0.02, 3.0]).0[1], 10.0);
+        assert_eq!(exponents([-2.3, 1.2]), [-2.0, -1.0, 0.0, 1.0]);
     }
 
     #[test]

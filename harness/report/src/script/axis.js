@@ -31,6 +31,22 @@ function logTicks([low, high]) {
   return ticks;
 }
 
+// Ticks of an axis of exponents: powers of ten, and their double and fivefold where few are in sight. Each
+// is [place, what it stands for].
+function decadeTicks([low, high], count) {
+  const digits = high - low > 2.5 ? [1] : [1, 2, 5];
+  const stride = digits.length > 1 ? 1 : Math.ceil((high - low) / count);
+  const ticks = [];
+  for (let e = Math.floor(low); e <= Math.ceil(high); e += 1) {
+    if (e % stride !== 0) continue;
+    for (const digit of digits) {
+      const place = e + Math.log10(digit);
+      if (place >= low - 1e-9 && place <= high + 1e-9) ticks.push([place, digit * 10 ** e]);
+    }
+  }
+  return ticks;
+}
+
 // Steps of an axis in hours, from a second to days.
 const HOUR_STEPS = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800].map((s) => s / 3600)
   .concat([1, 2, 3, 6, 12, 24, 48, 96, 192]);

@@ -170,23 +170,29 @@ class Plot {
     const longest = Math.max(0, ...yTicks.map(([, text]) => text.length));
     this.left = Math.max(this.width < 420 ? 38 : 52, 6.8 * longest + 12);
     const count = Math.max(2, (this.right - this.left) / 64);
-    const { ticks, step } = data.hours ? hourTicks(this.x, count) : niceTicks(this.x, count);
-    const xText = (tick) => (data.hours ? hourText(tick, step) : tickText(tick, step));
+    const xTicks = this.xTicks(count);
     const parts = [];
     for (const [tick, text] of yTicks) {
       const at = px(this.yPx(tick));
       parts.push(element("path", { class: tick === 0 ? "grid zero" : "grid", d: `M${px(this.left)} ${at}H${this.right}` }));
       parts.push(element("text", { class: "tick y", x: px(this.left - 7), y: at + 3.8 }, text));
     }
-    for (const tick of ticks) {
+    for (const [tick, text] of xTicks) {
       const at = px(this.toPx(tick));
       parts.push(element("path", { class: "mark", d: `M${at} ${this.bottom}v5` }));
-      parts.push(element("text", { class: "tick x", x: Math.min(at, this.width - 14), y: this.bottom + 18 }, xText(tick)));
+      parts.push(element("text", { class: "tick x", x: Math.min(at, this.width - 14), y: this.bottom + 18 }, text));
     }
     parts.push(element("path", { class: "axis", d: `M${px(this.left)} ${this.bottom}H${this.right}` }));
     parts.push(element("text", { class: "tick xlabel", x: this.right, y: this.bottom + 33 }, data.xLabel));
     this.layers.grid.replaceChildren(...parts);
     this.layers.notes.replaceChildren(...this.notes());
+  }
+
+  // Ticks of x with their labels.
+  xTicks(count) {
+    if (this.data.decades) return decadeTicks(this.x, count).map(([place, value]) => [place, tickText(value, value)]);
+    const { ticks, step } = this.data.hours ? hourTicks(this.x, count) : niceTicks(this.x, count);
+    return ticks.map((tick) => [tick, this.data.hours ? hourText(tick, step) : tickText(tick, step)]);
   }
 
   // Levels with their labels, and the bracket of a reference period.
@@ -250,6 +256,7 @@ class Plot {
   points() {
     this.layers.curves.replaceChildren(...this.paths);
     for (const { x, y, role } of this.data.lines) {
+      if (role !== "primary" && role !== "baseline") continue; // What is expected has no dots.
       const [from, to] = this.stretch(x);
       if (to - from > 500) continue;
       for (let i = from; i < to; i += 1) {
@@ -284,6 +291,6 @@ class Plot {
     this.cursor.setAttribute("d", `M${place} ${this.top}V${this.bottom}`);
     this.time.setAttribute("x", Math.max(this.left + 2, Math.min(place + 5, this.right - 60)));
     this.time.setAttribute("y", this.bottom - 5);
-    this.time.textContent = this.data.hours ? `${hourText(at, 1e-3)} h` : valueText(at);
+    this.time.textContent = this.data.hours ? `${hourText(at, 1e-3)} h` : valueText(this.data.decades ? 10 ** at : at);
   }
 }
