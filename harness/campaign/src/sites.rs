@@ -70,7 +70,8 @@ mod tests {
 
     #[test]
     fn settings_of_the_site_are_told_from_others() {
-        for setting in ["site.latitude=60 deg", " site={ latitude = \"60 deg\" }", "display.position=\"m\""]
+        for setting in
+            ["site.latitude=60 deg", " site={ latitude = \"60 deg\" }", "display.position=\"m\""]
         {
             assert!(is_of_site(setting), "{setting}");
         }

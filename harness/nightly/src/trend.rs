@@ -202,9 +202,8 @@ mod tests {
             measure: measure.to_owned(),
             points: vec![TrendPoint { night: 0, median, p95, change: String::new() }],
         };
-        let shown = |measure, median, p95| {
-            chart(&line(measure, median, p95), None, &units).into_string()
-        };
+        let shown =
+            |measure, median, p95| chart(&line(measure, median, p95), None, &units).into_string();
         // 90′ are 1.5°; 1852 m in an hour are a knot.
         let heading = shown("navigation.heading_error_arcmin.rms", 90.0, 180.0);
         assert!(heading.contains("median 1.5, 95th percentile 3, in one night"), "{heading}");

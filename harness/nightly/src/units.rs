@@ -39,7 +39,9 @@ impl TrendUnits {
     /// If positions are to be distances.
     pub fn check(choice: UnitChoice) -> Result<(), TrendUnitError> {
         match choice.position {
-            Some(position) if position.is_distance() => Err(TrendUnitError { unit: position.name() }),
+            Some(position) if position.is_distance() => {
+                Err(TrendUnitError { unit: position.name() })
+            }
             _ => Ok(()),
         }
     }

@@ -194,11 +194,7 @@ fn chosen(units: Option<UnitChoice>) -> Result<UnitChoice, Failure> {
     Ok(units)
 }
 
-fn accepted(
-    history: &Path,
-    night: Option<&str>,
-    units: UnitChoice,
-) -> Result<Verdict, Failure> {
+fn accepted(history: &Path, night: Option<&str>, units: UnitChoice) -> Result<Verdict, Failure> {
     let nights = night::all(history).map_err(Failure::input)?;
     let ended = nights.iter().rev().find(|night| night.ended.is_some());
     let id = match (night, ended) {

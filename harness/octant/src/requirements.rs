@@ -86,7 +86,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             Ok(Verdict::Pass)
         }
         Command::Measures { json } => {
-            if *json { print_json(&measures::listed())? } else { print(&measures::text())? }
+            if *json {
+                print_json(&measures::listed())?
+            } else {
+                print(&measures::text())?
+            }
             Ok(Verdict::Pass)
         }
     }

@@ -52,7 +52,11 @@ pub fn shown(path: &str, units: &DisplayUnits) -> PageUnit {
     match error_of(path) {
         Some((name, per)) => {
             let unit = units.of(name);
-            let name = if per.is_empty() { unit.name.into() } else { format!("{}{per}", unit.name).into() };
+            let name = if per.is_empty() {
+                unit.name.into()
+            } else {
+                format!("{}{per}", unit.name).into()
+            };
             PageUnit { factor: unit.factor, name }
         }
         None => PageUnit { factor: 1.0, name: own.into() },

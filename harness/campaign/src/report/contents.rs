@@ -253,7 +253,7 @@ impl<'a> CampaignReport<'a> {
     /// Returns the command lines that make the campaign again, in the folder above its own.
     #[must_use]
     pub fn again(&self) -> Vec<Vec<String>> {
-        let line = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+        let line = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
         let campaign = self.plan.campaign.display().to_string();
         let name = self.name.as_str();
         let mut report = line(&["octant", "campaign", "report", name]);

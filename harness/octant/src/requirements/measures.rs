@@ -43,7 +43,8 @@ pub(super) fn text() -> String {
             rows.push(row);
         }
     }
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let (first, second) = (width(0), width(1));
     let mut text = String::new();
     for [measure, unit, meaning] in &rows {
@@ -111,7 +112,8 @@ mod tests {
     fn the_text_has_each_table_of_parameters_once() {
         let text = text();
         let line = |name: &str| {
-            let mut found = text.lines().filter(|line| line.split_whitespace().next() == Some(name));
+            let mut found =
+                text.lines().filter(|line| line.split_whitespace().next() == Some(name));
             let line = found.next().unwrap_or_else(|| panic!("no {name} in {text}")).to_owned();
             assert_eq!(found.next(), None, "{name}");
             line
@@ -121,6 +123,8 @@ mod tests {
         assert!(line("calibration.nees.GROUP").ends_with("[calibration, truth, sigma]"));
         assert!(line("navigation.radial_error_nmi.rate_per_h").contains(" nmi/h "));
         assert!(!text.lines().any(|line| line.starts_with("baseline.")));
-        assert!(text.contains("The second method has alignment, calibration, counterfactual, done, navigation"));
+        assert!(text.contains(
+            "The second method has alignment, calibration, counterfactual, done, navigation"
+        ));
     }
 }

@@ -97,7 +97,10 @@ const HEALTH: Keys = &[
     ("gaps", count("samples with others missing before them")),
     ("out_of_order", count("samples that did not advance")),
     ("inertial_invalid", count("samples with saturated or invalid counts")),
-    ("gimbal_disagrees", count("samples in which the encoders did not show the commanded position")),
+    (
+        "gimbal_disagrees",
+        count("samples in which the encoders did not show the commanded position"),
+    ),
     ("aiding_lost", count("samples whose aiding was due and did not come")),
     ("inconsistent", count("samples in which innovations contradicted the tuning")),
     ("numeric", count("samples with numbers that are not finite")),

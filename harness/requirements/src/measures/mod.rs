@@ -271,8 +271,9 @@ mod tests {
         let mut checked = 0;
         for entry in all() {
             let parts: Vec<&str> = entry.measure.split('.').rev().collect();
-            let named =
-                |part: &&str| ENDS.iter().find(|(end, _)| part.ends_with(end)).map(|(_, unit)| *unit);
+            let named = |part: &&str| {
+                ENDS.iter().find(|(end, _)| part.ends_with(end)).map(|(_, unit)| *unit)
+            };
             let expected = match parts.as_slice() {
                 ["normalized", ..] => "1".to_owned(),
                 ["slope_per_day", of, ..] => format!("{}/day", named(of).unwrap()),
@@ -293,9 +294,15 @@ mod tests {
     fn a_path_that_leads_nowhere_is_told_with_the_keys_there() {
         let error = |path| check(path).unwrap_err();
         assert_eq!(error("navigation").part, None);
-        assert_eq!(error("navigation.radial_error_nmi").keys, ["max", "rms", "final", "rate_per_h"]);
+        assert_eq!(
+            error("navigation.radial_error_nmi").keys,
+            ["max", "rms", "final", "rate_per_h"]
+        );
         let unknown = error("navigation.radial_error_nmi.least");
-        assert_eq!((unknown.place.as_str(), unknown.part.as_deref()), ("navigation.radial_error_nmi", Some("least")));
+        assert_eq!(
+            (unknown.place.as_str(), unknown.part.as_deref()),
+            ("navigation.radial_error_nmi", Some("least"))
+        );
         let beyond = error("calibration.nis_mean.max");
         assert_eq!((beyond.place.as_str(), beyond.keys.len()), ("calibration.nis_mean", 0));
         assert_eq!(error("nothing").place, "the summary");

@@ -90,6 +90,10 @@ pub(super) const fn with(needs: &'static [MeasureNeed], place: Place) -> Place {
 pub(super) type Keys = &'static [(&'static str, Place)];
 
 /// Table with its keys.
-pub(super) const fn table(meaning: &'static str, needs: &'static [MeasureNeed], keys: Keys) -> Place {
+pub(super) const fn table(
+    meaning: &'static str,
+    needs: &'static [MeasureNeed],
+    keys: Keys,
+) -> Place {
     Place::Table { meaning, needs, keys }
 }

@@ -105,15 +105,16 @@ const REFERENCE: Place = table(
     "reference",
     &[],
     &[
-        (
-            "schuler_period_min",
-            magnitude(Unit::Named("min"), "Schuler period at the site"),
-        ),
+        ("schuler_period_min", magnitude(Unit::Named("min"), "Schuler period at the site")),
         ("table_g_zz", table("drift by a g_zz of 5e-4 deg/h/g", &[], VERTICAL_DRIFT)),
         ("true_g_zz", table("drift by the true g_zz, not compensated", &[Truth], VERTICAL_DRIFT)),
         (
             "residual_g_zz",
-            table("drift by the error of the estimated g_zz", &[Calibration, Truth], VERTICAL_DRIFT),
+            table(
+                "drift by the error of the estimated g_zz",
+                &[Calibration, Truth],
+                VERTICAL_DRIFT,
+            ),
         ),
         (
             "baseline_residual_g_zz",
@@ -188,11 +189,17 @@ const PACING: Place = table(
         ("first_overrun", count("number of the first frame with an overrun")),
         (
             "slack_p1_us",
-            magnitude(MICROSECOND, "part of the period that 99 % of the frames left unused at least"),
+            magnitude(
+                MICROSECOND,
+                "part of the period that 99 % of the frames left unused at least",
+            ),
         ),
         ("answer_us", table("time from sending a sample to its answer", &[], QUANTILES)),
         ("late_answers", count("frames that ended without their answer")),
-        ("missed_answers", count("samples whose answer never came, while later ones were answered")),
+        (
+            "missed_answers",
+            count("samples whose answer never came, while later ones were answered"),
+        ),
         ("not_sent", count("samples that could not be sent")),
         (
             "device_clock",
@@ -222,7 +229,10 @@ const PLANNED: Place = table("planned", &[], WORK);
 const DONE: Place = table("done", &[], WORK);
 
 const WORK: Keys = &[
-    ("stops", with(&[Calibration], count("stops of the calibration at which the gimbals were held"))),
+    (
+        "stops",
+        with(&[Calibration], count("stops of the calibration at which the gimbals were held")),
+    ),
     ("calibration_s", with(&[Calibration], magnitude(SECOND, "duration of the calibration"))),
     ("references", with(&[Calibration], count("references of the source for the calibration"))),
     ("navigation_s", with(&[Navigation], magnitude(SECOND, "duration of the navigation"))),
