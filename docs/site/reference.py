@@ -4,7 +4,7 @@ Each page asks the program itself, so that none can be older than it:
 
 - keys: the JSON Schema that `octant schema` prints;
 - commands: `--help` of every command;
-- measures: the keys that `octant requirements check` names for a path that is none, level by level;
+- measures: the list that `octant requirements measures --json` prints;
 - faults: the list that `octant faults list --json` prints.
 
 An answer of another form than expected ends the build.
@@ -15,7 +15,6 @@ import json
 import pathlib
 import re
 import subprocess
-import tempfile
 
 
 class AnswerError(Exception):
@@ -55,7 +54,7 @@ def write(folder, program):
     pages = {
         "keys.md": keys(json.loads(program.ask("schema")), kinds),
         "commands.md": commands(program),
-        "measures.md": measures(program),
+        "measures.md": measures(json.loads(program.ask("requirements", "measures", "--json"))),
         "faults.md": faults(kinds),
     }
     for name, text in pages.items():
@@ -234,99 +233,54 @@ def subcommands(help_text):
 
 # --- measures ---------------------------------------------------------------------------------------------
 
-# No measure has this name, and no measure is comparable with a temperature.
-UNKNOWN = "no_such_name"
-QUESTION = "1 K"
-
-
-def measures(program):
-    """Every measure with its unit, found by asking for keys until only numbers are left."""
-    numbers = {}
-    tables = [""]
-    while tables:
-        answers = asked(program, [f"{path}.{UNKNOWN}".lstrip(".") for path in tables])
-        wanted = [f"{path}.{key}".lstrip(".") for path, keys in zip(tables, answers) for key in keys]
-        tables = []
-        for path, answer in zip(wanted, asked(program, wanted)):
-            if isinstance(answer, list):
-                tables.append(path)
-            else:
-                numbers[path] = answer
-    if len(numbers) < 100:
-        raise AnswerError(f"the program names {len(numbers)} measures, expected many")
-    return measure_page(numbers)
-
-
-def asked(program, paths):
-    """What the program says about each path: the keys of a table, or the unit of a number."""
-    with tempfile.TemporaryDirectory() as folder:
-        entries = [f'[[requirements]]\nid = "R{at}"\ntext = "x"\nmeasure = "{path}"\nlimit = "{QUESTION}"\n'
-                   for at, path in enumerate(paths)]
-        file = pathlib.Path(folder) / "r.toml"
-        file.write_text('schema = 1\ntitle = "x"\n' + "".join(entries), encoding="utf-8")
-        _, _, said = program.run("requirements", "check", file.name, folder=folder)
-    lines = [line for line in said.splitlines() if re.match(r"(?:[a-z]+: )?r\.toml:\d+:\d+: ", line)]
-    if len(lines) != len(paths):
-        raise AnswerError(f"{len(paths)} questions about measures, {len(lines)} answers: {said[:500]}")
-    return [understood(path, line) for path, line in zip(paths, lines)]
-
-
-def understood(path, line):
-    keys = re.search(r"(?:, it has|, expected a number in it): (.*)$", line)
-    if keys:
-        return keys[1].split(", ")
-    unit = re.search(r"expected a quantity that is comparable with (\S+), the unit of ", line)
-    if unit:
-        return unit[1]
-    if re.search(r"expected a plain number: \S+ has no unit$", line):
-        return ""
-    raise AnswerError(f"no answer about the measure {path}: {line}")
-
-
 OF_PARAMETER = "the unit of the parameter"
+MEASURES_FORM = 1
 
 
 def unit_words(unit):
     if unit == OF_PARAMETER:
         return unit
-    return code(unit) if unit else "a plain number"
+    return "a plain number" if unit == "1" else code(unit)
 
 
-def measure_page(numbers):
-    """Groups the measures by table; tables of parameters, which are all alike, become one."""
-    parameters = sorted({path.split(".")[2] for path in numbers if path.startswith("calibration.parameters.")})
-    groups = {}
-    for path, unit in numbers.items():
+def measures(listed):
+    """Every measure by table; tables of parameters, which are all alike, become one."""
+    if listed["schema"] != MEASURES_FORM or len(listed["measures"]) < 100:
+        raise AnswerError(f"found {len(listed['measures'])} measures of form {listed['schema']}, expected many of {MEASURES_FORM}")
+    units = {entry["measure"]: entry["unit"] for entry in listed["measures"]}
+    groups, parameters = {}, {}
+    for entry in listed["measures"]:
+        path, unit, about = entry["measure"], entry["unit"], entry["meaning"]
         if path.startswith("baseline."):
-            other = path.removeprefix("baseline.")
-            if numbers.get(other) != unit:
-                raise AnswerError(f"{path} has no counterpart {other}")
+            if units.get(path.removeprefix("baseline.")) != unit:
+                raise AnswerError(f"{path} has no counterpart in the first method")
             continue
         parts = path.split(".")
+        if path.startswith("calibration.parameters.") and parts[3] == "error":
+            parameters.setdefault(unit, []).append(parts[2])
         if len(parts) > 3 and parts[1] == "parameters":
-            place, unit = ".".join([*parts[:2], "NAME", *parts[3:]]), OF_PARAMETER if unit else ""
-        else:
-            place = path
-        top = place.split(".")[0]
-        groups.setdefault(top, {})[place] = unit
-    text = (f"# Measures\n\nAll {len(numbers)} numbers that a [requirement](../docs/requirements.md#the-file) of a scenario, a "
+            about = about.replace(f": {parts[2]}: ", ": ")
+            path, unit = ".".join([*parts[:2], "NAME", *parts[3:]]), OF_PARAMETER if unit != "1" else unit
+        sign = "±" if entry["signed"] else ""
+        needs = ", ".join(code(need) for need in entry["needs"] if need != "baseline")
+        groups.setdefault(path.split(".")[0], {})[path] = [unit_words(unit), sign, cell(about.partition(": ")[2] or about), needs]
+    text = (f"# Measures\n\nAll {len(units)} numbers that a [requirement](../docs/requirements.md#measures) of a scenario, a "
             "campaign or a file of requirements can limit: paths into "
-            "[`summary.json`](../docs/results.md#summaryjson-schema-2), which tells their meaning. Bars take the magnitude: "
-            '`"|calibration.parameters.g_zz.error|"`. A limit is a plain number, or a quantity where the table '
-            "names a unit; a plain number is in that unit.\n\n")
+            "[`summary.json`](../docs/results.md#summaryjson-schema-2). A limit is a plain number, or a quantity where the table "
+            "names a unit; a plain number is in that unit. A measure with ± can be negative: bars about it take its "
+            'magnitude, `"|calibration.parameters.g_zz.error|"`. A run has a measure if it has what the last column names.\n\n')
     for top, found in groups.items():
         text += f"## {top}\n\n"
-        rows = [[named(place, place), unit_words(unit)]
-                for place, unit in found.items()]
-        text += table(["measure", "a limit is in"], rows)
-    units = {}
-    for name in parameters:
-        units.setdefault(numbers[f"calibration.parameters.{name}.error"], []).append(name)
+        text += table(["measure", "a limit is in", "sign", "meaning", "needs"],
+                      [[named(place, place), *row] for place, row in found.items()])
     text += "## Names of parameters\n\nEach takes the place of `NAME`.\n\n"
     text += table(["unit", "parameters"],
-                  [[code(unit), ", ".join(code(name) for name in names)] for unit, names in units.items()])
-    text += ("## baseline\n\nThe second method has the measures of `calibration`, `navigation`, `counterfactual`, `planned` and "
-             "`done` too, such as `baseline.navigation.longitude_error_arcmin.max`.\n")
+                  [[code(unit), ", ".join(code(name) for name in names)] for unit, names in parameters.items()])
+    text += "## Needs\n\n"
+    text += table(["name", "what it is"], [[code(name), cell(about)] for name, about in listed["needs"].items()])
+    second = dict.fromkeys(path.split(".")[1] for path in units if path.startswith("baseline."))
+    text += ("## baseline\n\nThe second method has the measures of " + ", ".join(code(name) for name in second)
+             + " too, such as `baseline.navigation.longitude_error_arcmin.max`.\n")
     return text
 
 

@@ -143,25 +143,56 @@ impl std::str::FromStr for UnitChoice {
     }
 }
 
+impl std::fmt::Display for UnitChoice {
+    /// Writes the list, as it is read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut names: Vec<&str> = [
+            name_of(&POSITION, self.position),
+            name_of(&ATTITUDE, self.attitude),
+            name_of(&VELOCITY, self.velocity),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        // Of position and of attitude.
+        names.dedup();
+        f.write_str(&names.join(","))
+    }
+}
+
+/// Name of a unit that is chosen.
+fn name_of<T: Copy + PartialEq>(
+    table: &[(&'static str, T)],
+    unit: Option<T>,
+) -> Option<&'static str> {
+    table.iter().find(|(_, other)| Some(*other) == unit).map(|(name, _)| *name)
+}
+
+impl PositionUnit {
+    /// True for a distance along the ground, whose relation to angles depends on the place.
+    #[must_use]
+    pub fn is_distance(self) -> bool {
+        self != Self::ArcMinute
+    }
+
+    /// Name, as in lists of units.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        name_of(&POSITION, Some(self)).unwrap_or_default()
+    }
+}
+
 impl UnitChoice {
     /// Settings of a scenario that choose the same, such as `display.position="nmi"`.
     #[must_use]
     pub fn settings(&self) -> Vec<String> {
-        fn of<T: Copy + PartialEq>(
-            key: &str,
-            table: &[(&str, T)],
-            unit: Option<T>,
-        ) -> Option<String> {
-            let (name, _) = table.iter().find(|(_, other)| Some(*other) == unit)?;
-            Some(format!("display.{key}=\"{name}\""))
-        }
         [
-            of("position", &POSITION, self.position),
-            of("attitude", &ATTITUDE, self.attitude),
-            of("velocity", &VELOCITY, self.velocity),
+            ("position", name_of(&POSITION, self.position)),
+            ("attitude", name_of(&ATTITUDE, self.attitude)),
+            ("velocity", name_of(&VELOCITY, self.velocity)),
         ]
         .into_iter()
-        .flatten()
+        .filter_map(|(key, name)| Some(format!("display.{key}=\"{}\"", name?)))
         .collect()
     }
 }
@@ -280,12 +311,13 @@ impl DisplayUnits {
         }
     }
 
-    /// Unit of an error by its name: latitude, longitude, heading, pitch, roll, north, east.
+    /// Unit of an error by its name: latitude, longitude, radial, heading, pitch, roll, north, east.
     #[must_use]
     pub fn of(&self, name: &str) -> ShownUnit {
         match name {
             "latitude" => self.latitude(),
             "longitude" => self.longitude(),
+            "radial" => self.radial(),
             "heading" | "pitch" | "roll" => self.attitude(),
             _ => self.velocity(),
         }
@@ -311,6 +343,11 @@ mod tests {
         assert_eq!(choice.position, Some(PositionUnit::Metre));
         assert_eq!(choice.attitude, Some(AttitudeUnit::ArcMinute));
         assert_eq!(choice.velocity, None);
+        for text in ["nmi,deg,kn", "km", "m,arcmin", "arcmin", "mrad,m/s"] {
+            let choice = read(text).unwrap();
+            assert_eq!(choice.to_string(), text);
+            assert_eq!(read(&choice.to_string()), Ok(choice));
+        }
         let error = read("nmi,degrees").unwrap_err().to_string();
         assert!(error.contains("\"degrees\"") && error.contains("deg"), "{error}");
         let error = read("nmi,km").unwrap_err().to_string();

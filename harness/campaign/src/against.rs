@@ -6,11 +6,13 @@
 //! inside.
 
 mod comparison;
+mod words;
 
-pub use comparison::{Detects, EnsembleComparison, ErrorRow};
+pub use comparison::{Detects, EnsembleComparison, ErrorRow, RUNS_MIN};
 
 use crate::case::{self, CaseResult, ResultError};
 use crate::plan::{Case, Plan, PlanError};
+use octant_base::display::DisplayUnits;
 use octant_observe::ensemble::{Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
@@ -20,13 +22,12 @@ use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
+use words::conclude;
 
 /// Version of the form of a comparison.
 pub const SCHEMA: u32 = 1;
 /// Probability that all intervals of a comparison hold the truth.
 pub const CONFIDENCE: f64 = 0.95;
-/// Minimum number of runs for a conclusion: σ is then known to a third.
-pub const RUNS_MIN: usize = 50;
 /// Maximum number of times at which a drift is compared.
 const DRIFT_TIMES: usize = 12;
 
@@ -345,7 +346,7 @@ fn compare(
         words: Vec::new(),
         not_modelled: ensemble.not_modelled.clone(),
     };
-    conclude(&mut comparison);
+    conclude(&mut comparison, &DisplayUnits::default());
     Ok(comparison)
 }
 
@@ -387,100 +388,4 @@ fn detects(runs: u64, each: f64) -> Option<Detects> {
     let (ratio_below, ratio_above) = power::sigma_ratios(runs, each, power::POWER)?;
     let mean_sigma = power::mean_shift(runs, each, power::POWER)?;
     Some(Detects { ratio_below, ratio_above, mean_sigma })
-}
-
-/// Concludes whether the prediction holds, and writes the reasons.
-fn conclude(comparison: &mut EnsembleComparison) {
-    let rows = || comparison.states.iter().chain(&comparison.drift);
-    let differing: Vec<&ErrorRow> = rows().filter(|row| !row.agrees).collect();
-    let error = format!("{:.0} %", 100.0 * comparison.known_to);
-    let mut words = Vec::new();
-    let stands = if !differing.is_empty() {
-        words.push(format!(
-            "the prediction can't stand for these runs: {} of {} figures differ by more than the \
-             sample's own error of {error}",
-            differing.len(),
-            rows().count()
-        ));
-        words.extend(differing.iter().map(|row| in_words(row)));
-        Some(false)
-    } else if comparison.runs >= RUNS_MIN && comparison.without > 0 {
-        words.push(format!(
-            "all {} figures agree within the sample's own error of {error}, of the {} cases that have a \
-             calibration: of the other {} no prediction says anything, and it can't stand for them",
-            rows().count(),
-            comparison.runs,
-            comparison.without
-        ));
-        None
-    } else if comparison.runs < RUNS_MIN {
-        words.push(format!(
-            "{} runs know σ to {error} only: from {RUNS_MIN} on it is said whether the prediction can \
-             stand for them",
-            comparison.runs
-        ));
-        None
-    } else {
-        words.push(format!(
-            "the prediction can stand for these runs: all {} figures agree within the sample's own \
-             error of {error}",
-            rows().count()
-        ));
-        Some(true)
-    };
-    if let Some(detects) = &comparison.detects {
-        words.push(format!(
-            "{} runs find with 90 % an error whose σ is below {:.2} or above {:.2} of the predicted one, \
-             or whose mean is {:.2} σ off",
-            comparison.runs, detects.ratio_below, detects.ratio_above, detects.mean_sigma
-        ));
-    }
-    if let Some(ratio) = comparison.mean_ratio {
-        words.push(format!(
-            "predicted over simulated σ is {ratio:.3} in the mean over the parameters"
-        ));
-    }
-    if comparison.open > 0 {
-        words.push(format!("{} more cases have not been run", comparison.open));
-    }
-    if comparison.repeated > 0 {
-        words.push(format!(
-            "{} cases are the same runs as others, by their streams, and don't count again",
-            comparison.repeated
-        ));
-    }
-    if comparison.without > 0 {
-        words.push(format!(
-            "{} cases are not in the sample: they ended as errors, or refused their calibration",
-            comparison.without
-        ));
-    }
-    comparison.stands = stands;
-    comparison.words = words;
-}
-
-fn in_words(row: &ErrorRow) -> String {
-    let ErrorRow {
-        name,
-        unit,
-        predicted_sigma,
-        predicted_mean,
-        simulated_sigma,
-        simulated_mean,
-        ..
-    } = row;
-    let outside = |value: f64, interval: &ConfidenceInterval| {
-        !(interval.low..=interval.high).contains(&value)
-    };
-    if outside(*predicted_sigma, simulated_sigma) {
-        format!(
-            "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",
-            simulated_sigma.value
-        )
-    } else {
-        format!(
-            "{name}: the mean is {predicted_mean:.4} {unit} predicted and {:.4} simulated",
-            simulated_mean.value
-        )
-    }
 }

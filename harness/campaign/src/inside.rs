@@ -4,8 +4,7 @@
 use super::case::{self, CaseResult};
 use super::chain;
 use super::merge::merged;
-use super::plan::{FILE_NAME, Plan, PlannedScenario};
-use super::reexecute::copy_of;
+use super::plan::{FILE_NAME, Plan};
 use super::report::{evidence::STATISTICS, rows};
 use super::results::TABLES;
 use super::shard::Shard;
@@ -90,7 +89,7 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
 fn limits(plan: &Plan, folder: &Path, inside: &mut Inside) -> Result<(), String> {
     for case in &plan.cases {
         let Ok(planned) = plan.planned(case) else { continue };
-        let planned = PlannedScenario { file: copy_of(planned, folder), ..planned.clone() };
+        let planned = planned.copied(folder);
         // Without the copy the scenario's limits aren't known.
         let Ok(scenario) = planned.scenario(case) else { continue };
         let read = CaseResult::of_plan(plan, folder, case).map_err(|error| error.to_string())?;

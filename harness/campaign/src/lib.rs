@@ -26,6 +26,7 @@ pub mod requirements;
 pub mod results;
 pub mod selection;
 mod shard;
+pub mod sites;
 pub mod status;
 pub mod stop;
 pub mod sweep;

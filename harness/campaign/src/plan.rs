@@ -18,6 +18,8 @@ use std::path::{Path, PathBuf};
 pub const SCHEMA: u32 = 1;
 /// Name of a plan in the folder of its campaign.
 pub const FILE_NAME: &str = "plan.json";
+/// Folder with copies of the files from which a campaign was planned, in the folder of the campaign.
+pub const INPUTS: &str = "inputs";
 /// Maximum number of cases of a plan.
 pub const CASES_MAX: u64 = 10_000_000;
 
@@ -347,6 +349,14 @@ impl PlannedScenario {
     pub fn scenario(&self, case: &Case) -> Result<Scenario, PlanError> {
         self.check_file()?;
         self.with(case)
+    }
+
+    /// Returns this scenario with its copy in the folder of the campaign as its file.
+    #[must_use]
+    pub fn copied(&self, folder: &Path) -> Self {
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        let file = folder.join(INPUTS).join(format!("{}-{name}", short(&self.blake3)));
+        Self { file, ..self.clone() }
     }
 
     fn with(&self, case: &Case) -> Result<Scenario, PlanError> {

@@ -1,12 +1,11 @@
 //! Runs cases of a campaign again from its folder alone, and extrapolates from a sample to all.
 
 use super::case::{self, CaseResult, ResultError, file};
-use super::plan::{Case, Plan, PlannedScenario};
-use super::report::evidence::INPUTS;
+use super::plan::{Case, Plan};
 use octant_base::control::Control;
 use octant_score::numerics::differs;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Confidence of the statement that a sample makes about all results.
 pub const CONFIDENCE: f64 = 0.95;
@@ -95,13 +94,6 @@ pub fn run(
     Ok(again)
 }
 
-/// Returns the copy of a scenario in the folder of its campaign.
-pub(super) fn copy_of(planned: &PlannedScenario, folder: &Path) -> PathBuf {
-    let name = planned.file.file_name().unwrap_or_default().to_string_lossy();
-    let start = planned.blake3.get(..12).unwrap_or(&planned.blake3);
-    folder.join(INPUTS).join(format!("{start}-{name}"))
-}
-
 /// First difference, and the meaning of another numerics version if the stored result has one.
 type Differs = (String, Option<String>);
 
@@ -109,7 +101,7 @@ type Differs = (String, Option<String>);
 fn one(plan: &Plan, folder: &Path, case: &Case) -> Result<Option<Differs>, String> {
     let told = |error: &dyn std::fmt::Display| format!("case {}: {error}", case.id);
     let planned = plan.planned(case).map_err(|error| told(&error))?;
-    let planned = PlannedScenario { file: copy_of(planned, folder), ..planned.clone() };
+    let planned = planned.copied(folder);
     let result = case::run(&planned, case, &Control::default()).map_err(|error| told(&error))?;
     let now = serde_json::to_value(&result).map_err(|error| told(&error))?;
     let path = file(folder, &case.id);

@@ -4,7 +4,7 @@
 //! [`night`] is the record of one, [`suite`] runs the fault suite, [`results`] reads the results of
 //! campaigns, [`compare`](mod@compare) pairs two nights seed by seed and finds regressions,
 //! [`history`] stores the numbers of all nights, [`accept`](mod@accept) the baseline, [`render`]
-//! and [`trend`] show them.
+//! and [`trend`] show them, in [`units`].
 
 pub mod accept;
 mod change;
@@ -17,3 +17,4 @@ pub mod render;
 pub mod results;
 pub mod suite;
 pub mod trend;
+pub mod units;

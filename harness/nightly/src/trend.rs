@@ -1,16 +1,18 @@
 //! `trend.html`: every measure over the nights, one file without network access.
 
 use super::history::{History, TrendLine, TrendPoint};
+use super::units::TrendUnits;
 use maud::{Markup, html};
+use octant_base::display::DisplayUnits;
 use octant_base::number::counted;
 use octant_report::chart::{Chart, ChartLine as Drawn, ChartRole};
 use octant_report::page::page;
-use octant_report::units::unit;
+use octant_report::units::{shown, unit};
 use std::collections::BTreeMap;
 
 /// Renders the page. `baseline` is the accepted night.
 #[must_use]
-pub fn render(history: &History, baseline: Option<&str>) -> String {
+pub fn render(history: &History, baseline: Option<&str>, units: &TrendUnits) -> String {
     let nights = history.nights();
     let mut groups: BTreeMap<(String, String), Vec<TrendLine>> = BTreeMap::new();
     for line in history.lines() {
@@ -45,9 +47,11 @@ pub fn render(history: &History, baseline: Option<&str>) -> String {
             (table(&nights, baseline))
         }
         @for (index, ((campaign, scenario), lines)) in groups.iter().enumerate() {
+            @let of_scenario = units.of(campaign, scenario);
             section {
                 h2 id={ "scenario-" (index) } { (short(campaign)) ": " (short(scenario)) }
-                div.plots { @for line in lines { (chart(line, marked)) } }
+                @if let Some(remark) = units.remark(campaign, scenario) { p.hint { (remark) } }
+                div.plots { @for line in lines { (chart(line, marked, &of_scenario)) } }
             }
         }
     };
@@ -66,18 +70,29 @@ fn short(name: &str) -> &str {
     file.strip_suffix(".toml").filter(|stem| !stem.is_empty()).unwrap_or(file)
 }
 
-/// Title of a measure in words, with its unit where it has one.
-fn title(measure: &str) -> String {
-    let unit = unit(measure);
+/// Title of a measure in words, with the unit in which it is shown where it has one.
+fn title(measure: &str, units: &DisplayUnits) -> String {
+    if measure.starts_with("margin of ") {
+        // The history doesn't know its requirement.
+        return format!("{measure}, in the unit of its measure");
+    }
+    let own = unit(measure);
     let words = measure.trim_matches('|').replace(['.', '_'], " ");
     // The unit ends the title and needn't be in the name as well.
-    let ending = match unit {
+    let (base, per) = match own.rsplit_once('/') {
+        Some((base, "day")) => (base, " per day"),
+        Some((base, "h")) => (base, " per h"),
+        _ => (own, ""),
+    };
+    let words = words.strip_suffix(per).unwrap_or(&words);
+    let ending = match base {
         "m/s" => "mps",
         "µs" => "us",
         other => other,
     };
     let words = words.split(' ').filter(|word| *word != ending).collect::<Vec<_>>().join(" ");
-    if unit.is_empty() { words } else { format!("{words}, {unit}") }
+    let shown = shown(measure, units).name;
+    if shown.is_empty() { words } else { format!("{words}, {shown}") }
 }
 
 fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> Markup {
@@ -105,14 +120,16 @@ fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> M
     }
 }
 
-fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
-    let title = title(&line.measure);
+fn chart(line: &TrendLine, baseline: Option<usize>, units: &DisplayUnits) -> Markup {
+    let title = title(&line.measure, units);
+    let unit = shown(&line.measure, units);
     let mut chart = Chart::new(&title, "number of the night", &title);
     chart.hours = false;
     chart.dots = true;
     chart.height = 170.0;
     let of = |value: fn(&TrendPoint) -> f64| -> Vec<[f64; 2]> {
-        line.points.iter().map(|point| [(point.night + 1) as f64, value(point)]).collect()
+        let at = |point: &TrendPoint| [(point.night + 1) as f64, unit.of(value(point))];
+        line.points.iter().map(at).collect()
     };
     chart.lines = vec![
         Drawn { label: "95th percentile".into(), role: ChartRole::Baseline, points: of(|p| p.p95) },
@@ -121,7 +138,7 @@ fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
     let reference =
         baseline.and_then(|night| line.points.iter().find(|point| point.night == night));
     if let Some(point) = reference.filter(|point| point.median.is_finite()) {
-        chart.levels.push((point.median, "median of the baseline".to_owned()));
+        chart.levels.push((unit.of(point.median), "median of the baseline".to_owned()));
     }
     let told = |what: &str| -> Vec<String> {
         let nights = line.points.iter().filter(|point| point.change == what);
@@ -131,8 +148,8 @@ fn chart(line: &TrendLine, baseline: Option<usize>) -> Markup {
     html! {
         @if let [only] = line.points.as_slice() {
             h3 { (title) }
-            p { "median " (octant_base::number::significant(only.median, 4)) ", 95th percentile "
-                (octant_base::number::significant(only.p95, 4)) ", in one night" }
+            p { "median " (octant_base::number::significant(unit.of(only.median), 4)) ", 95th percentile "
+                (octant_base::number::significant(unit.of(only.p95), 4)) ", in one night" }
         } @else { (chart.render()) }
         @if !worse.is_empty() { p.hint { "Worse than its baseline in night " (worse.join(", ")) "." } }
         @if !better.is_empty() { p.hint { "Better than its baseline in night " (better.join(", ")) "." } }
@@ -145,17 +162,55 @@ mod tests {
 
     #[test]
     fn titles_are_words_with_a_unit_and_no_paths() {
+        let title = |measure: &str| title(measure, &DisplayUnits::default());
         assert_eq!(
             title("navigation.longitude_error_arcmin.max"),
             "navigation longitude error max, arcmin"
         );
         assert_eq!(
+            title("navigation.radial_error_nmi.rate_per_h"),
+            "navigation radial error rate, nmi/h"
+        );
+        assert_eq!(
             title("|calibration.parameters.g_zz.error|"),
             "calibration parameters g zz error, deg/h/g"
         );
+        assert_eq!(
+            title("calibration.parameters.gyro_bias.error_rms"),
+            "calibration parameters gyro bias error rms, deg/h"
+        );
         assert_eq!(title("passes of NAV-1"), "passes of NAV-1");
+        assert_eq!(title("margin of NAV-1"), "margin of NAV-1, in the unit of its measure");
         assert_eq!(short("fixtures/campaigns/certification.toml"), "certification");
         assert_eq!(short("suite"), "suite");
+    }
+
+    #[test]
+    fn titles_and_values_have_the_units_that_are_chosen() {
+        let units = DisplayUnits::default().with("deg,kn".parse().unwrap());
+        for (measure, expected) in [
+            ("navigation.heading_error_arcmin.rms", "navigation heading error rms, deg"),
+            ("navigation.velocity_north_error_mps.rms", "navigation velocity north error rms, kn"),
+            ("navigation.longitude_error_arcmin.max", "navigation longitude error max, arcmin"),
+            ("calibration.worst_normalized_error", "calibration worst normalized error, σ"),
+        ] {
+            assert_eq!(title(measure, &units), expected);
+        }
+        let line = |measure: &str, median: f64, p95: f64| TrendLine {
+            campaign: String::new(),
+            scenario: String::new(),
+            measure: measure.to_owned(),
+            points: vec![TrendPoint { night: 0, median, p95, change: String::new() }],
+        };
+        let shown =
+            |measure, median, p95| chart(&line(measure, median, p95), None, &units).into_string();
+        // 90′ are 1.5°; 1852 m in an hour are a knot.
+        let heading = shown("navigation.heading_error_arcmin.rms", 90.0, 180.0);
+        assert!(heading.contains("median 1.5, 95th percentile 3, in one night"), "{heading}");
+        let velocity = shown("navigation.velocity_east_error_mps.rms", 1852.0 / 3600.0, 5.0);
+        assert!(velocity.contains("median 1, 95th percentile 9.719,"), "{velocity}");
+        let longitude = shown("navigation.longitude_error_arcmin.rms", 2.0, 3.0);
+        assert!(longitude.contains("median 2, 95th percentile 3,"), "{longitude}");
     }
 
     #[test]

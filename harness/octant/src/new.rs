@@ -5,7 +5,7 @@ use crate::grades::InstrumentGrade;
 use crate::terminal::{print, write};
 use clap::{Args, ValueEnum};
 use octant_requirements::Verdict;
-use octant_scenario::Scenario;
+use octant_scenario::{FLICKER, Scenario};
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -182,8 +182,15 @@ fn scenario(answers: &Answers) -> String {
         text += &format!("# {limit}\n");
     }
     text += "[imu]\n";
-    for (key, value, meaning) in sheet.imu {
+    let is_left_out = |key: &str| !sheet.without_flicker.is_empty() && key.ends_with(FLICKER);
+    for (key, value, meaning) in sheet.imu.iter().filter(|(key, ..)| !is_left_out(key)) {
         text += &format!("{key} = {value}  # {meaning}\n");
+    }
+    for line in sheet.without_flicker {
+        text += &format!("# {line}\n");
+    }
+    for (key, value, meaning) in sheet.imu.iter().filter(|(key, ..)| is_left_out(key)) {
+        text += &format!("# {key} = {value}  # {meaning}\n");
     }
     text += &format!(
         "\n[procedure.calibration]\n\

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
+use octant_base::display::UnitChoice;
 use octant_base::interrupt;
 use octant_campaign::case;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, Shard, execute};
@@ -22,6 +23,7 @@ use octant_nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_na
 use octant_nightly::render::NightReport;
 use octant_nightly::suite::{self, SuiteResult};
 use octant_nightly::trend;
+use octant_nightly::units::TrendUnits;
 use octant_requirements::Verdict;
 use octant_scenario::suite::Suite;
 use std::path::{Path, PathBuf};
@@ -61,6 +63,10 @@ pub(super) struct Arguments {
     /// Smallest change of a mean that counts, as a fraction of the baseline's root mean square.
     #[arg(long, value_name = "PART", default_value = "0.01", value_parser = fraction)]
     least: f64,
+    /// Units of errors in trend.html, instead of the scenarios': of attitude (arcmin, deg, arcsec, mrad) and
+    /// velocity (m/s, kn, cm/s), such as deg,kn. Position errors stay in arcmin.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
     /// Print nightly.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -76,6 +82,9 @@ enum Command {
         /// Folder of the history.
         #[arg(long, value_name = "DIR")]
         history: PathBuf,
+        /// Units of errors in trend.html, as for the night.
+        #[arg(long, value_name = "UNIT,UNIT")]
+        units: Option<UnitChoice>,
     },
 }
 
@@ -94,8 +103,8 @@ struct Inputs {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if let Some(Command::Accept { night, history }) = &arguments.command {
-        return accepted(history, night.as_deref());
+    if let Some(Command::Accept { night, history, units }) = &arguments.command {
+        return accepted(history, night.as_deref(), chosen(*units)?);
     }
     let Some(history) = &arguments.history else {
         return Err(Failure::input("--history is missing"));
@@ -103,6 +112,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.campaigns.is_empty() && arguments.suite.is_none() {
         return Err(Failure::input("found neither a campaign nor --suite, expected one or both"));
     }
+    let units = chosen(arguments.units)?;
     watch_interrupts();
     // Inputs that can't be compared or stored are reported before anything runs.
     let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
@@ -148,7 +158,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         accept_night(history, &night.id, operator()).map_err(Failure::bench)?;
         name = Some(night.id.clone());
     }
-    let page = trend::render(&all, name.as_deref());
+    let page = trend::render(&all, name.as_deref(), &TrendUnits::read(history, &all, units));
     write(&history.join("trend.html"), &page)?;
     if let Some(out) = &arguments.out {
         std::fs::create_dir_all(out).map_err(|error| {
@@ -177,7 +187,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(report.verdict)
 }
 
-fn accepted(history: &Path, night: Option<&str>) -> Result<Verdict, Failure> {
+/// Checks the units that are chosen for the trend page.
+fn chosen(units: Option<UnitChoice>) -> Result<UnitChoice, Failure> {
+    let units = units.unwrap_or_default();
+    TrendUnits::check(units).map_err(|error| Failure::input(format!("--units: {error}")))?;
+    Ok(units)
+}
+
+fn accepted(history: &Path, night: Option<&str>, units: UnitChoice) -> Result<Verdict, Failure> {
     let nights = night::all(history).map_err(Failure::input)?;
     let ended = nights.iter().rev().find(|night| night.ended.is_some());
     let id = match (night, ended) {
@@ -195,7 +212,8 @@ fn accepted(history: &Path, night: Option<&str>) -> Result<Verdict, Failure> {
     };
     let accepted = accept_night(history, &id, operator()).map_err(Failure::input)?;
     if let Ok(all) = History::read(history) {
-        write(&history.join("trend.html"), trend::render(&all, Some(&accepted.night)))?;
+        let units = TrendUnits::read(history, &all, units);
+        write(&history.join("trend.html"), trend::render(&all, Some(&accepted.night), &units))?;
     }
     print(&format!("night {} is the baseline\n", accepted.night))?;
     Ok(Verdict::Pass)

@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     against: Option<PathBuf>,
     /// Units of errors in the tables: of position (arcmin, nmi, m, km), attitude (arcmin, deg, arcsec,
     /// mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
-    #[arg(long, value_name = "UNIT,UNIT", conflicts_with = "against")]
+    #[arg(long, value_name = "UNIT,UNIT")]
     units: Option<UnitChoice>,
     /// Print one JSON object.
     #[arg(long)]

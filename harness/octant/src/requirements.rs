@@ -1,9 +1,11 @@
 //! `octant requirements`: checks files of requirements, and converts them into those of other
 //! tools.
 
+mod measures;
+
 use crate::failure::Failure;
 use crate::terminal::note;
-use crate::terminal::{print, write};
+use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::requirements::Measures;
@@ -34,6 +36,12 @@ enum Command {
         /// New file; an existing one is never overwritten.
         #[arg(value_name = "TO")]
         to: PathBuf,
+    },
+    /// List all measures that a requirement can have: unit, meaning, sign, and what a run needs to have them.
+    Measures {
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -75,6 +83,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             }
             write(to, text)?;
             print(&format!("{}\n", to.display()))?;
+            Ok(Verdict::Pass)
+        }
+        Command::Measures { json } => {
+            if *json {
+                print_json(&measures::listed())?
+            } else {
+                print(&measures::text())?
+            }
             Ok(Verdict::Pass)
         }
     }

@@ -3,7 +3,9 @@
 //!
 //! The results are synthetic, normal with the predicted σ, so that the expected outcome is known.
 
+use crate::common::program::{ended, octant_in};
 use octant_campaign::against::{Against, RUNS_MIN, Selection, against};
+use octant_base::display::DisplayUnits;
 use octant_campaign::case::{self, CaseResult};
 use octant_campaign::plan::Plan;
 use octant_observe::ensemble::{Ensemble, ensemble};
@@ -252,4 +254,57 @@ fn cases_with_faults_are_left_out() {
     assert!(found.left_out[0].contains("4 cases have faults"), "{:?}", found.left_out);
     let other = Selection { blake3: Some("00"), set: None };
     assert!(against(&bench.plan, bench.folder.path(), &other).is_err());
+}
+
+/// At the site of the scenario, 30.5° N, WGS 84 has minutes of arc of 1847.682 m and 1599.982 m.
+#[test]
+fn a_comparison_in_other_units_is_converted_and_concludes_the_same() {
+    let bench = Bench::new(RUNS_MIN + 10, SCENARIO);
+    bench.keep(|_, summary| {
+        let series = &mut summary.navigation.as_mut().unwrap().series_hours;
+        series.iter_mut().for_each(|[_, latitude, _]| *latitude *= 3.0);
+    });
+    let found = bench.against();
+    let one = &found.compared[0];
+    let units = DisplayUnits { arcmin_m: [1850.0, 930.0], ..DisplayUnits::default() };
+    let other = one.shown(&units.with("m,deg".parse().unwrap()));
+    assert_eq!((other.stands, &other.states), (Some(false), &one.states));
+    for (own, shown) in one.drift.iter().zip(&other.drift) {
+        let factor = if own.name.starts_with("latitude") { 1850.0 } else { 930.0 };
+        assert_eq!((own.unit.as_str(), shown.unit.as_str()), ("arcmin", "m"));
+        assert_eq!((own.agrees, own.ratio), (shown.agrees, shown.ratio));
+        for (own, shown) in [
+            (own.predicted_sigma, shown.predicted_sigma),
+            (own.predicted_mean, shown.predicted_mean),
+            (own.simulated_sigma.high, shown.simulated_sigma.high),
+            (own.simulated_mean.low, shown.simulated_mean.low),
+        ] {
+            assert_eq!(own * factor, shown);
+        }
+    }
+    let told = |words: &[String]| words.iter().find(|w| w.starts_with("latitude at")).cloned();
+    let row = other.drift.iter().find(|row| !row.agrees).unwrap();
+    let expected = format!(
+        "{}: σ is {:.2} m predicted and {:.2} simulated",
+        row.name, row.predicted_sigma, row.simulated_sigma.value
+    );
+    assert_eq!(told(&other.words), Some(expected));
+    assert!(told(&one.words).unwrap().contains(" arcmin predicted"));
+    assert_eq!(one.shown(&DisplayUnits::default()), *one);
+
+    bench.plan.write(bench.folder.path(), false).unwrap();
+    let observed = |more: &[&str]| {
+        let words = ["observe", "short.toml", "--ensemble", "--against", "."];
+        ended(octant_in(bench.folder.path(), &[&words[..], more].concat()), 1).0
+    };
+    let json = |more: &[&str]| observed(&[&["--json"], more].concat());
+    assert_eq!(json(&[]), json(&["--units", "km,deg"]), "units are display only");
+    let text = observed(&["--units", "m,deg"]);
+    for (name, metres) in [("latitude", 1847.681_861), ("longitude", 1599.982_122)] {
+        let row = one.drift.iter().find(|row| row.name.starts_with(name)).unwrap();
+        let line = text.lines().find(|line| line.trim_start().starts_with(&row.name));
+        let line = line.unwrap_or_else(|| panic!("no {} in {text}", row.name));
+        let predicted = octant_base::number::significant(row.predicted_sigma * metres, 4);
+        assert!(line.contains(&format!(" {predicted} ")) && line.contains("  m"), "{line}");
+    }
 }

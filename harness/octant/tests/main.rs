@@ -61,6 +61,7 @@ mod innovations;
 #[cfg(unix)]
 mod live;
 mod master;
+mod measures;
 mod messages;
 mod new_scenario;
 mod nightly;

@@ -25,6 +25,31 @@ fn a_new_scenario_is_valid_and_needs_force_to_be_replaced() {
     );
 }
 
+/// The first run of a preset has a result; what its comments say of the noise that is left out is true.
+#[test]
+fn a_mems_instrument_calibrates_at_once_and_is_refused_with_its_bias_instability() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--instrument", "tactical-mems", "--calibration", "1 h", "--navigation", "10 min"];
+    ended(octant_in(folder.path(), &[&["new", "mems.toml"][..], &options].concat()), 0);
+    let file = folder.path().join("mems.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let (said, _) = ended(octant_in(folder.path(), &["run", "mems.toml"]), 0);
+    assert!(said.contains("calibration 1 h: NIS") && said.contains("navigation"), "{said}");
+    assert!(!said.contains("refused"), "{said}");
+
+    let scenario = Scenario::load(&file, &[]).unwrap();
+    assert_eq!(scenario.imu.extensions.gyro_bias_instability, 0.0);
+    assert!(text.contains("Take the # before the two keys away"), "{text}");
+    let noisy = text.replace("# extensions.", "extensions.");
+    assert_eq!(noisy.matches("\nextensions.").count(), 2, "{text}");
+    std::fs::write(&file, noisy).unwrap();
+    let expected = 0.753 * std::f64::consts::PI / 180.0 / 3600.0;
+    let scenario = Scenario::load(&file, &[]).unwrap();
+    assert!((scenario.imu.extensions.gyro_bias_instability / expected - 1.0).abs() < 1e-12);
+    let (said, _) = ended(octant_in(folder.path(), &["run", "mems.toml"]), 1);
+    assert!(said.contains("refused"), "{said}");
+}
+
 #[test]
 fn a_wrong_answer_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();

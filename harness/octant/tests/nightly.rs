@@ -262,6 +262,37 @@ fn a_history_is_started_by_name_and_once() {
 }
 
 #[test]
+fn the_trend_has_the_units_that_are_chosen_or_those_of_the_scenario() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 2");
+    bench.edit("short.toml", "[imu]", "[display]\nattitude = \"mrad\"\nposition = \"km\"\n[imu]");
+    let page = || std::fs::read_to_string(bench.at("h/trend.html")).unwrap();
+    let has = |all: &[&str]| {
+        let page = page();
+        all.iter().for_each(|words| assert!(page.contains(words), "{words}"));
+    };
+    assert_eq!(bench.night(&["--first", "--units", "deg,kn"]).0, Some(0));
+    has(&[
+        "navigation heading error rms, deg",
+        "navigation velocity north error rms, kn",
+        "navigation longitude error max, arcmin",
+        "navigation radial error max, nmi",
+        "although the scenario asks for km",
+    ]);
+    // The page that is made anew has the scenario's units.
+    assert_eq!(bench.octant(&["nightly", "accept", "--history", "h"]).0, Some(0));
+    has(&["navigation heading error rms, mrad", "navigation velocity north error rms, m/s"]);
+    // The stored numbers have their own: those of heading in mrad are those in arcmin over 3.437 747.
+    let table = ExistingTable::open(&bench.at("h/history.parquet")).unwrap();
+    let column = |name: &str| table.column(name).unwrap().unwrap();
+    let of_heading = Cell::Text("navigation.heading_error_arcmin.rms".into());
+    let row = (0..table.rows).find(|row| column("measure").at(*row) == Some(of_heading.clone()));
+    let Some(Cell::Number(arcmin)) = column("median").at(row.unwrap()) else { panic!("no median") };
+    let mrad = octant_base::number::significant(arcmin / 3.437_746_770_784_939, 4);
+    has(&[&format!("median {mrad}, 95th percentile")]);
+}
+
+#[test]
 fn newly_failing_cases_are_named_with_the_line_that_runs_them_again() {
     let bench = Bench::new();
     bench.edit("night.toml", "replicates = 16", "replicates = 3");
@@ -443,6 +474,10 @@ fn what_is_wrong_with_a_history_is_told_before_anything_runs() {
         "expected a number of 0 or more and below 1",
     );
     refused(&["nightly", "gone.toml", "--history", "h"], "gone.toml");
+    refused(
+        &[&night[..], &["--units", "nmi,deg"]].concat(),
+        "--units: found \"nmi\" as the unit of position: the history keeps percentiles",
+    );
     std::fs::create_dir(bench.at("h")).unwrap();
     bench.write("h/history.parquet", "PAR1 and no more");
     refused(&night, "failed to read h/history.parquet");

@@ -2,7 +2,7 @@
 
 use super::data::ReportData;
 use super::page::badge;
-use super::units::unit;
+use super::units::shown;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::verdict::RequirementResult;
@@ -32,12 +32,9 @@ pub(super) fn requirements(data: &ReportData) -> Markup {
 
 fn row(data: &ReportData, r: &RequirementResult) -> Markup {
     let text = data.requirement_texts.get(&r.id).filter(|text| !text.is_empty());
+    let unit = shown(&r.measure, &data.units);
     let significant = |value: Option<f64>, digits| {
-        value.map_or_else(|| "–".to_owned(), |v| number::significant(v, digits))
-    };
-    let unit = match unit(&r.measure) {
-        "" => "1",
-        unit => unit,
+        value.map_or_else(|| "–".to_owned(), |v| number::significant(unit.of(v), digits))
     };
     html! {
         tr id={ "req-" (r.id) } {
@@ -50,11 +47,11 @@ fn row(data: &ReportData, r: &RequirementResult) -> Markup {
             }
             td.n data-label="Value" { (significant(r.value, 4)) }
             td.n data-label="Limit" {
-                (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
-                @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) }
+                (sign(r.comparison.sign())) " " (number::plain(unit.of(r.limit), 4))
+                @if let Some(u) = r.uncertainty { " ± " (number::plain(unit.of(u), 3)) }
             }
             td.n data-label="Margin" { (significant(r.margin, 3)) }
-            td.unit data-label="Unit" { (unit) }
+            td.unit data-label="Unit" { @if unit.name.is_empty() { "1" } @else { (unit.name) } }
         }
     }
 }

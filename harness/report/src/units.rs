@@ -1,60 +1,89 @@
 //! Units of the measures that a requirement can have, as the pages show them.
 
-use octant_sample::parameters::{NAMES, ParameterGroup};
-
-/// Ends of names with the unit that they stand for.
-const SUFFIXES: [(&str, &str); 12] = [
-    ("_deg_per_h_per_g", "deg/h/g"),
-    ("_arcmin_per_day", "arcmin/day"),
-    ("_arcmin", "arcmin"),
-    ("_nmi", "nmi"),
-    ("_mps", "m/s"),
-    ("_deg", "deg"),
-    ("_us", "µs"),
-    ("_ppm", "ppm"),
-    ("_min", "min"),
-    ("_sigma", "σ"),
-    ("_h", "h"),
-    ("_s", "s"),
-];
+use octant_base::display::DisplayUnits;
+use octant_requirements::measures;
+use octant_sample::parameters::ParameterGroup;
+use std::borrow::Cow;
 
 /// Returns the unit of the measure at a path of the summary, with or without bars: `arcmin`, `nmi/h`,
 /// `ppm`; empty for counts, ratios and paths that no run has.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
-    let parts: Vec<&str> = path.trim_matches('|').split('.').collect();
-    match parts.as_slice() {
-        [.., "parameters", name, "true" | "estimate" | "sigma" | "error"]
-            if !parts.contains(&"counterfactual") =>
-        {
-            parameter(name)
-        }
-        [.., "parameters", name, "shift"] => parameter(name),
-        [.., "normalized"] | [.., "worst_normalized_error"] | [.., "parameters", _, "sigma"] => "σ",
-        [.., of, "slope_per_day"] => match suffix(of) {
-            "arcmin" => "arcmin/day",
-            "m/s" => "m/s/day",
-            _ => "",
-        },
-        [.., "radial_error_nmi", "rate_per_h"] => "nmi/h",
-        [.., "slope_window", "hours"] => "h",
-        [.., of, last] => match suffix(last) {
-            "" => suffix(of),
-            unit => unit,
-        },
-        [only] => suffix(only),
-        [] => "",
+    let path = path.trim_matches('|');
+    match measures::unit(path) {
+        Some("us") => "µs",
+        Some(unit) => unit,
+        None if measures::is_in_sigma(path) => "σ",
+        None => of_group(path),
     }
 }
 
-/// Unit of a parameter by its name.
-fn parameter(name: &str) -> &'static str {
-    NAMES.iter().position(|other| *other == name).map_or("", |i| ParameterGroup::of(i).unit())
+/// Unit of the root mean square of a group's errors, which nights have beside the measures of runs.
+fn of_group(path: &str) -> &'static str {
+    let name = path
+        .strip_prefix("calibration.parameters.")
+        .and_then(|rest| rest.strip_suffix(".error_rms"));
+    let group = ParameterGroup::ALL.into_iter().find(|group| Some(group.name()) == name);
+    group.map_or("", ParameterGroup::unit)
 }
 
-/// Unit that the end of a name stands for.
-fn suffix(name: &str) -> &'static str {
-    SUFFIXES.iter().find(|(end, _)| name.ends_with(end)).map_or("", |(_, unit)| unit)
+/// Unit in which a page shows a measure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PageUnit {
+    /// Number of these units in the measure's own.
+    pub factor: f64,
+    /// Name; empty for counts and ratios.
+    pub name: Cow<'static, str>,
+}
+
+impl PageUnit {
+    /// Converts a value from the measure's own unit.
+    #[must_use]
+    pub fn of(&self, value: f64) -> f64 {
+        value * self.factor
+    }
+}
+
+/// Returns the unit of the measure at a path, with or without bars, among these display units. Only
+/// errors of position, attitude and velocity have other units than their own.
+#[must_use]
+pub fn shown(path: &str, units: &DisplayUnits) -> PageUnit {
+    let own = unit(path);
+    match error_of(path) {
+        Some((name, per)) => {
+            let unit = units.of(name);
+            let name = if per.is_empty() {
+                unit.name.into()
+            } else {
+                format!("{}{per}", unit.name).into()
+            };
+            PageUnit { factor: unit.factor, name }
+        }
+        None => PageUnit { factor: 1.0, name: own.into() },
+    }
+}
+
+/// Returns whether the measure at a path, with or without bars, is an error of latitude or longitude, whose
+/// length on the ground depends on the place.
+#[must_use]
+pub fn is_of_place(path: &str) -> bool {
+    error_of(path).is_some_and(|(name, _)| matches!(name, "latitude" | "longitude"))
+}
+
+/// Name of the error that a measure is, as in [`DisplayUnits::of`], and the time that it is divided by.
+fn error_of(path: &str) -> Option<(&'static str, &'static str)> {
+    let path = path.trim_matches('|');
+    let own = measures::unit(path)?;
+    let name = match own.split('/').next()? {
+        "arcmin" => ["latitude", "longitude", "heading", "pitch", "roll"]
+            .into_iter()
+            .find(|name| path.split(['.', '_']).any(|word| word == *name))?,
+        "nmi" => "radial",
+        "m" if own.starts_with("m/s") => "north",
+        _ => return None,
+    };
+    let per = ["/day", "/h"].into_iter().find(|per| own.ends_with(per)).unwrap_or("");
+    Some((name, per))
 }
 
 #[cfg(test)]
@@ -91,6 +120,8 @@ mod tests {
             ("counterfactual.detection_delay_max_s", "s"),
             ("pacing.lateness_us.p99", "µs"),
             ("pacing.overruns", ""),
+            ("calibration.parameters.gyro_bias.error_rms", "deg/h"),
+            ("navigation.of_a_newer_program", ""),
             ("pacing.device_clock.skew_ppm", "ppm"),
             ("pacing.device_clock.exchanges", ""),
             ("done.calibration_s", "s"),
@@ -100,5 +131,37 @@ mod tests {
         ] {
             assert_eq!(unit(path), expected, "{path}");
         }
+    }
+
+    #[test]
+    fn errors_have_the_display_units_and_other_measures_their_own() {
+        let units = DisplayUnits { arcmin_m: [1850.0, 930.0], ..DisplayUnits::default() };
+        let chosen = units.with("km,deg,kn".parse().unwrap());
+        for (path, factor, name) in [
+            ("navigation.latitude_error_arcmin.max", 1.85, "km"),
+            ("|navigation.longitude_error_arcmin.slope_per_day|", 0.93, "km/day"),
+            ("baseline.navigation.marks.24h.longitude_max_arcmin", 0.93, "km"),
+            ("reference.residual_g_zz.longitude_arcmin_per_day", 0.93, "km/day"),
+            ("navigation.radial_error_nmi.rate_per_h", 1.852, "km/h"),
+            ("counterfactual.navigation.radial_max_nmi", 1.852, "km"),
+            ("navigation.heading_error_arcmin.rms", 1.0 / 60.0, "deg"),
+            ("calibration.solution.roll_arcmin.sigma", 1.0 / 60.0, "deg"),
+            ("navigation.velocity_north_error_mps.slope_per_day", 3600.0 / 1852.0, "kn/day"),
+            // No errors: an attitude, a misalignment, a multiple of σ, times.
+            ("calibration.solution.heading_deg", 1.0, "deg"),
+            ("calibration.parameters.gyro_misalignment_xy.error", 1.0, "arcsec"),
+            ("calibration.solution.roll_arcmin.normalized", 1.0, "σ"),
+            ("navigation.duration_h", 1.0, "h"),
+            ("calibration.nis_mean", 1.0, ""),
+        ] {
+            let found = shown(path, &chosen);
+            assert!((found.factor / factor - 1.0).abs() < 1e-12, "{path}: {found:?}");
+            assert_eq!(found.name, name, "{path}");
+            let default = shown(path, &units);
+            assert_eq!((default.factor, default.name.as_ref()), (1.0, unit(path)), "{path}");
+        }
+        assert!(is_of_place("navigation.marks.72h.latitude_arcmin"));
+        assert!(!is_of_place("navigation.radial_error_nmi.max"));
+        assert!(!is_of_place("calibration.solution.heading_arcmin.error"));
     }
 }

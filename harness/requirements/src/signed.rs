@@ -1,24 +1,7 @@
 //! Measures with a sign: a limit on only one side of them lets any value on the other side pass.
 
+use crate::measures::is_signed;
 use crate::verdict::Comparison;
-
-/// True if a measure, by its path without bars, can be negative in a good run.
-#[must_use]
-pub fn is_signed(path: &str) -> bool {
-    let mut parts = path.rsplit('.');
-    let name = parts.next().unwrap_or(path);
-    match name {
-        // Distances have no sign, and `radial_error_nmi.final` is one.
-        "final" | "slope_per_day" => !path.contains("radial") && !path.contains("reference"),
-        "error" | "estimate" | "true" | "normalized" | "shift" => {
-            path.contains("parameters") || path.contains(".solution.")
-        }
-        "heading_deg" | "pitch_deg" | "roll_deg" => true,
-        "latitude_arcmin" | "longitude_arcmin" => path.contains(".marks."),
-        "g_zz_deg_per_h_per_g" | "longitude_arcmin_per_day" => path.contains("reference"),
-        _ => false,
-    }
-}
 
 /// Finds a limit on only one side of a measure that has a sign, and returns the error text; `None` if
 /// there is no error. `all` are the limits set together with it: one on the other side makes the pair
@@ -64,7 +47,11 @@ mod tests {
             "calibration.parameters.g_zz.error",
             "calibration.parameters.g_zz.normalized",
             "counterfactual.parameters.g_zz.shift",
+            // It is the shift over σ of the twin, with the sign of the shift.
+            "counterfactual.parameters.g_zz.sigma",
             "reference.residual_g_zz.longitude_arcmin_per_day",
+            "reference.residual_g_zz.latitude_bound_arcmin",
+            "pacing.device_clock.skew_ppm",
         ] {
             assert!(is_signed(signed), "{signed}");
         }

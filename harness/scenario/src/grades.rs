@@ -12,6 +12,9 @@ pub struct GradeSheet {
     pub limits: &'static [&'static str],
     /// Keys of `[imu]`, with their values as TOML and the meaning of each.
     pub imu: &'static [(&'static str, &'static str, &'static str)],
+    /// Reason why `octant new` writes the keys of bias instability as comments, in lines; empty where it
+    /// writes none.
+    pub without_flicker: &'static [&'static str],
     /// Keys of `[procedure.calibration.prior]`, with their values as TOML.
     pub prior: &'static [(&'static str, &'static str)],
 }
@@ -19,6 +22,9 @@ pub struct GradeSheet {
 const REST: &str = "Keys that the source doesn't tell keep the values of table-1.";
 const NO_FLICKER: &str =
     "The source gives no coefficient of bias instability (1/f noise): it stays zero.";
+
+/// End of the names of the keys of bias instability.
+pub const FLICKER: &str = "_bias_instability";
 
 /// All grades, in the order of `imu.model`.
 pub static GRADES: [&GradeSheet; 5] =
@@ -47,6 +53,7 @@ static TABLE_1: GradeSheet = GradeSheet {
         ("accel_misalignment", r#"{ uniform = "40 arcsec" }"#, "misalignments"),
         ("velocity_random_walk", r#""50 ug/sqrt(Hz)""#, "white noise of the accelerometers"),
     ],
+    without_flicker: &[],
     prior: &[],
 };
 
@@ -61,6 +68,7 @@ static NAVIGATION_LASER: GradeSheet = GradeSheet {
         ("accel_bias", r#"{ normal = "25 ug" }"#, "bias, 1 sigma"),
         ("accel_scale", r#"{ normal = "100 ppm" }"#, "scale factors, 1 sigma"),
     ],
+    without_flicker: &[],
     prior: &[
         ("gyro_bias", r#""0.0035 deg/h""#),
         ("gyro_scale", r#""5 ppm""#),
@@ -83,6 +91,7 @@ static NAVIGATION_FIBRE_OPTIC: GradeSheet = GradeSheet {
         ("gyro_scale", r#"{ normal = "10 ppm" }"#, "scale factors, 1 sigma"),
         ("angle_random_walk", r#""0.001 deg/sqrt(h)""#, "white noise of the gyros"),
     ],
+    without_flicker: &[],
     prior: &[("gyro_bias", r#""0.01 deg/h""#), ("gyro_scale", r#""10 ppm""#)],
 };
 
@@ -98,6 +107,7 @@ static TACTICAL_FIBRE_OPTIC: GradeSheet = GradeSheet {
         ("accel_scale", r#"{ normal = "300 ppm" }"#, "scale factors, 1 sigma"),
         ("velocity_random_walk", r#""0.03 m/s/sqrt(h)""#, "white noise of the accelerometers"),
     ],
+    without_flicker: &[],
     prior: &[
         ("gyro_bias", r#""1 deg/h""#),
         ("gyro_scale", r#""100 ppm""#),
@@ -114,8 +124,6 @@ static TACTICAL_MEMS: GradeSheet = GradeSheet {
          compensation.",
         "Its bias instability, 0.5 deg/h and 0.05 mg, is the lowest point of the Allan deviation with the \
          white noise in it (Sensonor, questions on the STIM series): the coefficient is that over 0.664.",
-        "The filter has no state for bias instability, and refuses the calibration of such an instrument; with \
-         zeros in its two keys the noise is left out.",
         REST,
     ],
     imu: &[
@@ -130,6 +138,11 @@ static TACTICAL_MEMS: GradeSheet = GradeSheet {
         ("velocity_random_walk", r#""0.06 m/s/sqrt(h)""#, "white noise of the accelerometers"),
         ("extensions.gyro_bias_instability", r#""0.753 deg/h""#, "0.5 deg/h over 0.664"),
         ("extensions.accel_bias_instability", r#""75.3 ug""#, "0.05 mg over 0.664"),
+    ],
+    without_flicker: &[
+        "Bias instability (1/f noise) of the data sheet, left out here: the filter has no state for it, so that",
+        "its standard deviations would be too small by an order of magnitude, and the core refuses such a",
+        "calibration. Take the # before the two keys away to see it.",
     ],
     prior: &[
         ("gyro_bias", r#""5 deg/h""#),

@@ -32,7 +32,7 @@ mod write;
 
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
-pub use grades::{GRADES, GradeSheet};
+pub use grades::{FLICKER, GRADES, GradeSheet};
 pub use keys::SCHEMA;
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,

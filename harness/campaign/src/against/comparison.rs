@@ -1,7 +1,11 @@
 //! One ensemble, predicted and simulated, error by error.
 
+use crate::plan::{Case, Plan};
 use octant_statistics::sample::ConfidenceInterval;
 use serde::{Deserialize, Serialize};
+
+/// Minimum number of runs for a conclusion: σ is then known to a third.
+pub const RUNS_MIN: usize = 50;
 
 /// One ensemble, predicted and simulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +46,15 @@ pub struct EnsembleComparison {
     pub words: Vec<String>,
     /// Effects that are not in the prediction.
     pub not_modelled: Vec<String>,
+}
+
+impl EnsembleComparison {
+    /// Place of its first case in the plan; `None` if the plan has no such case.
+    #[must_use]
+    pub fn place(&self, plan: &Plan) -> Option<usize> {
+        let is = |case: &Case| case.scenario == self.scenario && case.set == self.set;
+        plan.cases.iter().position(is)
+    }
 }
 
 /// Smallest differences of one error that a comparison finds with a probability of 90 %.

@@ -13,6 +13,8 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
         (report.combinations.iter().zip(&report.statistics.combinations))
             .filter(|(_, figures)| figures.convergence_r95.len() > 1)
     };
+    let unit = report.units.shown().radial();
+    let radial = format!("radial error at the end, {}", unit.name);
     html! {
         (heading("convergence"))
         @if requirements().count() + drifts().count() == 0 {
@@ -24,10 +26,10 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
                     (chart(&r.id, "probability that a draw passes, %", &[("passed", ChartRole::Primary, &r.convergence)], 100.0))
                 }
                 @for (combination, figures) in drifts().take(DRAWN_MAX) {
-                    (chart(&combination.name(), "radial error at the end, nmi", &[
+                    (chart(&combination.name(), &radial, &[
                         ("CEP50", ChartRole::Primary, &figures.convergence_cep50),
                         ("R95", ChartRole::Baseline, &figures.convergence_r95),
-                    ], 1.0))
+                    ], unit.factor))
                 }
             }
         }

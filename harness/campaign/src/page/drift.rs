@@ -1,9 +1,11 @@
 //! Drift of the cases: figures with bounds, and percentiles over time.
 
-use super::elements::{heading, with_bounds};
+use super::elements::{heading, with_bounds_in};
 use crate::report::CampaignReport;
-use crate::report::figures::{CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures};
+use crate::report::envelope::PERCENTILES;
+use crate::report::figures::{CombinationFigures, ScenarioFigures};
 use maud::{Markup, html};
+use octant_base::display::ShownUnit;
 use octant_base::number;
 use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 
@@ -13,6 +15,8 @@ pub(super) const DRAWN_MAX: usize = 24;
 pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
     let statistics = &report.statistics;
     let none = statistics.combinations.iter().all(|figures| figures.navigated == 0);
+    let unit = report.units.shown().radial();
+    let name = unit.name;
     html! {
         (heading("drift"))
         @if none {
@@ -27,17 +31,17 @@ pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
             div.wide tabindex="0" role="region" aria-label="Drift by combination" {
                 table {
                     thead { tr {
-                        th { "Combination" } th.n { "Cases" } th.n { "CEP50, nmi" } th.n { "R95, nmi" }
-                        th.n { "Largest, 95 %, nmi" } th.n { "Rate 50 %, nmi/h" } th.n { "Rate 95 %, nmi/h" }
-                        th.n { "Time-RMS 50 %, nmi" } th.n { "95 %" }
+                        th { "Combination" } th.n { "Cases" } th.n { "CEP50, " (name) } th.n { "R95, " (name) }
+                        th.n { "Largest, 95 %, " (name) } th.n { "Rate 50 %, " (name) "/h" }
+                        th.n { "Rate 95 %, " (name) "/h" } th.n { "Time-RMS 50 %, " (name) } th.n { "95 %" }
                     } }
                     tbody { @for scenario in &statistics.scenarios {
                         @let mine: Vec<_> = report.combinations.iter().zip(&statistics.combinations)
                             .filter(|(combination, _)| combination.scenario == scenario.scenario).collect();
-                        @if mine.len() > 1 { (whole(scenario)) }
+                        @if mine.len() > 1 { (whole(scenario, unit)) }
                         @for (combination, figures) in &mine {
                             @let name = if mine.len() > 1 { combination.short() } else { combination.name() };
-                            (row(&name, figures))
+                            (row(&name, figures, unit))
                         }
                     } }
                 }
@@ -52,10 +56,10 @@ pub(super) fn table(report: &CampaignReport<'_>) -> Markup {
 }
 
 /// Renders a scenario over all of its combinations.
-fn whole(scenario: &ScenarioFigures) -> Markup {
+fn whole(scenario: &ScenarioFigures, unit: ShownUnit) -> Markup {
     let value = |value: Option<f64>| match value {
         None => "–".to_owned(),
-        Some(value) if value.is_finite() => number::significant(value, 3),
+        Some(value) if value.is_finite() => number::significant(unit.of(value), 3),
         Some(_) => "not defined".to_owned(),
     };
     html! {
@@ -70,7 +74,8 @@ fn whole(scenario: &ScenarioFigures) -> Markup {
     }
 }
 
-fn row(name: &str, figures: &CombinationFigures) -> Markup {
+fn row(name: &str, figures: &CombinationFigures, unit: ShownUnit) -> Markup {
+    let with_bounds = |interval| with_bounds_in(interval, unit);
     html! {
         tr {
             td { (name) }
@@ -99,10 +104,13 @@ fn marks(report: &CampaignReport<'_>) -> Markup {
     if all().all(|(_, figures)| figures.at_marks.is_empty()) {
         return html! {};
     }
+    let unit = report.units.shown().radial();
+    let with_bounds = |interval| with_bounds_in(interval, unit);
     html! {
         h3 { "At marks" }
         table {
-            thead { tr { th { "Combination" } th.n { "After" } th.n { "CEP50, nmi" } th.n { "R95, nmi" } } }
+            thead { tr { th { "Combination" } th.n { "After" } th.n { "CEP50, " (unit.name) }
+                th.n { "R95, " (unit.name) } } }
             tbody { @for (combination, figures) in all() { @for (mark, position) in &figures.at_marks { tr {
                 td { (combination.name()) } td.n { (mark) }
                 td.n { (with_bounds(&position.cep50)) } td.n { (with_bounds(&position.r95)) }
@@ -122,46 +130,56 @@ fn solution(report: &CampaignReport<'_>) -> Markup {
         p.hint { "Largest error of each navigation: heading, pitch and roll of the case, velocity to the north and east." }
         table {
             thead { tr { th { "Combination" } th { "Largest error" } th.n { "50 %" } th.n { "95 %" } } }
-            tbody { @for (combination, figures) in all() { @for (name, spread) in &figures.solution { tr {
-                td { (combination.name()) } td { (name) }
-                td.n { (with_bounds(&spread.p50)) } td.n { (with_bounds(&spread.p95)) }
-            } } } }
+            tbody { @for (combination, figures) in all() { @for (name, spread) in &figures.solution {
+                // The key has the name and its unit in the results.
+                @let name = name.split(',').next().unwrap_or(name);
+                @let unit = report.units.shown().of(name);
+                tr {
+                    td { (combination.name()) } td { (name) ", " (unit.name) }
+                    td.n { (with_bounds_in(&spread.p50, unit)) } td.n { (with_bounds_in(&spread.p95, unit)) }
+                }
+            } } }
         }
     }
 }
 
 /// Draws percentiles of the errors over time. Curves of a prediction belong into the same charts.
 pub(super) fn envelopes(report: &CampaignReport<'_>) -> Markup {
-    let all = || {
-        (report.combinations.iter().zip(&report.statistics.combinations))
-            .filter_map(|(combination, figures)| Some((combination, figures.envelope.as_ref()?)))
-    };
-    let count = all().count();
+    let combinations = report.combinations.iter().zip(&report.statistics.combinations).enumerate();
+    let there: Vec<_> = combinations
+        .filter(|(_, (_, figures))| figures.envelope.is_some())
+        .map(|(place, (combination, _))| (place, combination.name()))
+        .collect();
+    let unit = report.units.shown().latitude().name;
     html! {
         (heading("envelopes"))
-        @if count == 0 {
+        @if there.is_empty() {
             p.empty { "There are no errors over time, or their lengths differ too much for one picture." }
         } @else {
             p.hint { "Navigation minus truth, by percentile of the cases at each time. Every pair has its own scale. A case \
                 beyond every number counts as far below for the percentiles under the median and as far above for those \
-                over it: a percentile that falls on one isn't drawn, and neither is the median." }
-            @for (combination, envelope) in all().take(DRAWN_MAX) {
-                h3 { (combination.name()) }
-                div.pairs {
-                    (chart(&combination.name(), "Latitude error", envelope, &envelope.latitude_arcmin))
-                    (chart(&combination.name(), "Longitude error", envelope, &envelope.longitude_arcmin))
+                over it: a percentile that falls on one isn't drawn, and neither is the median."
+                @if report.units.shown().position.is_distance() {
+                    " Errors are distances along the ground, those of each case at its own site."
+                } }
+            @for (place, name) in there.iter().take(DRAWN_MAX) {
+                @if let Some(envelope) = report.envelope(*place) {
+                    h3 { (name) }
+                    div.pairs {
+                        (chart(name, &format!("Latitude error, {unit}"), &envelope.hours, &envelope.latitude))
+                        (chart(name, &format!("Longitude error, {unit}"), &envelope.hours, &envelope.longitude))
+                    }
                 }
             }
-            @if count > DRAWN_MAX {
-                p.hint { "The other " (count - DRAWN_MAX) " combinations are in statistics.json." }
+            @if there.len() > DRAWN_MAX {
+                p.hint { "The other " (there.len() - DRAWN_MAX) " combinations are in statistics.json." }
             }
         }
     }
 }
 
-fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) -> Markup {
-    let mut chart =
-        Chart::new(&format!("{name}, {of}"), "hours of navigation", &format!("{name}, arcmin"));
+fn chart(of: &str, name: &str, hours: &[f64], curves: &[Vec<f64>]) -> Markup {
+    let mut chart = Chart::new(&format!("{name}, {of}"), "hours of navigation", name);
     (chart.width, chart.height) = (480.0, 200.0);
     // The envelopes of all combinations share range and cursor.
     chart.run_offset_h = Some(0.0);
@@ -173,14 +191,14 @@ fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) 
     for (role, from, to) in
         [(ChartRole::Reference, least, greatest), (ChartRole::Primary, low, high)]
     {
-        let points = envelope.hours.iter().enumerate();
+        let points = hours.iter().enumerate();
         chart.bands.push(Band {
             label: format!("{} to {} %", percentile(from), percentile(to)),
             role,
             points: points.map(|(k, hours)| [*hours, value(from, k), value(to, k)]).collect(),
         });
     }
-    let points = envelope.hours.iter().enumerate();
+    let points = hours.iter().enumerate();
     chart.lines.push(ChartLine {
         label: "median".to_owned(),
         role: ChartRole::Primary,

@@ -1,6 +1,7 @@
 //! Elements that several sections of the page have: headings, links, estimates.
 
 use maud::{Markup, html};
+use octant_base::display::ShownUnit;
 use octant_base::number;
 use octant_statistics::sample::ConfidenceInterval;
 
@@ -41,6 +42,13 @@ pub(super) fn case_link(case: &str, beside: bool) -> Markup {
             span.mono { (case) }
         }
     }
+}
+
+/// Renders an estimate with its interval, in another unit.
+pub(super) fn with_bounds_in(interval: &ConfidenceInterval, unit: ShownUnit) -> Markup {
+    let ConfidenceInterval { value, low, high } = *interval;
+    let [value, low, high] = [value, low, high].map(|value| unit.of(value));
+    with_bounds(&ConfidenceInterval { value, low, high })
 }
 
 /// Renders an estimate with its interval.

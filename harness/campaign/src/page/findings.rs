@@ -7,6 +7,7 @@ use crate::report::rows::{ReportRow, RowOutcome};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::discrepancies::table;
+use octant_report::units::shown;
 
 /// Maximum number of cases shown of each kind.
 const SHOWN: usize = 50;
@@ -42,12 +43,13 @@ pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
                         th { "Case" } th { "Combination" } th { "Measure" } th.n { "Value" } th.n { "Median" } th.n { "Score" }
                     } }
                     tbody { @for outlier in outliers.iter().take(SHOWN) {
+                        @let unit = shown(outlier.measure, report.units.shown());
                         tr {
                             td { (case_link(&outlier.case, beside)) }
                             td { (report.combinations.get(outlier.combination).map_or_else(String::new, |c| c.name())) }
                             td.mono { (outlier.measure) }
-                            td.n { (number::significant(outlier.value, 3)) }
-                            td.n { (number::significant(outlier.median, 3)) }
+                            td.n { (number::significant(unit.of(outlier.value), 3)) " " (unit.name) }
+                            td.n { (number::significant(unit.of(outlier.median), 3)) " " (unit.name) }
                             td.n { @if outlier.score.is_finite() { (number::fixed(outlier.score, 1)) } @else { "∞" } }
                         }
                         tr.again { td colspan="6" { code { (report.case_again(&outlier.case)) } } }

@@ -121,6 +121,7 @@ fn figures(report: &CampaignReport<'_>) -> Markup {
     let r95 = worst(&|figures| Some(figures.at_end?.r95.value));
     let rate = worst(&|figures| Some(figures.rate_nmi_per_h?.rate95.value));
     let discrepancies = statistics.discrepancies.len();
+    let unit = report.units.shown().radial();
     let figure = |name: &str, value: String, unit: &str, other: String| {
         html! {
             div.figure {
@@ -135,10 +136,10 @@ fn figures(report: &CampaignReport<'_>) -> Markup {
             (figure("Requirements shown", format!("{shown} of {all}"), "", String::new()))
             (figure("Cases run", format!("{} of {}", statistics.cases - statistics.open, statistics.cases), "", String::new()))
             @if let Some(r95) = r95 {
-                (figure("R95, the worst combination", number::significant(r95, 3), "nmi", String::new()))
+                (figure("R95, the worst combination", number::significant(unit.of(r95), 3), unit.name, String::new()))
             }
             @if let Some(rate) = rate {
-                (figure("Drift, 95 %, the worst", number::significant(rate, 3), "nmi/h", String::new()))
+                (figure("Drift, 95 %, the worst", number::significant(unit.of(rate), 3), &format!("{}/h", unit.name), String::new()))
             }
             (figure("Discrepancies", discrepancies.to_string(), "", format!("{} without a disposition", report.open())))
         }
@@ -174,7 +175,8 @@ fn provenance(report: &CampaignReport<'_>) -> Markup {
         }
         p.hint { "Who made this when, on which computer and with which program stands in manifest.json, with the \
             hash of every file of the folder: octant verify holds them against it. The numbers of this page are \
-            in statistics.json, every check in junit.xml." }
+            in statistics.json" @if !report.units.are_default() { " (in arcmin, nmi and m/s)" } ", every check in \
+            junit.xml." }
         p.hint { "The same campaign again; the results have to come to the same hash:" }
         code.rerun { (again(report)) }
     }

@@ -16,7 +16,10 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
         @if prediction.compared.is_empty() {
             p.empty { "No ensemble could be compared." }
         }
-        @for comparison in &prediction.compared { (of(comparison)) }
+        @for comparison in &prediction.compared {
+            @let units = comparison.place(report.plan).map(|case| report.units.at(case));
+            (of(&comparison.shown(&units.unwrap_or_default())))
+        }
         @if !prediction.left_out.is_empty() {
             h3 { "Left out" }
             ul { @for line in &prediction.left_out { li { (line) } } }

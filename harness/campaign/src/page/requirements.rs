@@ -1,12 +1,14 @@
 //! Verdicts of the requirements: overall, and by combination.
 
 use super::elements::heading;
+use crate::report::discrepancy::checks_of;
 use crate::report::requirement::{CombinationChecks, RequirementFigures};
+use crate::report::rows::ReportRow;
 use crate::report::{CampaignReport, POLICY};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::page::badge;
-use octant_report::units::unit;
+use octant_report::units::{PageUnit, is_of_place, shown, unit};
 use octant_requirements::Verdict;
 use octant_requirements::requirement::percent;
 use octant_requirements::trace::VerdictCounts;
@@ -20,7 +22,11 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
         @if all.is_empty() {
             p.empty { "No requirement was checked: whatever happened, nothing is shown by it." }
         } @else {
-            (table(all))
+            (table(report, all))
+            @if all.iter().any(|r| unit_of(report, r).is_none()) {
+                p.hint { "Limits of latitude and longitude stay in minutes of arc where the cases of their requirement \
+                    have several sites: there a minute has several lengths." }
+            }
             p.hint { "The bound is that of Clopper and Pearson on the probability that an independent draw passes in \
                 all of its checks, one-sided. Where nothing is asked of the draws together, every check has to pass. "
                 (POLICY) }
@@ -29,12 +35,30 @@ pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
             p { "Not verified by runs: " (report.status.not_by_test.join(", ")) "." }
         }
         @for note in &report.notes { p.hint { (note) } }
+        @if let Some(remark) = report.units.remark() { p.hint { (remark) } }
         @if !all.is_empty() && report.combinations.len() > 1 { (by_combination(report)) }
     }
 }
 
+/// Unit in which the limit of a requirement is shown; `None` if its cases have several sites, and the limit
+/// has another length at each.
+fn unit_of(report: &CampaignReport<'_>, r: &RequirementFigures) -> Option<PageUnit> {
+    let measure = r.measure.as_deref().unwrap_or("");
+    if !is_of_place(measure) {
+        return Some(shown(measure, report.units.shown()));
+    }
+    let checks = |(_, row): &(usize, &ReportRow<'_>)| checks_of(report.plan, row, &r.id).is_some();
+    let cases = report.rows.iter().enumerate().filter(checks).map(|(place, _)| place);
+    report.units.at_all(cases).map(|units| shown(measure, &units))
+}
+
 /// Renders the requirements, the worst first.
-fn table(all: &[RequirementFigures]) -> Markup {
+fn table(report: &CampaignReport<'_>, all: &[RequirementFigures]) -> Markup {
+    // In its own unit a limit is the same everywhere.
+    let own = |r: &RequirementFigures| PageUnit {
+        factor: 1.0,
+        name: r.measure.as_deref().map_or("", unit).into(),
+    };
     let mut worst_first: Vec<&RequirementFigures> = all.iter().collect();
     worst_first.sort_by_key(|r| std::cmp::Reverse(r.verdict));
     html! {
@@ -44,15 +68,17 @@ fn table(all: &[RequirementFigures]) -> Markup {
                     th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Draws" } th.n { "Bound" }
                     th.n { "Asked" } th.n { "Still needed" } th.n { "Least margin" } th.n { "Verdict" }
                 } }
-                tbody { @for r in worst_first { tr {
+                tbody { @for r in worst_first {
+                    @let unit = unit_of(report, r).unwrap_or_else(|| own(r));
+                    tr {
                     td { strong { (r.id) }
                         @if let Some(text) = &r.text { div.reason { (text) } }
                         @if let Some(clause) = &r.clause { div.reason { (clause) } } }
                     td {
                         @if let Some(measure) = &r.measure {
                             span.mono { (measure) } " " (sign(r.comparison.unwrap_or(""))) " "
-                            (r.limit.map_or_else(String::new, |limit| number::plain(limit, 6)))
-                            " " (unit(measure))
+                            (r.limit.map_or_else(String::new, |limit| number::plain(unit.of(limit), 6)))
+                            " " (unit.name)
                         }
                         div.reason { (r.reason) }
                         @if r.asked.is_none() { @if let Some(claim) = &r.claim { div.reason { (claim) } } }
@@ -65,15 +91,15 @@ fn table(all: &[RequirementFigures]) -> Markup {
                     td.n {
                         @match &r.nearest {
                             Some(nearest) => {
-                                (number::significant(nearest.margin, 3))
-                                @if let Some(measure) = &r.measure { " " (unit(measure)) }
+                                (number::significant(unit.of(nearest.margin), 3)) " " (unit.name)
                                 div.reason.mono { (nearest.case) }
                             }
                             None => "–",
                         }
                     }
                     td.n { (badge(r.verdict)) }
-                } } }
+                    }
+                } }
             }
         }
     }

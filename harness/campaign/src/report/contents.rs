@@ -2,17 +2,20 @@
 //! results.
 
 use super::combination::Combination;
+use super::envelope::ShownEnvelope;
 use super::error::ReportError;
 use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use super::requirement::RequirementFigures;
 use super::rows::ReportRow;
 use super::selftest::SelfTest;
+use super::units::CampaignUnits;
 use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
 use crate::against::{Against, Selection, against};
 use crate::execute::{Shard, refuse_foreign};
 use crate::plan::Plan;
 use crate::status::{self, CampaignStatus, StatusError};
 use crate::trace::trace;
+use octant_base::display::UnitChoice;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
 use octant_evidence::manifest::shell_line;
@@ -111,6 +114,8 @@ pub struct CampaignReport<'a> {
     pub notes: Vec<String>,
     /// Merged tables with their BLAKE3.
     pub tables: Vec<(String, String)>,
+    /// Units of errors on the page.
+    pub units: CampaignUnits,
 }
 
 impl<'a> CampaignReport<'a> {
@@ -183,7 +188,34 @@ impl<'a> CampaignReport<'a> {
             selftest,
             notes,
             tables,
+            units: CampaignUnits::of(plan, folder),
         })
+    }
+
+    /// Chooses units of errors on the page, in place of the scenarios'. Files for machines keep theirs.
+    ///
+    /// # Errors
+    /// If positions are to be distances, and the sites of the cases aren't known.
+    pub fn show_in(&mut self, choice: UnitChoice) -> Result<(), ReportError> {
+        self.units.choose(choice)
+    }
+
+    /// Percentiles of the errors over time of a combination, by its place, in units of the page.
+    #[must_use]
+    pub fn envelope(&self, combination: usize) -> Option<ShownEnvelope> {
+        if !self.units.shown().position.is_distance() {
+            let figures = self.statistics.combinations.get(combination)?;
+            return figures.envelope.as_ref().map(ShownEnvelope::from);
+        }
+        let draws = rows::draws(&self.rows);
+        let (curves, beyond) =
+            figures::curves(self.combinations.get(combination)?, &self.rows, &draws);
+        let at_site = |(case, curve)| {
+            let units = self.units.at(case);
+            (curve, [units.latitude().factor, units.longitude().factor])
+        };
+        let curves: Vec<_> = curves.into_iter().map(at_site).collect();
+        ShownEnvelope::of(&curves, beyond)
     }
 
     /// Returns the number of discrepancies without a disposition.
@@ -221,14 +253,18 @@ impl<'a> CampaignReport<'a> {
     /// Returns the command lines that make the campaign again, in the folder above its own.
     #[must_use]
     pub fn again(&self) -> Vec<Vec<String>> {
-        let line = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+        let line = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
         let campaign = self.plan.campaign.display().to_string();
         let name = self.name.as_str();
+        let mut report = line(&["octant", "campaign", "report", name]);
+        if let Some(chosen) = self.units.chosen() {
+            report.extend(["--units".to_owned(), chosen.to_string()]);
+        }
         vec![
             line(&["octant", "campaign", "plan", &campaign, "--out", name]),
             line(&["octant", "campaign", "run", name]),
             line(&["octant", "campaign", "merge", name]),
-            line(&["octant", "campaign", "report", name]),
+            report,
         ]
     }
 

@@ -45,6 +45,18 @@ pub enum ReportError {
         /// Reason.
         reason: String,
     },
+    /// Positions can't be shown as distances.
+    #[error(
+        "show latitude and longitude errors in {unit}: the length of a minute of longitude is that of each \
+         case's latitude, which isn't known: {reason}; expected the scenarios of the plan in their places, or \
+         arcmin as the unit of position"
+    )]
+    Units {
+        /// Unit that was chosen.
+        unit: &'static str,
+        /// Reason why the sites aren't known.
+        reason: String,
+    },
     /// The dispositions can't be read.
     #[error(transparent)]
     Dispositions(#[from] DispositionError),

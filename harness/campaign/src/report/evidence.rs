@@ -4,6 +4,7 @@
 use super::contents::{CampaignReport, again};
 use super::error::ReportError;
 use super::junit::junit;
+use crate::plan::INPUTS;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
@@ -20,8 +21,6 @@ pub const STATISTICS: &str = "statistics.json";
 pub const PREDICTION: &str = "prediction.json";
 /// Name of the JUnit file.
 pub const JUNIT: &str = "junit.xml";
-/// Folder with copies of the files from which the campaign was planned.
-pub const INPUTS: &str = "inputs";
 
 /// Writes everything into the folder of a campaign: dispositions, statistics, JUnit, page, copies
 /// of the inputs, and the manifest last. Existing files with the same content aren't touched.
@@ -109,17 +108,15 @@ fn times(report: &CampaignReport<'_>, folder: &Path) -> (Option<String>, Option<
 fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportError> {
     let plan = report.plan;
     let mut files: Vec<(PathBuf, PathBuf)> = Vec::new();
-    let folder = folder.join(INPUTS);
     for scenario in &plan.scenarios {
-        let name = scenario.file.file_name().unwrap_or_default().to_string_lossy();
-        let hash = scenario.blake3.get(..12).unwrap_or(&scenario.blake3);
-        let copy = folder.join(format!("{hash}-{name}"));
+        let copy = scenario.copied(folder).file;
         let bytes = std::fs::read(&scenario.file).ok();
         let planned = bytes.is_some_and(|b| blake3::hash(&b).to_hex().as_str() == scenario.blake3);
         if planned && !files.iter().any(|(_, other)| *other == copy) {
             files.push((scenario.file.clone(), copy));
         }
     }
+    let folder = folder.join(INPUTS);
     // Only if the campaign's plan is still the same.
     if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
         files.push((plan.campaign.clone(), folder.join("campaign.toml")));

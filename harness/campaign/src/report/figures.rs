@@ -9,10 +9,10 @@
 //! that of the good cases. Cases with the same stream count once.
 
 use super::combination::{self, Combination, number_of, takes_part};
+use super::envelope::EnvelopeFigures;
 use super::rows::{CaseDrift, Curve, ReportRow};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
-use octant_statistics::envelope::envelope;
 use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
 use octant_statistics::quantile::interval;
 use octant_statistics::rank::{RankCorrelation, spearman};
@@ -23,8 +23,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Default confidence of all intervals, two-sided.
 pub const CONFIDENCE: f64 = 0.95;
-/// Percentiles of the envelopes.
-pub const PERCENTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// Measure that is correlated with the factors.
 pub const DRIFT: &str = "navigation.radial_error_nmi.rate_per_h";
 
@@ -107,19 +105,6 @@ pub struct CombinationFigures {
     pub sensitivity: Vec<FactorFigures>,
 }
 
-/// Percentiles of latitude and longitude error over time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EnvelopeFigures {
-    /// Times, h.
-    pub hours: Vec<f64>,
-    /// Percentiles, 0 to 1.
-    pub percentiles: Vec<f64>,
-    /// Latitude error, arcmin: a curve for each percentile.
-    pub latitude_arcmin: Vec<Vec<f64>>,
-    /// Longitude error, arcmin.
-    pub longitude_arcmin: Vec<Vec<f64>>,
-}
-
 /// Correlation of the drift with a factor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FactorFigures {
@@ -192,6 +177,8 @@ pub struct OutlierFigures {
 /// Cases of a sample that ran, each with its drift; a case without one is beyond every number.
 struct Sample<'a> {
     cases: Vec<(&'a Case, Option<&'a CaseDrift>)>,
+    /// Places of the cases in the plan.
+    places: Vec<usize>,
 }
 
 impl<'a> Sample<'a> {
@@ -206,9 +193,16 @@ impl<'a> Sample<'a> {
     fn of(rows: &'a [ReportRow<'_>], places: impl Iterator<Item = usize>) -> Self {
         let one = |place: usize| {
             let row = rows.get(place)?;
-            Some((row.case, row.outcome.as_ref()?.drift.as_ref()))
+            Some(((row.case, row.outcome.as_ref()?.drift.as_ref()), place))
         };
-        Self { cases: places.filter_map(one).collect() }
+        let (cases, places) = places.filter_map(one).unzip();
+        Self { cases, places }
+    }
+
+    /// Returns the errors over time, each with the place of its case.
+    fn curves(&self) -> Vec<(usize, &'a Curve)> {
+        let cases = self.places.iter().zip(&self.cases);
+        cases.filter_map(|(place, (_, drift))| Some((*place, (*drift)?.curve.as_ref()?))).collect()
     }
 
     fn navigated(&self) -> usize {
@@ -253,8 +247,7 @@ impl CombinationFigures {
         let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
-        let curves: Vec<&Curve> =
-            sample.cases.iter().filter_map(|(_, drift)| drift.as_ref()?.curve.as_ref()).collect();
+        let curves: Vec<&Curve> = sample.curves().into_iter().map(|(_, curve)| curve).collect();
         let values = |name: &String| {
             let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
             cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
@@ -284,6 +277,17 @@ impl CombinationFigures {
     }
 }
 
+/// Returns the errors over time on which the figures of a combination are based, each with the place of its
+/// case, and the number of draws that are beyond every number.
+pub(super) fn curves<'a>(
+    combination: &Combination,
+    rows: &'a [ReportRow<'_>],
+    draws: &[usize],
+) -> (Vec<(usize, &'a Curve)>, usize) {
+    let sample = Sample::of_draws(rows, &combination.cases, draws);
+    (sample.curves(), sample.beyond())
+}
+
 /// Collects the largest errors of attitude and velocity that every navigating case has.
 fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
     let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
@@ -306,43 +310,6 @@ fn marks(sample: &Sample<'_>) -> BTreeMap<String, Position> {
         Some((name.clone(), Position::of(&reached.then(|| sample.column(value))?)?))
     };
     names.into_iter().filter_map(of).collect()
-}
-
-impl EnvelopeFigures {
-    /// Builds the envelope up to the end of the shortest navigation; `None` for navigations whose
-    /// lengths differ so much that their grids differ.
-    ///
-    /// An error has a sign, and one beyond every number may have either: it counts as far below for
-    /// the percentiles under the median and as far above for those over it. The median of such a
-    /// sample isn't defined.
-    fn of(curves: &[&Curve], beyond: usize) -> Option<Self> {
-        let step_s = curves.first()?.step_s;
-        if curves.iter().any(|curve| curve.step_s != step_s) {
-            return None;
-        }
-        let points = curves.iter().map(|curve| curve.latitude_arcmin.len()).min()?;
-        let of = |column: fn(&Curve) -> &[f64]| {
-            let all: Vec<&[f64]> = curves.iter().filter_map(|c| column(c).get(..points)).collect();
-            let with = |far: f64, percentiles: &[f64]| {
-                let far = vec![far; points];
-                let rest = std::iter::repeat_n(far.as_slice(), beyond);
-                let all: Vec<&[f64]> = all.iter().copied().chain(rest).collect();
-                envelope(&all, points, percentiles).ok()
-            };
-            let curve = |p: f64| match p.total_cmp(&0.5) {
-                std::cmp::Ordering::Less => with(f64::NEG_INFINITY, &[p])?.curves.pop(),
-                std::cmp::Ordering::Equal if beyond > 0 => Some(vec![f64::NAN; points]),
-                _ => with(f64::INFINITY, &[p])?.curves.pop(),
-            };
-            PERCENTILES.into_iter().map(curve).collect::<Option<Vec<_>>>()
-        };
-        Some(Self {
-            hours: (0..points).map(|k| k as f64 * step_s / 3600.0).collect(),
-            percentiles: PERCENTILES.to_vec(),
-            latitude_arcmin: of(|curve| &curve.latitude_arcmin)?,
-            longitude_arcmin: of(|curve| &curve.longitude_arcmin)?,
-        })
-    }
 }
 
 impl FactorFigures {

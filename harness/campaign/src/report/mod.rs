@@ -1,7 +1,7 @@
 //! Report of a campaign: numbers, discrepancies, and the evidence of both.
 //!
 //! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
-//! their statistics, [`discrepancy`] lists everything that isn't a pass,
+//! their statistics, [`envelope`] those of the errors over time, [`units`] the units of the page, [`discrepancy`] lists everything that isn't a pass,
 //! [`disposition`](octant_evidence::disposition) has its dispositions, [`CampaignReport`] puts them together.
 //! [`evidence`] writes all of it into the folder of the campaign. The page is [`crate::page`].
 
@@ -9,6 +9,7 @@ mod about;
 pub mod combination;
 mod contents;
 pub mod discrepancy;
+pub mod envelope;
 mod error;
 pub mod evidence;
 pub mod figures;
@@ -17,6 +18,7 @@ pub mod requirement;
 pub mod rows;
 pub mod selftest;
 mod tables;
+pub mod units;
 
 pub(crate) use contents::again;
 pub use contents::{CampaignReport, POLICY, SCHEMA, Statistics};

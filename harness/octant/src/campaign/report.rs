@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::signing::signing_key;
 use crate::terminal::{print, write};
 use clap::Args;
+use octant_base::display::UnitChoice;
 use octant_campaign::report::{CampaignReport, ReportError, evidence};
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::DispositionError;
@@ -20,6 +21,10 @@ pub(super) struct Arguments {
     /// Write only the page, to this file, and leave the folder unchanged.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Units of errors on the page, instead of the scenarios': of position (arcmin, nmi, m, km), attitude (arcmin, deg,
+    /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg. Files for programs keep theirs.
+    #[arg(long, value_name = "UNIT,UNIT")]
+    units: Option<UnitChoice>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -29,6 +34,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // An invalid key is reported before anything is written.
     let key = if arguments.out.is_none() { signing_key()? } else { None };
     let mut report = CampaignReport::of(&plan, folder)?;
+    if let Some(units) = arguments.units {
+        report.show_in(units)?;
+    }
     let path = match &arguments.out {
         Some(path) => {
             write(path, octant_campaign::page::render(&report, false))?;
@@ -57,7 +65,9 @@ impl From<ReportError> for Failure {
         match error {
             ReportError::Plan(error) => error.into(),
             ReportError::Foreign(error) => error.into(),
-            ReportError::Form { .. } | ReportError::Dispositions(DispositionError::Form { .. }) => {
+            ReportError::Form { .. }
+            | ReportError::Units { .. }
+            | ReportError::Dispositions(DispositionError::Form { .. }) => {
                 Self::input(error).failed()
             }
             ReportError::Result(_)

@@ -8,6 +8,7 @@ use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_base::number::{counted, significant};
 use octant_campaign::against::{Against, EnsembleComparison, Selection, against};
 use octant_campaign::plan::{FILE_NAME, Plan};
+use octant_campaign::sites;
 use octant_observe::ensemble::{DriftBand, Ensemble, ErrorBand, SolutionBands, ensemble};
 use octant_requirements::Verdict;
 use octant_scenario::{Method, Scenario};
@@ -26,7 +27,7 @@ pub(super) fn command(
     let scenario = load(arguments, &[])?;
     match folder {
         None => predict(&scenario, &scenario.display.with(units), json),
-        Some(folder) => hold(arguments, folder, json),
+        Some(folder) => hold(arguments, folder, units, json),
     }
 }
 
@@ -47,7 +48,12 @@ fn predict(scenario: &Scenario, units: &DisplayUnits, json: bool) -> Result<Verd
     Ok(Verdict::Pass)
 }
 
-fn hold(arguments: &ScenarioArguments, folder: &Path, json: bool) -> Result<Verdict, Failure> {
+fn hold(
+    arguments: &ScenarioArguments,
+    folder: &Path,
+    units: UnitChoice,
+    json: bool,
+) -> Result<Verdict, Failure> {
     let plan = Plan::read(&folder.join(FILE_NAME))?;
     let bytes = std::fs::read(&arguments.scenario).map_err(|error| {
         Failure::input(format!("failed to read {}: {error}", arguments.scenario.display()))
@@ -70,7 +76,9 @@ fn hold(arguments: &ScenarioArguments, folder: &Path, json: bool) -> Result<Verd
         print_json(&found)?;
     } else {
         for comparison in &found.compared {
-            print(&compared(comparison))?;
+            // Several ensembles of a scenario can have several sites.
+            let at_site = sites::of_ensemble(&plan, folder, comparison)?;
+            print(&compared(&comparison.shown(&at_site.with(units))))?;
         }
         for left_out in &found.left_out {
             print(&format!("left out: {left_out}\n"))?;

@@ -9,3 +9,4 @@ mod evidence;
 mod findings;
 mod numbers;
 mod two_persons;
+mod units;

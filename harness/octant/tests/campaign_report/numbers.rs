@@ -7,7 +7,7 @@ use octant_campaign::plan::FactorValue;
 use serde_json::{Value, json};
 
 /// Computes a percentile, definition 7 of Hyndman and Fan.
-fn percentile(values: &[f64], p: f64) -> f64 {
+pub(crate) fn percentile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = p * (sorted.len() - 1) as f64;

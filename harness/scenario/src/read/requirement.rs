@@ -7,22 +7,9 @@ use crate::quantity::{self, Quantity};
 use octant_base::names::suggestion;
 use octant_requirements::decision::{Decision, Uncertainty};
 use octant_requirements::equipment::{Day, Equipment};
+use octant_requirements::measures::PathError;
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{measures, signed};
-use octant_sample::parameters::{NAMES, ParameterGroup};
-
-/// Unit suffixes of the names of measures, with the unit's own spelling.
-const SUFFIXES: [(&str, &str); 9] = [
-    ("_arcmin", "arcmin"),
-    ("_arcsec", "arcsec"),
-    ("_nmi", "nmi"),
-    ("_deg", "deg"),
-    ("_mps", "m/s"),
-    ("_rad", "rad"),
-    ("_hours", "h"),
-    ("_s", "s"),
-    ("_m", "m"),
-];
 
 pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<RequirementSpec>, Problem> {
     let mut all: Vec<RequirementSpec> = Vec::new();
@@ -201,7 +188,7 @@ pub fn path_of(measure: &str) -> Result<&str, MeasureTextError> {
     if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
         return Err(MeasureTextError::Form { found });
     }
-    let Err((place, part, keys)) = measures::check(bare) else { return Ok(bare) };
+    let Err(PathError { place, part, keys }) = measures::check(bare) else { return Ok(bare) };
     Err(match part {
         None => MeasureTextError::Table { found, place, keys },
         Some(part) if keys.is_empty() => MeasureTextError::Number { found, place, part },
@@ -225,38 +212,18 @@ pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureTextError> {
     if !limit.same_dimension(one) {
         return Err(MeasureTextError::Dimension {
             found: text.to_owned(),
-            unit,
+            unit: unit.to_owned(),
             measure: measure.to_owned(),
         });
     }
     // In the measure's own unit, the written number is used unchanged.
-    let own = text.trim().strip_suffix(&unit).and_then(|n| n.trim().parse().ok());
+    let own = text.trim().strip_suffix(unit).and_then(|n| n.trim().parse().ok());
     Ok(own.unwrap_or(limit.si / one.si))
 }
 
-/// Unit of a measure, from its name: that of a parameter, or the suffix of a part of the path; with
-/// `slope_per_day` and `rate_per_h` it is divided by the time.
-fn unit_of(measure: &str) -> Option<(String, Quantity)> {
-    // A shift in posterior σ of the twin is a ratio, unlike the σ of an estimate.
-    let of_twin = measure.contains("counterfactual.parameters.") && measure.ends_with(".sigma");
-    if measure.ends_with(".normalized") || of_twin {
-        return None;
-    }
-    let mut unit: Option<String> = None;
-    for part in measure.split('.') {
-        if let Some(index) = NAMES.iter().position(|name| *name == part) {
-            unit = Some(ParameterGroup::of(index).unit().to_owned());
-        }
-        if let Some((_, found)) = SUFFIXES.iter().find(|(suffix, _)| part.ends_with(suffix)) {
-            unit = Some((*found).to_owned());
-        }
-        for (suffix, per) in [("_per_day", "/day"), ("_per_h", "/h")] {
-            if part.ends_with(suffix) {
-                unit = unit.map(|unit| unit + per);
-            }
-        }
-    }
-    let unit = unit?;
+/// Unit of a measure, and one of it as a quantity; `None` for counts and ratios.
+fn unit_of(measure: &str) -> Option<(&'static str, Quantity)> {
+    let unit = measures::unit(measure)?;
     let one = quantity::parse(&format!("1 {unit}")).ok()?;
     Some((unit, one))
 }
@@ -268,20 +235,26 @@ mod tests {
     #[test]
     fn a_measure_names_its_unit() {
         let unit = |measure| unit_of(measure).map(|(unit, _)| unit);
-        assert_eq!(unit("navigation.longitude_error_arcmin.max").as_deref(), Some("arcmin"));
-        let slope = unit("navigation.latitude_error_arcmin.slope_per_day");
-        assert_eq!(slope.as_deref(), Some("arcmin/day"));
-        assert_eq!(unit("navigation.radial_error_nmi.rate_per_h").as_deref(), Some("nmi/h"));
-        assert_eq!(unit("calibration.parameters.g_zz.sigma").as_deref(), Some("deg/h/g"));
-        let unit_of_slope = unit("navigation.velocity_north_error_mps.slope_per_day");
-        assert_eq!(unit_of_slope.as_deref(), Some("m/s/day"));
-        assert_eq!(unit("navigation.velocity_east_error_mps.rms").as_deref(), Some("m/s"));
+        assert_eq!(unit("navigation.longitude_error_arcmin.max"), Some("arcmin"));
+        assert_eq!(unit("navigation.latitude_error_arcmin.slope_per_day"), Some("arcmin/day"));
+        assert_eq!(unit("navigation.radial_error_nmi.rate_per_h"), Some("nmi/h"));
+        assert_eq!(unit("calibration.parameters.g_zz.sigma"), Some("deg/h/g"));
+        assert_eq!(unit("navigation.velocity_north_error_mps.slope_per_day"), Some("m/s/day"));
+        assert_eq!(unit("navigation.velocity_east_error_mps.rms"), Some("m/s"));
         assert_eq!(limit_of("navigation.velocity_east_error_mps.max", "2 kn"), Ok(3704.0 / 3600.0));
-        assert_eq!(unit("calibration.solution.roll_arcmin.sigma").as_deref(), Some("arcmin"));
+        assert_eq!(unit("calibration.solution.roll_arcmin.sigma"), Some("arcmin"));
         assert_eq!(unit("calibration.solution.roll_arcmin.normalized"), None);
         assert_eq!(unit("calibration.nis_mean"), None);
-        let shift = unit("counterfactual.parameters.g_zz.shift");
-        assert_eq!(shift.as_deref(), Some("deg/h/g"));
+        assert_eq!(unit("counterfactual.parameters.g_zz.shift"), Some("deg/h/g"));
+        let lateness = limit_of("pacing.lateness_us.p99", "0.5 ms").unwrap();
+        assert!((lateness / 500.0 - 1.0).abs() < 1e-12, "{lateness}");
+        assert_eq!(limit_of("navigation.duration_h", "1 day"), Ok(24.0));
+        assert_eq!(limit_of("pacing.device_clock.skew_ppm", "20 ppm"), Ok(20.0));
+        // Every unit that a measure has is one of quantities.
+        for entry in measures::all().iter().filter(|entry| entry.unit != "1") {
+            assert_eq!(unit(&entry.measure), Some(entry.unit), "{}", entry.measure);
+            assert_eq!(limit_of(&entry.measure, &format!("2 {}", entry.unit)), Ok(2.0));
+        }
         for shift_in_sigma in [
             "counterfactual.parameters.g_zz.sigma",
             "baseline.counterfactual.parameters.gyro_bias_x.sigma",
