@@ -224,8 +224,8 @@ fn what_contradicts_itself_is_refused_with_the_variable_and_what_is_expected() {
         said,
         "procedure.calibration.positions: stop 3: dwell weight 0 is not a positive number"
     );
-    let said = refused(&|values| values.set_integer(slot("procedure.navigation.rotation"), 3));
-    assert_eq!(said, "procedure.navigation.rotation is 3, which is none of its items");
+    let said = refused(&|values| values.set_integer(slot("procedure.navigation.rotation"), 4));
+    assert_eq!(said, "procedure.navigation.rotation is 4, which is none of its items");
     let said = refused(&|values| values.set_count(slot("procedure.calibration.passes"), 1 << 32));
     assert_eq!(said, "procedure.calibration.passes is 4294967296, at most 4294967295 is expected");
     let said = refused(&|values| values.set_count(slot("imu.period_ns"), 0));

@@ -73,7 +73,7 @@ id = "spike-1"
 kind = "spike"
 channels = "gyro x"
 amplitude = "1000 deg/h"
-trigger = { position = 2, delay = "3 s" }
+trigger = { position = 2, after = "3 s" }
 duration = "20 samples"
 [[faults]]
 id = "gone"
@@ -222,8 +222,8 @@ fn covariances_are_those_of_the_filter_and_fit_the_errors() {
         // Both are of the solution after the measurement, in whose 1 mm/s the velocity is known.
         assert!(diagonal.iter().all(|variance| *variance < 1e-6), "{diagonal:?}");
     }
-    // Once in ten seconds, but the first epoch, which has no reference.
-    assert_eq!(covariances.len(), 360);
+    // Every ten seconds until the one at whose end the core navigates. The first epoch has no reference.
+    assert_eq!(covariances.len(), 359);
     // Expected 1. If ten messages in a row count as one, 108 independent squares have a mean with a
     // standard deviation of 0.14.
     let mean = sum / count;
@@ -247,7 +247,7 @@ fn covariances_are_those_of_the_filter_and_fit_the_errors() {
             None => assert_eq!((kind, matrix), (0, [0.0; 9])),
         }
     }
-    assert_eq!(known, 360);
+    assert_eq!(known, 359);
     for (time_ns, message) in &found["/imu/data"] {
         // Encapsulation, stamp 8, frame 4 + 9 up to byte 24; four numbers of the orientation.
         let matrix: [f64; 9] = std::array::from_fn(|i| number(message, 4 + 24, 4 + i));

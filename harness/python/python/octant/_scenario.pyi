@@ -1068,7 +1068,7 @@ class Realtime(Section):
     Takes a time such as "500 us". Default: "0 s"."""
 
 class Record(Section):
-    """What is recorded, and how often. Takes a table with rate, samples, parameters."""
+    """What is recorded, and how often. Takes a table with rate, samples, parameters, topics, topics_period."""
 
     parameters: str
     """Shortest time between two records of the estimated parameters. Takes a time such as "12 h". Default: "10
@@ -1078,6 +1078,12 @@ class Record(Section):
     "200 Hz". Default: "1 Hz"."""
     samples: Literal["decimated", "full"]
     """Which samples are kept. Takes one of "decimated", "full". Default: "decimated"."""
+    topics: Literal["on", "off"]
+    """Topics for other tools in the recording: standard messages of ROS 2, and the JSON of a live run. Takes one
+    of "on", "off". Default: "on"."""
+    topics_period: str
+    """Shortest time between two messages on each of these topics; at changes of mode there is one too. Takes a
+    time such as "12 h". Default: "10 s"."""
 
 class Screening(Section):
     """Screens and gates of the core. Takes a table with gate, stuck_samples, jumps, bridging, gimbals, drift,
@@ -1730,7 +1736,7 @@ class Scenario(Section):
     def realtime(self, value: Realtime | Mapping[str, Any]) -> None: ...
     @property
     def record(self) -> Record:
-        """What is recorded, and how often. Takes a table with rate, samples, parameters."""
+        """What is recorded, and how often. Takes a table with rate, samples, parameters, topics, topics_period."""
     @record.setter
     def record(self, value: Record | Mapping[str, Any]) -> None: ...
     requirements: Sequence[Mapping[str, Any]]

@@ -283,8 +283,8 @@ const fn rotation() -> Of<Rotation> {
         ("sixteen", "sixteen moves of 180° about both gimbals, that average out most drifts"),
         (
             "tetrahedral",
-            "the twelve attitudes of the tetrahedral group, equally long, out and back: of the drifts by \
-             g-dependent biases the isotropic part alone is left",
+            "twelve attitudes, equally long, out and back, over which vectors of the body average as over the \
+             tetrahedral group: of the drifts by g-dependent biases the isotropic part alone is left",
         ),
         ("none", "gimbals stand at zero"),
     ]);

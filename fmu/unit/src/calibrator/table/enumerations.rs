@@ -38,7 +38,7 @@ enumerations! {
         0 custom "As given by stops.count, stops.azimuth, stops.roll and stops.weight.";
         1 sixteen "Sixteen moves of 180 deg about both gimbals: most drifts average out.";
         2 none "The gimbals stand at zero.";
-        3 tetrahedral "The twelve attitudes of the tetrahedral group, equally long, out and back.";
+        3 tetrahedral "Twelve attitudes, equally long, out and back: of g-dependent drifts the isotropic part is left.";
     }
     /// Method of estimating the parameters.
     pub ESTIMATOR "Estimator" "How the parameters are estimated." {
