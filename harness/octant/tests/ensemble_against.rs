@@ -4,8 +4,8 @@
 //! The results are synthetic, normal with the predicted σ, so that the expected outcome is known.
 
 use crate::common::program::{ended, octant_in};
-use octant_campaign::against::{Against, RUNS_MIN, Selection, against};
 use octant_base::display::DisplayUnits;
+use octant_campaign::against::{Against, RUNS_MIN, Selection, against};
 use octant_campaign::case::{self, CaseResult};
 use octant_campaign::plan::Plan;
 use octant_observe::ensemble::{Ensemble, ensemble};

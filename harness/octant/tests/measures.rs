@@ -12,7 +12,10 @@ use std::path::Path;
 fn each_listed_measure_is_taken_with_a_limit_in_its_unit() {
     let (said, _) = ends(&["requirements", "measures", "--json"], 0);
     let listed: Value = serde_json::from_str(&said).unwrap();
-    assert_eq!((&listed["schema"], &listed["octant"]), (&1.into(), &env!("CARGO_PKG_VERSION").into()));
+    assert_eq!(
+        (&listed["schema"], &listed["octant"]),
+        (&1.into(), &env!("CARGO_PKG_VERSION").into())
+    );
     let needs: BTreeSet<&str> =
         listed["needs"].as_object().unwrap().keys().map(String::as_str).collect();
     let (mut all, mut used) = (String::new(), BTreeSet::new());
@@ -67,7 +70,10 @@ fn the_text_names_units_and_conditions() {
         lines.next().unwrap_or_else(|| panic!("no {name} in {said}")).to_owned()
     };
     let longitude = line("navigation.longitude_error_arcmin.max");
-    assert!(longitude.contains(" arcmin ") && longitude.contains("[navigation, truth]"), "{longitude}");
+    assert!(
+        longitude.contains(" arcmin ") && longitude.contains("[navigation, truth]"),
+        "{longitude}"
+    );
     assert!(line("navigation.marks.24h.radial_nmi").contains("24h]"));
     assert!(said.lines().all(|line| line.trim_end() == line), "no line ends in spaces");
 }

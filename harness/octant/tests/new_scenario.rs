@@ -29,7 +29,8 @@ fn a_new_scenario_is_valid_and_needs_force_to_be_replaced() {
 #[test]
 fn a_mems_instrument_calibrates_at_once_and_is_refused_with_its_bias_instability() {
     let folder = tempfile::tempdir().unwrap();
-    let options = ["--instrument", "tactical-mems", "--calibration", "1 h", "--navigation", "10 min"];
+    let options =
+        ["--instrument", "tactical-mems", "--calibration", "1 h", "--navigation", "10 min"];
     ended(octant_in(folder.path(), &[&["new", "mems.toml"][..], &options].concat()), 0);
     let file = folder.path().join("mems.toml");
     let text = std::fs::read_to_string(&file).unwrap();

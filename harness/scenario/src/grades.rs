@@ -141,8 +141,8 @@ static TACTICAL_MEMS: GradeSheet = GradeSheet {
     ],
     without_flicker: &[
         "Bias instability (1/f noise) of the data sheet, left out here: the filter has no state for it, so that",
-        "its standard deviations would be too small by an order of magnitude, and the core refuses such a",
-        "calibration. Take the # before the two keys away to see it.",
+        "its standard deviations would be too small by an order of magnitude, and the core refuses nearly every",
+        "such calibration. Take the # before the two keys away to see it.",
     ],
     prior: &[
         ("gyro_bias", r#""5 deg/h""#),
