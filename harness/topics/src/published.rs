@@ -182,7 +182,7 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
                     "done_percent": state.done().map(|done| done * 100.0),
                     "mode": output.mode.name(),
                     "mode_number": output.mode as u8,
-                    "stop": output.stop + 1,
+                    "stop": u32::from(output.stop) + 1,
                     "position": position(state, output),
                     "moving": output.moving,
                     "health": output.health.iter().map(octant_score::health::name).collect::<Vec<_>>(),
