@@ -10,6 +10,8 @@ use octant_sample::{
     Reference, Sample, Status,
 };
 use octant_source::Epoch;
+use octant_topics::about::About;
+use octant_topics::publishing;
 use proptest::prelude::*;
 use std::io::{self, Write};
 
@@ -66,7 +68,7 @@ fn output() -> impl Strategy<Value = Output> {
         prop::array::uniform11(bits()),
         any::<[i32; 2]>(),
         any::<u32>(),
-        any::<u16>(),
+        prop_oneof![any::<u16>(), Just(u16::MAX)],
         0..5usize,
         any::<bool>(),
     )
@@ -117,9 +119,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn what_is_written_is_read_bit_for_bit(steps in prop::collection::vec(step(), 1..40), block in 1usize..9) {
-        let (bytes, summary) =
-            record(&steps, &RecorderOptions { epochs_per_block: block, ..full() });
+    fn what_is_written_is_read_bit_for_bit(
+        steps in prop::collection::vec(step(), 1..40), block in 1usize..9, publishes in any::<bool>(),
+    ) {
+        let about = About { sample_period_ns: Some(PERIOD_NS), ..About::default() };
+        let publishing = publishes.then(|| publishing(about, 1));
+        let options = RecorderOptions { epochs_per_block: block, publishing, ..full() };
+        let (bytes, summary) = record(&steps, &options);
         let mut epochs = Epochs::new(Recording::new(&bytes[..]).unwrap());
         for step in &steps {
             let read = epochs.next_epoch().unwrap().unwrap();

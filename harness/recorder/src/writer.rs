@@ -28,7 +28,7 @@ use super::{
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Mode, NavigationCovariance, Output};
+use octant_sample::{Aiding, Epoch, Mode, NavigationCovariance, Output, Sample};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
@@ -71,11 +71,24 @@ pub(super) struct RecordingWriter<W: Write> {
     published: Option<Published>,
 }
 
+/// A frame of a block, without its additions.
+struct BlockFrame<'a> {
+    sample: &'a Sample,
+    output: &'a Output,
+    /// Epoch of the source, if another one reached the core.
+    clean: Option<&'a Epoch>,
+    aiding: Option<&'a Aiding>,
+    on_grid: bool,
+    /// True if nothing reached the core.
+    is_lost: bool,
+    /// Time of the step, if another frame of it came before.
+    step_ns: Option<u64>,
+}
+
 impl<W: Write> RecordingWriter<W> {
     /// Writes everything that comes before the first epoch.
     pub(super) fn new(inner: W, options: &RecorderOptions) -> Result<Self, RecorderError> {
         let (sink, written) = Sink::new(inner);
-        let policy = options.policy;
         let fail = |error| error_of(error, &written);
         let mut mcap = mcap::WriteOptions::new()
             .profile("octant")
@@ -90,23 +103,11 @@ impl<W: Write> RecordingWriter<W> {
             .disable_seeking(true)
             .create(NoSeek::new(BufWriter::new(sink)))
             .map_err(fail)?;
-        let mut format = BTreeMap::from([
-            ("version".into(), FORMAT_VERSION.to_string()),
-            ("octant".into(), env!("CARGO_PKG_VERSION").into()),
-            ("samples".into(), policy.samples.name().into()),
-            ("period_ns".into(), policy.period_ns.to_string()),
-            ("parameters_period_ns".into(), policy.parameters_period_ns.to_string()),
-            ("log_time".into(), "simulated time, ns since the start of the run".into()),
-            (
-                "clean".into(),
-                "/imu/clean and /aiding/clean hold only what differs from /imu and /aiding".into(),
-            ),
-        ]);
-        if let Some(publishing) = &options.publishing {
-            format.insert("topics_period_ns".into(), publishing.period_ns.to_string());
-        }
-        mcap.write_metadata(&Metadata { name: FORMAT_METADATA.into(), metadata: format })
-            .map_err(fail)?;
+        mcap.write_metadata(&Metadata {
+            name: FORMAT_METADATA.into(),
+            metadata: format_metadata(options),
+        })
+        .map_err(fail)?;
         mcap.write_metadata(&Metadata {
             name: RUN_METADATA.into(),
             metadata: options.metadata.clone(),
@@ -138,7 +139,7 @@ impl<W: Write> RecordingWriter<W> {
             written,
             channels,
             counts: [0; Topic::ALL.len()],
-            policy,
+            policy: options.policy,
             bytes: Vec::with_capacity(1024),
             last_flush: Instant::now(),
             dirty: false,
@@ -198,55 +199,61 @@ impl<W: Write> RecordingWriter<W> {
             else {
                 break;
             };
-            let clean = altered.next_if(|(at, _)| *at == position).map(|(_, epoch)| epoch);
-            let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
-            let on_grid = due.next_if(|at| **at == position).is_some();
-            let keep = on_grid || self.policy.samples == Samples::Full;
-
-            let lost = lost.next_if(|at| **at == position).is_some();
-            let step = added.next_if(|(at, _)| *at == position).map(|(_, step_ns)| *step_ns);
-            self.last_time_ns =
-                step.unwrap_or_else(|| clean.map_or(sample, |epoch| &epoch.sample).device_time.ns);
-            self.last_sequence = sample.sequence;
-            self.last_kept = keep;
-            if keep && !lost {
-                let changes_mode = self.mode != Some(output.mode);
-                if let Some(published) = &mut self.published {
-                    published.decide(self.last_time_ns, on_grid, changes_mode);
-                }
-            }
-            if let Some(epoch) = clean {
-                if keep && (lost || epoch.sample != *sample) {
-                    message::encode_sample(&epoch.sample, &mut self.bytes);
-                    self.put(Topic::ImuClean)?;
-                }
-                if epoch.aiding.as_ref().map(message::aiding_bits)
-                    != aiding.map(message::aiding_bits)
-                {
-                    message::encode_aiding(epoch.aiding.as_ref(), &mut self.bytes);
-                    self.put(Topic::AidingClean)?;
-                }
-            }
-            if lost {
-                continue;
-            }
-            if let Some(aiding) = aiding {
-                message::encode_aiding(Some(aiding), &mut self.bytes);
-                self.put(Topic::Aiding)?;
-            }
-            if keep {
-                message::encode_sample(sample, &mut self.bytes);
-                self.put(Topic::Imu)?;
-                self.tell(|_| Item::Sample(*sample))?;
-                message::encode_output(output, &mut self.bytes);
-                self.put(Topic::Output)?;
-                self.tell(|_| Item::Output(*output))?;
-            }
-            if self.mode != Some(output.mode) {
-                self.mode_changed(output)?;
-            }
-            self.revision = output.parameters_revision;
+            self.frame(&BlockFrame {
+                sample,
+                output,
+                clean: altered.next_if(|(at, _)| *at == position).map(|(_, epoch)| epoch),
+                aiding: aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding),
+                on_grid: due.next_if(|at| **at == position).is_some(),
+                is_lost: lost.next_if(|at| **at == position).is_some(),
+                step_ns: added.next_if(|(at, _)| *at == position).map(|(_, step_ns)| *step_ns),
+            })?;
         }
+        Ok(())
+    }
+
+    /// Writes the data of a frame that the policy keeps, without its additions.
+    #[inline]
+    fn frame(&mut self, frame: &BlockFrame<'_>) -> Result<(), RecorderError> {
+        let BlockFrame { sample, output, clean, aiding, on_grid, is_lost, step_ns } = *frame;
+        let keep = on_grid || self.policy.samples == Samples::Full;
+        self.last_time_ns =
+            step_ns.unwrap_or_else(|| clean.map_or(sample, |epoch| &epoch.sample).device_time.ns);
+        self.last_sequence = sample.sequence;
+        self.last_kept = keep;
+        if let Some(epoch) = clean {
+            if keep && (is_lost || epoch.sample != *sample) {
+                message::encode_sample(&epoch.sample, &mut self.bytes);
+                self.put(Topic::ImuClean)?;
+            }
+            if epoch.aiding.as_ref().map(message::aiding_bits) != aiding.map(message::aiding_bits) {
+                message::encode_aiding(epoch.aiding.as_ref(), &mut self.bytes);
+                self.put(Topic::AidingClean)?;
+            }
+        }
+        if is_lost {
+            return Ok(());
+        }
+        if let Some(aiding) = aiding {
+            message::encode_aiding(Some(aiding), &mut self.bytes);
+            self.put(Topic::Aiding)?;
+        }
+        let changes_mode = self.mode != Some(output.mode);
+        if keep {
+            if let Some(published) = &mut self.published {
+                published.decide(self.last_time_ns, on_grid, changes_mode);
+            }
+            message::encode_sample(sample, &mut self.bytes);
+            self.put(Topic::Imu)?;
+            self.tell(|_| Item::Sample(*sample))?;
+            message::encode_output(output, &mut self.bytes);
+            self.put(Topic::Output)?;
+            self.tell(|_| Item::Output(*output))?;
+        }
+        if changes_mode {
+            self.mode_changed(output)?;
+        }
+        self.revision = output.parameters_revision;
         Ok(())
     }
 
@@ -379,6 +386,27 @@ impl<W: Write> RecordingWriter<W> {
         })?;
         Ok((counts, written.load(Ordering::Relaxed)))
     }
+}
+
+/// Metadata about the format of a recording.
+fn format_metadata(options: &RecorderOptions) -> BTreeMap<String, String> {
+    let policy = &options.policy;
+    let mut metadata = BTreeMap::from([
+        ("version".into(), FORMAT_VERSION.to_string()),
+        ("octant".into(), env!("CARGO_PKG_VERSION").into()),
+        ("samples".into(), policy.samples.name().into()),
+        ("period_ns".into(), policy.period_ns.to_string()),
+        ("parameters_period_ns".into(), policy.parameters_period_ns.to_string()),
+        ("log_time".into(), "simulated time, ns since the start of the run".into()),
+        (
+            "clean".into(),
+            "/imu/clean and /aiding/clean hold only what differs from /imu and /aiding".into(),
+        ),
+    ]);
+    if let Some(publishing) = &options.publishing {
+        metadata.insert("topics_period_ns".into(), publishing.period_ns.to_string());
+    }
+    metadata
 }
 
 fn error_of(error: mcap::McapError, written: &AtomicU64) -> RecorderError {

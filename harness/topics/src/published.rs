@@ -4,7 +4,7 @@ use super::state::RunState;
 use octant_recorder::Event;
 use octant_recorder::further::FurtherChannel;
 use octant_recorder::reader::Item;
-use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_sample::parameters::{NAMES, ParameterEstimate, ParameterGroup};
 use octant_sample::{Mode, Output};
 use serde_json::{Map, Value, json};
 
@@ -182,7 +182,7 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
                     "done_percent": state.done().map(|done| done * 100.0),
                     "mode": output.mode.name(),
                     "mode_number": output.mode as u8,
-                    "stop": output.stop + 1,
+                    "stop": u32::from(output.stop) + 1,
                     "position": position(state, output),
                     "moving": output.moving,
                     "health": output.health.iter().map(octant_score::health::name).collect::<Vec<_>>(),
@@ -220,17 +220,7 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
             }
         }
         Item::Parameters(_, estimate) => {
-            let values = estimate.parameters.to_array();
-            let mut message = Map::new();
-            for (i, name) in NAMES.iter().enumerate() {
-                let unit = ParameterGroup::of(i).si_per_unit();
-                // A parameter that isn't estimated has a value and no σ.
-                let sigma = Some(estimate.sigma[i] / unit).filter(|sigma| *sigma > 0.0);
-                let sigma = sigma.and_then(finite);
-                let value = json!({ "value": finite(values[i] / unit), "sigma": sigma });
-                message.insert((*name).to_owned(), value);
-            }
-            publish(PublishedChannel::Parameters, message.into());
+            publish(PublishedChannel::Parameters, parameters(estimate));
         }
         Item::Event(event) => match event {
             Event::Pace(_) => {
@@ -258,6 +248,21 @@ pub fn messages(state: &RunState, item: &Item, mut publish: impl FnMut(Published
         | Item::Innovation(..)
         | Item::Covariance(..) => {}
     }
+}
+
+/// Builds the message of the parameters.
+fn parameters(estimate: &ParameterEstimate) -> Value {
+    let values = estimate.parameters.to_array();
+    let mut message = Map::new();
+    for (i, name) in NAMES.iter().enumerate() {
+        let unit = ParameterGroup::of(i).si_per_unit();
+        // A parameter that isn't estimated has a value and no σ.
+        let sigma = Some(estimate.sigma[i] / unit).filter(|sigma| *sigma > 0.0);
+        let sigma = sigma.and_then(finite);
+        let value = json!({ "value": finite(values[i] / unit), "sigma": sigma });
+        message.insert((*name).to_owned(), value);
+    }
+    message.into()
 }
 
 /// Builds the message of all faults.
