@@ -3,7 +3,7 @@
 use super::chart::{Band, Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
-use octant_score::summary::{AllanDeviation, AxisAllan, NoiseTermScore, SensorAllan, Summary};
+use octant_score::summary::{AxisAllan, NoiseTermScore, SensorAllan, Summary};
 use octant_score::work::duration;
 
 /// Terms in the order of their slopes, with their titles.
