@@ -4,7 +4,6 @@ use super::chart::{Band, Chart, ChartLine, ChartRole};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_score::summary::{AxisAllan, NoiseTermScore, SensorAllan, Summary};
-use octant_score::work::duration;
 
 /// Terms in the order of their slopes, with their titles.
 const TERMS: [(&str, &str); 5] = [
@@ -30,7 +29,7 @@ pub(super) fn allan(summary: &Summary) -> Markup {
         p.hint {
             "Allan deviation of the samples as the source delivered them, before faults: "
             (number::counted(allan.stretches, "stretch", "stretches")) " with the gimbals at rest, "
-            (duration(allan.at_rest_s)) " together, the longest " (duration(allan.longest_s))
+            (time(allan.at_rest_s)) " together, the longest " (time(allan.longest_s))
             ". Differences are taken within a stretch, so that Earth's rate, gravity and biases cancel. Band: interval \
             of 95 %."
             @if fitted { " Dotted: sum of the fitted terms." }
@@ -56,6 +55,12 @@ pub(super) fn allan(summary: &Summary) -> Markup {
             @for (name, sensor, _) in sensors { (table(name, sensor, truth)) }
         }
     }
+}
+
+/// Formats a length of time with three digits.
+fn time(time_s: f64) -> String {
+    let (value, unit) = if time_s < 3600.0 { (time_s, "s") } else { (time_s / 3600.0, "h") };
+    format!("{} {unit}", number::plain(value, 3))
 }
 
 /// Names the axes whose curve isn't that of the terms.

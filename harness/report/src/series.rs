@@ -1,7 +1,8 @@
 //! Series of bounded length that keep every extreme, for the plots of a run.
 
-/// Most buckets; when they are full, neighbours are merged. A day at 1 Hz has buckets of 43 to 86 s.
-const BUCKETS_MAX: usize = 2000;
+/// Largest number of stretches by default; when they are full, neighbours are merged. A day at 1 Hz has
+/// stretches of 43 to 86 s.
+const STRETCHES_MAX: usize = 2000;
 /// Columns of a row.
 pub const COLUMNS: usize = 5;
 
@@ -15,14 +16,27 @@ struct Stretch {
 
 /// Errors of attitude and velocity over a part of a run, as extremes of equal stretches of time. Memory
 /// doesn't grow with its length.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SolutionSeries {
     stretches: Vec<Stretch>,
+    most: usize,
     per_stretch: u64,
     in_last: u64,
 }
 
+impl Default for SolutionSeries {
+    fn default() -> Self {
+        Self::of_stretches(STRETCHES_MAX)
+    }
+}
+
 impl SolutionSeries {
+    /// Creates a series of at most this number of stretches, an even one.
+    #[must_use]
+    pub fn of_stretches(most: usize) -> Self {
+        Self { stretches: Vec::new(), most, per_stretch: 0, in_last: 0 }
+    }
+
     /// Takes the errors at one time: heading, pitch and roll of the case, arcmin, and velocity north and
     /// east, m/s; NaN where they aren't known. `hours` is the time since the start of the series.
     pub fn push(&mut self, hours: f64, errors: [f64; COLUMNS]) {
@@ -36,11 +50,11 @@ impl SolutionSeries {
             self.in_last += 1;
             return;
         }
-        if self.stretches.len() == BUCKETS_MAX {
+        if self.stretches.len() == self.most {
             self.halve();
         }
         if self.stretches.is_empty() {
-            self.stretches.reserve_exact(BUCKETS_MAX);
+            self.stretches.reserve_exact(self.most);
             self.per_stretch = 1;
         }
         self.stretches.push(Stretch { hours, low: errors, high: errors });
@@ -49,7 +63,7 @@ impl SolutionSeries {
 
     /// Merges every second stretch with the one before it.
     fn halve(&mut self) {
-        for i in 0..BUCKETS_MAX / 2 {
+        for i in 0..self.most / 2 {
             let (mut merged, later) = (self.stretches[2 * i], self.stretches[2 * i + 1]);
             for column in 0..COLUMNS {
                 merged.low[column] = merged.low[column].min(later.low[column]);
@@ -57,7 +71,7 @@ impl SolutionSeries {
             }
             self.stretches[i] = merged;
         }
-        self.stretches.truncate(BUCKETS_MAX / 2);
+        self.stretches.truncate(self.most / 2);
         self.per_stretch *= 2;
     }
 
@@ -90,7 +104,7 @@ mod tests {
             series.push(f64::from(k) / 3600.0, [spike, 0.0, f64::NAN, f64::from(k), 1.0]);
         }
         let points = series.points(0);
-        assert!(points.len() <= 2 * BUCKETS_MAX, "{}", points.len());
+        assert!(points.len() <= 2 * STRETCHES_MAX, "{}", points.len());
         let spike = points.iter().find(|p| p[1] == -9.0).copied().unwrap_or_default();
         assert!((spike[0] - 777_777.0 / 3600.0).abs() < 1024.0 / 3600.0, "{spike:?}");
         assert!(series.points(2).is_empty());

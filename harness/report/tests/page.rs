@@ -45,7 +45,7 @@ fn convergence() -> Vec<ParameterPoint> {
 
 /// Errors that settle within the first half hour.
 fn calibration_errors() -> SolutionSeries {
-    let mut errors = SolutionSeries::default();
+    let mut errors = SolutionSeries::of_stretches(500);
     for k in 0..(3600.0 * CALIBRATION_H) as usize {
         let hours = k as f64 / 3600.0;
         let settling = 5.0 * (-8.0 * hours).exp() + 0.1 * chance(k / 600);

@@ -63,7 +63,13 @@ pub fn instrument_noise(scenario: &Scenario) -> Option<InstrumentNoise> {
 }
 
 /// Increments of a sample, gyros first.
-type Increments = [i32; 6];
+type Increments = [[i32; 3]; 2];
+
+/// Increments as the channels of an estimate.
+#[inline(always)]
+fn channels([[x, y, z], [u, v, w]]: &Increments) -> [f64; 6] {
+    [*x, *y, *z, *u, *v, *w].map(f64::from)
+}
 
 /// Finds the stretches at rest, and keeps their Allan variance.
 #[derive(Debug)]
@@ -108,7 +114,7 @@ impl Ring {
     /// Creates a ring of blocks.
     fn new(block: usize, blocks: usize) -> Self {
         Self {
-            samples: vec![[0; 6]; block * blocks],
+            samples: vec![[[0; 3]; 2]; block * blocks],
             sums: vec![[0.0; 6]; blocks],
             block,
             at: 0,
@@ -121,8 +127,9 @@ impl Ring {
         let number = self.end / self.block - 1;
         let mut sum = [0.0; 6];
         for sample in &self.samples[self.end - self.block..self.end] {
+            let sample = channels(sample);
             for channel in 0..6 {
-                sum[channel] += f64::from(sample[channel]);
+                sum[channel] += sample[channel];
             }
         }
         self.sums[number] = sum;
@@ -185,9 +192,8 @@ impl AtRest {
     /// Takes the next sample of the source.
     #[inline]
     pub fn push(&mut self, sample: &Sample) {
-        let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
         let at = self.ring.at;
-        self.ring.samples[at] = [x, y, z, u, v, w];
+        self.ring.samples[at] = [sample.delta_theta, sample.delta_velocity];
         self.ring.at = at + 1;
         self.flags |= sample.status;
         if at + 1 == self.ring.end {
@@ -252,7 +258,7 @@ impl AtRest {
         let (sum, samples) = self.ring.oldest();
         self.coarse.push(&sum);
         if self.counted.is_multiple_of(FINE_EVERY) && samples.len() > 1 {
-            samples.iter().for_each(|sample| self.fine.push(&sample.map(f64::from)));
+            samples.iter().for_each(|sample| self.fine.push(&channels(sample)));
             self.fine.end_stretch();
         }
         self.counted += 1;

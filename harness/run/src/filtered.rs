@@ -10,9 +10,11 @@ use octant_score::attitude::CaseAngles;
 
 /// Number of points of σ over a calibration.
 const SIGMA_POINTS: u64 = 400;
+/// Largest number of stretches whose extremes are kept of the errors.
+const ERROR_STRETCHES: usize = 500;
 
 /// Series of one calibration by a filter.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FilteredSeries {
     /// Errors over the hours of the run.
     pub errors: SolutionSeries,
@@ -35,7 +37,13 @@ impl FilteredSeries {
         }?;
         let filters = matches!(calibration.estimator, Estimator::Kalman(_));
         let period_ns = (calibration.duration_s * 1e9) as u64 / SIGMA_POINTS;
-        filters.then(|| Self { period_ns, ..Self::default() })
+        filters.then(|| Self {
+            errors: SolutionSeries::of_stretches(ERROR_STRETCHES),
+            sigma: Vec::new(),
+            period_ns,
+            next_ns: 0,
+            last_ns: None,
+        })
     }
 
     /// Takes the rows of σ out, for the summary.

@@ -12,6 +12,9 @@ pub(super) const LEFT: f64 = 52.0;
 /// Width of a digit in the labels, px, with reserve for wide fonts.
 const GLYPH: f64 = 7.0;
 
+/// Room beside the points of an axis of decades, decades.
+const DECADE_ROOM: f64 = 0.08;
+
 /// Formats ticks of y with their labels.
 fn labelled(ticks: Vec<f64>, logarithmic: bool) -> Vec<(f64, String)> {
     let decimals = ticks.get(1).map_or(0, |second| {
@@ -50,7 +53,10 @@ impl Frame {
         let x = span(all.iter().map(|p| p.0))?;
         let levels = chart.levels.iter().map(|l| l.0).filter(|y| usable(*y));
         let needed = span(all.iter().map(|p| p.1).chain(levels))?;
-        let x = if chart.paired { [x[0] - 0.5, x[1] + 0.5] } else { x };
+        // Points at the ends have room for their dots.
+        let room =
+            if chart.paired { 0.5 } else { f64::from(u8::from(chart.decades)) * DECADE_ROOM };
+        let x = [x[0] - room, x[1] + room];
         if x[1] <= x[0] {
             return None;
         }

@@ -37,6 +37,8 @@ class Plot {
     }
     const all = [...data.lines, ...data.bands].filter((one) => one.x.length > 0);
     this.span = [Math.min(...all.map((one) => one.x[0])), Math.max(...all.map((one) => one.x.at(-1)))];
+    // Points at the ends have room for their dots.
+    if (data.decades) this.span = [this.span[0] - 0.08, this.span[1] + 0.08];
     this.data = data;
     this.build();
   }
