@@ -1001,9 +1001,9 @@ class ProcedureNavigation(Section):
     dwell: str
     """Rest at each stop of weight 1; the move to the next stop comes on top. Takes a time such as "12 h".
     Default: "300 s"."""
-    rotation: Literal["sixteen", "none"] | Sequence[Mapping[str, Any]]
-    """Rotation while navigating: a named scheme, or stops that are repeated. Takes one of "sixteen", "none", or
-    an array of tables with azimuth, roll, weight. Default: "sixteen"."""
+    rotation: Literal["sixteen", "tetrahedral", "none"] | Sequence[Mapping[str, Any]]
+    """Rotation while navigating: a named scheme, or stops that are repeated. Takes one of "sixteen",
+    "tetrahedral", "none", or an array of tables with azimuth, roll, weight. Default: "sixteen"."""
 
 class Procedure(Section):
     """What the core does: align, calibrate, navigate. Takes a table with alignment, calibration, navigation,
