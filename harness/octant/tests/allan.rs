@@ -16,9 +16,8 @@ seed = 5
 [imu]
 rate = "50 Hz"
 [imu.extensions]
-gyro_rate_random_walk = "0.02 deg/h/sqrt(h)"
-gyro_quantization = "0.02 arcsec"
-accel_bias_instability = "20 ug"
+gyro_quantization = "0.01 arcsec"
+accel_bias_instability = "8 ug"
 [procedure.calibration]
 duration = "2 h"
 stops = [
@@ -66,11 +65,10 @@ fn the_noise_of_a_run_is_that_of_its_instrument() {
     // deg/h and µg, from the definitions of IEEE Std 952.
     let gyro = |tau: f64| {
         let walk = 0.0007 * 60.0 / tau.sqrt();
-        let quantization = 3.0f64.sqrt() * 0.02 / 12.0f64.sqrt() / tau;
-        let rate = 0.02 / 60.0 * (tau / 3.0).sqrt();
-        (walk * walk + quantization * quantization + rate * rate).sqrt()
+        let quantization = 3.0f64.sqrt() * 0.01 / 12.0f64.sqrt() / tau;
+        (walk * walk + quantization * quantization).sqrt()
     };
-    let accelerometer = |tau: f64| (2500.0 / tau + 2.0 * LN_2 / PI * 400.0).sqrt();
+    let accelerometer = |tau: f64| (2500.0 / tau + 2.0 * LN_2 / PI * 64.0).sqrt();
     for axis in ["x", "y", "z"] {
         for (sensor, truth) in
             [("gyro", &gyro as &dyn Fn(f64) -> f64), ("accelerometer", &accelerometer)]
@@ -92,9 +90,9 @@ fn the_noise_of_a_run_is_that_of_its_instrument() {
         let terms = |sensor: &str, term: &str| allan[sensor][axis]["terms"][term].clone();
         for (sensor, term, truth, unit) in [
             ("gyro", "random_walk", 0.0007, "deg/sqrt(h)"),
-            ("gyro", "quantization", 0.02 / 12.0f64.sqrt(), "arcsec"),
+            ("gyro", "quantization", 0.01 / 12.0f64.sqrt(), "arcsec"),
             ("accelerometer", "random_walk", 50.0, "ug/sqrt(Hz)"),
-            ("accelerometer", "bias_instability", 20.0, "ug"),
+            ("accelerometer", "bias_instability", 8.0, "ug"),
         ] {
             let found = terms(sensor, term);
             assert_eq!(found["unit"], unit);

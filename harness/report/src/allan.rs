@@ -30,8 +30,8 @@ pub(super) fn allan(summary: &Summary) -> Markup {
             "Allan deviation of the samples as the source delivered them, before faults: "
             (number::counted(allan.stretches, "stretch", "stretches")) " with the gimbals at rest, "
             (time(allan.at_rest_s)) " together, the longest " (time(allan.longest_s))
-            ". Differences are taken within a stretch, so that Earth's rate, gravity and biases cancel. Band: interval \
-            of 95 %."
+            ". Differences are taken within a stretch, so that Earth's rate, gravity and biases cancel."
+            @if !allan.base_moves { " Band: interval of 95 %." }
             @if fitted { " Dotted: sum of the fitted terms." }
             @if fitted && truth { " Grey: the same terms of the scenario's instrument." }
         }
@@ -42,7 +42,8 @@ pub(super) fn allan(summary: &Summary) -> Markup {
         @for (name, sensor, is_gyro) in sensors {
             div.multiples {
                 @for (axis_name, axis) in sensor.axes() {
-                    (chart(&format!("{name} {axis_name}, {}", sensor.unit), axis, is_gyro))
+                    @let title = format!("{name} {axis_name}, {}", sensor.unit);
+                    (chart(&title, axis, (is_gyro, allan.base_moves)))
                 }
             }
         }
@@ -82,18 +83,21 @@ fn misfits(sensors: &[(&str, &SensorAllan, bool)]) -> Markup {
     }
 }
 
-fn chart(title: &str, axis: &AxisAllan, is_gyro: bool) -> Markup {
+/// Draws an axis. The interval is that of noise; a motion has none.
+fn chart(title: &str, axis: &AxisAllan, (is_gyro, moves): (bool, bool)) -> Markup {
     let mut chart = Chart::new(title, "averaging time, s", title);
     (chart.width, chart.height) = (360.0, 230.0);
     (chart.hours, chart.decades, chart.logarithmic) = (false, true, true);
     (chart.legend, chart.dots) = (false, true);
     let place = libm::log10;
     let rows = || axis.series.iter().filter(|row| row[1] > 0.0);
-    chart.bands.push(Band {
-        label: "interval of 95 %".to_owned(),
-        role: ChartRole::Primary,
-        points: rows().map(|[tau_s, _, low, high, _]| [place(*tau_s), *low, *high]).collect(),
-    });
+    if !moves {
+        chart.bands.push(Band {
+            label: "interval of 95 %".to_owned(),
+            role: ChartRole::Primary,
+            points: rows().map(|[tau_s, _, low, high, _]| [place(*tau_s), *low, *high]).collect(),
+        });
+    }
     let curve = |coefficient: fn(&NoiseTermScore) -> Option<f64>| -> Vec<[f64; 2]> {
         let (Some(first), Some(last)) = (rows().next(), rows().last()) else { return Vec::new() };
         let steps = (libm::log2(last[0] / first[0]) * f64::from(STEPS)) as u32;

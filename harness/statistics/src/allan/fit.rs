@@ -14,7 +14,8 @@
 //! about the minimum is more than χ² of one degree of freedom: in simulations its mean is 1.8 to 2.7 for
 //! quantization, random walk and bias instability, 2.9 to 4.0 for the rate random walk. Intervals and
 //! decisions take 2.5 and 4 ([`shared`]). A term is resolved if the interval of 95 % of its coefficient
-//! excludes zero; the others leave the fit, the least needed first, and get an upper bound of 95 %.
+//! excludes zero; the others leave the fit, the least needed first, and get an upper bound of 95 %. A few
+//! stretches of a rate random walk look like a ramp: a ramp leaves first unless it is needed beside it.
 
 use super::freedom::{DifferenceCounts, interval};
 use super::term::NoiseTerm;
@@ -300,21 +301,32 @@ impl Fitting {
         let mut free: Vec<usize> = terms.iter().map(|term| *term as usize).collect();
         free.sort_unstable();
         free.dedup();
-        let mut best = self.fit(&free, None)?;
-        while free.len() > 1 {
-            let without = |left_out: &usize| {
-                let others: Vec<usize> = free.iter().copied().filter(|i| i != left_out).collect();
-                let found = self.fit(&others, None)?;
-                let rise = (found.deviance - best.deviance) / shared(NoiseTerm::ALL[*left_out]);
-                Some((rise, others, found))
-            };
-            let least = free.iter().filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0));
-            match least {
-                Some((rise, others, found)) if rise < TWO_SIDED => (free, best) = (others, found),
+        let best = self.fit(&free, None)?;
+        let mut chosen = Chosen { free, best };
+        let ramp = NoiseTerm::RateRamp as usize;
+        if chosen.free.len() > 1
+            && chosen.free.contains(&ramp)
+            && let Some((rise, without)) = self.without(&chosen, ramp)
+            && rise < TWO_SIDED
+        {
+            chosen = without;
+        }
+        while chosen.free.len() > 1 {
+            let all = chosen.free.iter().filter_map(|index| self.without(&chosen, *index));
+            match all.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                Some((rise, without)) if rise < TWO_SIDED => chosen = without,
                 _ => break,
             }
         }
-        Some(Chosen { free, best })
+        Some(chosen)
+    }
+
+    /// Leaves a term out; returns by how much the deviance rises, as χ², and the rest.
+    fn without(&self, chosen: &Chosen, index: usize) -> Option<(f64, Chosen)> {
+        let free: Vec<usize> = chosen.free.iter().copied().filter(|i| *i != index).collect();
+        let best = self.fit(&free, None)?;
+        let rise = (best.deviance - chosen.best.deviance) / shared(NoiseTerm::ALL[index]);
+        Some((rise, Chosen { free, best }))
     }
 
     /// Adds intervals to the resolved terms, and bounds to the others.
