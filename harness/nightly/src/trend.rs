@@ -206,11 +206,11 @@ mod tests {
             |measure, median, p95| chart(&line(measure, median, p95), None, &units).into_string();
         // 90′ are 1.5°; 1852 m in an hour are a knot.
         let heading = shown("navigation.heading_error_arcmin.rms", 90.0, 180.0);
-        assert!(heading.contains("median 1.5, 95th percentile 3, in one night"), "{heading}");
+        assert!(heading.contains("median 1.500, 95th percentile 3.000, in one night"), "{heading}");
         let velocity = shown("navigation.velocity_east_error_mps.rms", 1852.0 / 3600.0, 5.0);
-        assert!(velocity.contains("median 1, 95th percentile 9.719,"), "{velocity}");
+        assert!(velocity.contains("median 1.000, 95th percentile 9.719,"), "{velocity}");
         let longitude = shown("navigation.longitude_error_arcmin.rms", 2.0, 3.0);
-        assert!(longitude.contains("median 2, 95th percentile 3,"), "{longitude}");
+        assert!(longitude.contains("median 2.000, 95th percentile 3.000,"), "{longitude}");
     }
 
     #[test]

@@ -300,7 +300,8 @@ fn a_comparison_in_other_units_is_converted_and_concludes_the_same() {
     let text = observed(&["--units", "m,deg"]);
     for (name, metres) in [("latitude", 1847.681_861), ("longitude", 1599.982_122)] {
         let row = one.drift.iter().find(|row| row.name.starts_with(name)).unwrap();
-        let line = text.lines().find(|line| line.trim_start().starts_with(&row.name));
+        // The table is below the conclusion, which names what differs.
+        let line = text.lines().rfind(|line| line.trim_start().starts_with(&row.name));
         let line = line.unwrap_or_else(|| panic!("no {} in {text}", row.name));
         let predicted = octant_base::number::significant(row.predicted_sigma * metres, 4);
         assert!(line.contains(&format!(" {predicted} ")) && line.contains("  m"), "{line}");

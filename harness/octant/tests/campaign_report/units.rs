@@ -154,7 +154,7 @@ fn a_limit_of_longitude_is_a_distance_where_all_cases_have_one_site() {
     two.octant(&["campaign", "report", "out", "--units", "nmi"]);
     let (found, row, stays) = limit(&two);
     assert_eq!((found.as_str(), stays), ("20 arcmin", true));
-    assert!(row.contains("10 arcmin"), "{row}");
+    assert!(row.contains("10.0 arcmin"), "{row}");
     assert!(two.read("report.html").contains("Longitude error, nmi"));
 }
 
