@@ -58,7 +58,7 @@ pub(super) fn text() -> String {
     let _ = writeln!(text, "GROUP: {groups}");
     let _ = writeln!(text, "\nneeds:");
     for need in MeasureNeed::ALL {
-        let _ = writeln!(text, "  {:14} {}", need.name(), need.meaning());
+        let _ = writeln!(text, "  {:15} {}", need.name(), need.meaning());
     }
     let second: BTreeSet<String> = all()
         .iter()
@@ -68,7 +68,7 @@ pub(super) fn text() -> String {
     let second: Vec<String> = second.into_iter().collect();
     let _ = writeln!(
         text,
-        "\nThe second method has {} too, as baseline.navigation.radial_error_nmi.max.\n\
+        "\nThe second method has the measures of {} too, as baseline.navigation.radial_error_nmi.max.\n\
          A limit is a plain number in the unit, or a quantity; unit 1: a plain number. A measure with ± can be \
          negative:\nbars about it take its magnitude, \"|calibration.parameters.g_zz.error|\".",
         second.join(", ")
@@ -124,7 +124,7 @@ mod tests {
         assert!(line("navigation.radial_error_nmi.rate_per_h").contains(" nmi/h "));
         assert!(!text.lines().any(|line| line.starts_with("baseline.")));
         assert!(text.contains(
-            "The second method has alignment, calibration, counterfactual, done, navigation"
+            "The second method has the measures of alignment, calibration, counterfactual, done"
         ));
     }
 }

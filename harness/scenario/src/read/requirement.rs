@@ -234,6 +234,7 @@ mod tests {
 
     #[test]
     fn a_measure_names_its_unit() {
+        let all = measures::all();
         let unit = |measure| unit_of(measure).map(|(unit, _)| unit);
         assert_eq!(unit("navigation.longitude_error_arcmin.max"), Some("arcmin"));
         assert_eq!(unit("navigation.latitude_error_arcmin.slope_per_day"), Some("arcmin/day"));
