@@ -252,7 +252,6 @@ mod tests {
         assert_eq!(limit_of("navigation.duration_h", "1 day"), Ok(24.0));
         assert_eq!(limit_of("pacing.device_clock.skew_ppm", "20 ppm"), Ok(20.0));
         // Every unit that a measure has is one of quantities.
-        let all = measures::all();
         for entry in all.iter().filter(|entry| entry.unit != "1") {
             assert_eq!(unit(&entry.measure), Some(entry.unit), "{}", entry.measure);
             assert_eq!(limit_of(&entry.measure, &format!("2 {}", entry.unit)), Ok(2.0));
