@@ -1,6 +1,6 @@
 //! Measures that a requirement can have: the numbers of the summary, by their paths.
 //!
-//! [`tree`] declares each of them once, with unit, meaning, sign and conditions. Readers of requirements
+//! `tree` declares each of them once, with unit, meaning, sign and conditions. Readers of requirements
 //! check paths and limits against it, and `octant requirements measures` lists it.
 
 mod method;
