@@ -70,9 +70,9 @@ fn the_noise_of_a_run_is_that_of_its_instrument() {
     };
     let accelerometer = |tau: f64| (2500.0 / tau + 2.0 * LN_2 / PI * 64.0).sqrt();
     for axis in ["x", "y", "z"] {
-        for (sensor, truth) in
-            [("gyro", &gyro as &dyn Fn(f64) -> f64), ("accelerometer", &accelerometer)]
-        {
+        let truths: [(&str, &dyn Fn(f64) -> f64); 2] =
+            [("gyro", &gyro), ("accelerometer", &accelerometer)];
+        for (sensor, truth) in truths {
             let rows = series(&summary, sensor, axis);
             assert!(rows.len() >= 15, "{} octaves", rows.len());
             for row in &rows {

@@ -261,6 +261,5 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
     assert!((0.92..0.995).contains(&found[2]), "rate random walk {found:?}");
     // Three terms of each record aren't there; an interval of 95 % excludes zero in 5 % of all cases.
     let resolved = share(false_terms, 3 * records);
-    println!("covered {found:?}, resolved without being there {resolved}");
     assert!(resolved < 0.05, "terms that aren't there: {resolved}");
 }
