@@ -151,8 +151,16 @@ fn a_run_by_the_clock_over_a_port_shows_its_lateness_over_the_run() {
         let out = endpoint.trim_end_matches([':', '0']);
         let patient = ["--set", "endpoint.link.answer=30 s", "--realtime"];
         let words = [&["--endpoint", &served.uri], &patient[..]].concat();
-        assert_eq!(bench.hash(out, &words), expected, "{endpoint}");
-        let pacing = &bench.summary(out)["pacing"];
+        // On a busy host answers are late, and the run is inconclusive; its commands are late too then, and its hash
+        // is another one.
+        let output = bench.run(&bench.scenario, out, &words);
+        let summary = bench.summary(out);
+        match output.status.code() {
+            Some(0) => assert_eq!(summary["stream_hash"], *expected, "{endpoint}"),
+            Some(3) => assert_eq!(summary["verdict"], "inconclusive", "{endpoint}"),
+            _ => panic!("{endpoint}: {output:?}"),
+        }
+        let pacing = &summary["pacing"];
         assert_eq!(pacing["frames"], 600);
         let over = &pacing["lateness_over_run"];
         let list = |name: &str| -> Vec<u64> {
