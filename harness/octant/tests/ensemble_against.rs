@@ -300,7 +300,7 @@ fn a_comparison_in_other_units_is_converted_and_concludes_the_same() {
     let json = |more: &[&str]| observed(&[&["--json"], more].concat());
     assert_eq!(json(&[]), json(&["--units", "km,deg"]), "units are display only");
     let text = observed(&["--units", "m,deg"]);
-    for (name, metres) in [("latitude", 1847.681_861), ("longitude", 1599.982_122)] {
+    for (name, metres) in [("latitude", 1_847.681_861), ("longitude", 1_599.982_122)] {
         let row = one.drift.iter().find(|row| row.name.starts_with(name)).unwrap();
         let line = text.lines().find(|line| {
             // Of the table, not of the sentences below it.
