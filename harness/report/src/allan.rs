@@ -99,7 +99,9 @@ fn chart(title: &str, axis: &AxisAllan, (is_gyro, moves): (bool, bool)) -> Marku
         });
     }
     let curve = |coefficient: fn(&NoiseTermScore) -> Option<f64>| -> Vec<[f64; 2]> {
-        let (Some(first), Some(last)) = (rows().next(), rows().next_back()) else { return Vec::new() };
+        let (Some(first), Some(last)) = (rows().next(), rows().next_back()) else {
+            return Vec::new();
+        };
         let steps = (libm::log2(last[0] / first[0]) * f64::from(STEPS)) as u32;
         let at = |step: u32| {
             let tau_s = first[0] * libm::exp2(f64::from(step) / f64::from(STEPS));
