@@ -13,7 +13,7 @@
 //! Octaves of one record share its samples, and the deviance counts them as independent. So its rise
 //! about the minimum is more than χ² of one degree of freedom: in simulations its mean is 1.8 to 2.7 for
 //! quantization, random walk and bias instability, 2.9 to 4.0 for the rate random walk. Intervals and
-//! decisions take 2.5 and 4 ([`shared`]). A term is resolved if the interval of 95 % of its coefficient
+//! decisions take 2.5 and 4 (`shared`). A term is resolved if the interval of 95 % of its coefficient
 //! excludes zero; the others leave the fit, the least needed first, and get an upper bound of 95 %. A few
 //! stretches of a rate random walk look like a ramp: a ramp leaves first unless it is needed beside it.
 
