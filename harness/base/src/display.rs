@@ -154,7 +154,7 @@ impl std::fmt::Display for UnitChoice {
         .into_iter()
         .flatten()
         .collect();
-        // Of position and of attitude.
+        // Position and attitude can have the same unit.
         names.dedup();
         f.write_str(&names.join(","))
     }

@@ -303,7 +303,7 @@ fn a_comparison_in_other_units_is_converted_and_concludes_the_same() {
     for (name, metres) in [("latitude", 1_847.681_861), ("longitude", 1_599.982_122)] {
         let row = one.drift.iter().find(|row| row.name.starts_with(name)).unwrap();
         let line = text.lines().find(|line| {
-            // Of the table, not of the sentences below it.
+            // Rows of the table only: the conclusion below it names the same quantities.
             line.trim_start().starts_with(&row.name) && !line.contains("predicted and")
         });
         let line = line.unwrap_or_else(|| panic!("no {} in {text}", row.name));

@@ -351,7 +351,7 @@ mod tests {
         assert!(found.octaves[0].variance[0] > 0.0);
     }
 
-    /// What a gyro sees of a move must not get into the variance: its counts are 10⁵ times the scatter.
+    /// Rotation during a move must not enter the variance: its counts are 10⁵ times the scatter.
     #[test]
     fn a_move_leaves_no_trace() {
         let (mut source, mut rest) = (Source::new(), AtRest::new(PERIOD_NS, false));

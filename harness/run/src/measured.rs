@@ -1,4 +1,4 @@
-//! What the filter tells about the measurement that an output has a NIS of.
+//! Innovation and covariance that go with the NIS of an output.
 
 use octant_endpoint::Endpoint;
 use octant_sample::{Innovation, NavigationCovariance, Output};

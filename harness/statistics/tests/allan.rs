@@ -195,8 +195,8 @@ fn a_sensor_without_noise_has_no_terms() {
     assert_eq!(analyse(&points[..2], &NoiseTerm::ALL).fit, None);
 }
 
-/// What the intervals promise, over records of white noise with a random walk in twelve stretches: the
-/// deviations, the coefficients, and the terms that aren't there.
+/// Coverage of the 95 % intervals, over records of white noise with a rate random walk in twelve stretches:
+/// deviations, coefficients, and terms that aren't there.
 #[test]
 fn intervals_cover_the_truth_as_often_as_they_say() {
     const SEEDS: u64 = 150;

@@ -54,7 +54,7 @@ impl std::fmt::Display for Broke {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     pub(super) output: Output,
-    /// What the filter tells, if there was a measurement.
+    /// Innovation and covariance, if there was a measurement.
     pub(super) measured: Measured,
     /// Parameters, if they are new.
     pub(super) estimate: Option<ParameterEstimate>,
@@ -62,7 +62,7 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// What the filter tells and the parameters that came with the output.
+    /// Innovation, covariance and parameters that go with the output.
     pub(super) fn additions(&self) -> (&Measured, Option<&ParameterEstimate>) {
         (&self.measured, self.estimate.as_ref())
     }

@@ -280,7 +280,7 @@ impl Fitting {
             if some.iter().any(|i| !(solution[*i] > 0.0)) {
                 continue;
             }
-            // What the sum of squares loses: the larger, the better.
+            // Reduction of the sum of squares: the larger, the better.
             let gain: f64 = some.iter().map(|i| right[*i] * solution[*i]).sum();
             if best.as_ref().is_none_or(|(most, _)| gain > *most) {
                 best = Some((gain, solution));
