@@ -3,6 +3,7 @@
 use super::at_rest::instrument_noise;
 use super::findings::findings;
 use super::method::MethodRun;
+use super::rotation::leaves_g_zz_alone;
 use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
 use octant_base::display::DisplayUnits;
@@ -97,6 +98,8 @@ pub fn assemble_with(
     let g_zz = |run: &MethodRun| {
         run.watcher.last_parameters.map(|estimate| estimate.parameters.g_dependent[8])
     };
+    // Under another rotation the drift has other elements of G, and no reference that is told as that of g_zz.
+    let g_zz_alone = scenario.navigation.as_ref().is_none_or(|n| leaves_g_zz_alone(&n.rotation));
     let references = reference(&ReferenceInput {
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
@@ -108,7 +111,7 @@ pub fn assemble_with(
         velocity_random_walk: scenario.imu.velocity_random_walk,
         calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
         navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s),
-        true_g_zz: primary.truth.map(|truth| truth.g_dependent[8]),
+        true_g_zz: primary.truth.filter(|_| g_zz_alone).map(|truth| truth.g_dependent[8]),
         estimated_g_zz: g_zz(&primary),
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
