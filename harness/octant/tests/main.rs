@@ -77,6 +77,7 @@ mod recording_other_readers;
 mod rejudge;
 mod replay;
 mod report;
+mod rotation_reference;
 mod scenario_errors;
 mod scenario_files;
 mod scenario_schema;
