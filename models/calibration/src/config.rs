@@ -57,6 +57,23 @@ pub enum Alignment {
         /// Averaging time, s.
         duration_s: f64,
     },
+    /// Turn of gravity in the inertial frame over the first seconds of the first stop: the base may
+    /// turn, and the filter starts with the σ that this leaves.
+    Inertial {
+        /// Time of the alignment, s.
+        duration_s: f64,
+    },
+}
+
+impl Alignment {
+    /// Time that the core aligns for, s; `None` where it doesn't.
+    #[must_use]
+    pub fn duration_s(&self) -> Option<f64> {
+        match *self {
+            Self::Given { .. } => None,
+            Self::Coarse { duration_s } | Self::Inertial { duration_s } => Some(duration_s),
+        }
+    }
 }
 
 /// A calibration through a position sequence.

@@ -17,6 +17,7 @@
 //! | [`continuity`] | discontinuities of rates, by spikes too small to show in a single sample |
 //! | [`compensation`] | subtracting the estimated errors |
 //! | [`alignment`] | the first attitude, from gravity and Earth rate |
+//! | [`inertial_alignment`] | the same on a base that may turn: from the way in which gravity turns |
 //! | [`strapdown`] | attitude, velocity and position from increments |
 //! | [`error_model`] | growth of errors: phi-angle and psi-angle form (paper, eq. 1 to 3) |
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
@@ -37,6 +38,7 @@ pub mod drift;
 pub mod error_model;
 pub mod external_turntable;
 pub mod filter;
+pub mod inertial_alignment;
 pub mod least_squares;
 pub mod monitor;
 pub mod positions;

@@ -3,6 +3,7 @@
 
 mod alignment;
 mod external_turntable;
+mod inertial_alignment;
 mod instrument;
 mod jacobian;
 mod least_squares;

@@ -56,6 +56,10 @@ pub fn put(config: &CoreConfig, values: &mut CellValues) {
             values.set_real(slot::ALIGNMENT_DURATION, *duration_s);
             1
         }
+        Alignment::Inertial { duration_s } => {
+            values.set_real(slot::ALIGNMENT_DURATION, *duration_s);
+            2
+        }
     };
     values.set_integer(slot::ALIGNMENT_METHOD, choice);
     values.set_boolean(slot::CALIBRATION, calibration.is_some());
@@ -93,6 +97,7 @@ pub fn config(values: &CellValues) -> Result<CoreConfig, CalibratorValueError> {
                 velocity_mps: Vector3::from(values.reals(slot::ALIGNMENT_VELOCITY)),
             },
             1 => Alignment::Coarse { duration_s: values.real(slot::ALIGNMENT_DURATION) },
+            2 => Alignment::Inertial { duration_s: values.real(slot::ALIGNMENT_DURATION) },
             _ => return Err(no_item(slot::ALIGNMENT_METHOD, values)),
         },
         calibration: values.boolean(slot::CALIBRATION).then(|| calibration(values)).transpose()?,

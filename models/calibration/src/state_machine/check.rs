@@ -1,6 +1,7 @@
 //! Checks of a configuration before a core is made from it.
 
 use crate::config::{AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator};
+use crate::inertial_alignment::SHORTEST_S;
 use crate::schedule::DoesNotFit;
 
 /// Longest calibration or navigation, s: thirty years. Its number of ticks is small enough for all
@@ -62,10 +63,14 @@ pub enum CoreConfigError {
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::AdjustmentRefusal),
-    /// Coarse alignment takes longer than the instrument rests.
-    #[error(
-        "coarse alignment takes {alignment_s} s, and the first stop is held for {dwell_s} s only"
-    )]
+    /// Too short for an alignment in the inertial frame.
+    #[error("inertial alignment takes {found_s} s, at least {SHORTEST_S} s are expected")]
+    Short {
+        /// Value found, s.
+        found_s: f64,
+    },
+    /// The alignment takes longer than the instrument rests.
+    #[error("the alignment takes {alignment_s} s, and the first stop is held for {dwell_s} s only")]
     Alignment {
         /// Time of the alignment, s.
         alignment_s: f64,
@@ -142,8 +147,15 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
     }
     positive("turntable rate", config.turntable.rate_radps)?;
     positive("turntable acceleration", config.turntable.acceleration_radps2)?;
-    if let Alignment::Coarse { duration_s } = config.alignment {
-        duration("coarse alignment duration", duration_s)?;
+    match config.alignment {
+        Alignment::Given { .. } => {}
+        Alignment::Coarse { duration_s } => duration("coarse alignment duration", duration_s)?,
+        Alignment::Inertial { duration_s } => {
+            duration("inertial alignment duration", duration_s)?;
+            if duration_s < SHORTEST_S {
+                return Err(CoreConfigError::Short { found_s: duration_s });
+            }
+        }
     }
     if let Some(calibration) = &config.calibration {
         duration("calibration duration", calibration.duration_s)?;

@@ -1,5 +1,6 @@
 //! The estimator that runs, and its input beside the samples.
 
+use super::aligning::prior_after_alignment;
 use crate::config::{Calibration, CoreConfig, Estimator};
 use crate::external_turntable::ExternalTurntableEstimator;
 use crate::filter::CalibrationFilter;
@@ -25,7 +26,7 @@ impl Estimation {
     ) -> Result<Self, AdjustmentRefusal> {
         Ok(match &calibration.estimator {
             Estimator::Kalman(kalman) => Self::Kalman(CalibrationFilter::new(
-                kalman,
+                &prior_after_alignment(config, kalman),
                 &config.site,
                 &config.noise,
                 &config.screening,

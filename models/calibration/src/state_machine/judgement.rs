@@ -106,6 +106,9 @@ pub enum CalibrationRefusal {
     /// A number of the filter is not finite.
     #[error("the covariance is not finite")]
     Numeric,
+    /// The alignment in the inertial frame found no attitude that can be trusted.
+    #[error("{0}")]
+    Inertial(#[from] crate::inertial_alignment::AlignmentRefusal),
 }
 
 /// Quality of a filter's calibration so far.

@@ -1,5 +1,6 @@
 //! The procedure: alignment, calibration through the stops, compensation, navigation.
 
+mod aligning;
 mod bridge;
 mod check;
 mod disturbance;
@@ -17,12 +18,12 @@ mod step;
 mod stretch;
 mod uncertainty;
 
+pub use aligning::prior_after_alignment;
 pub use check::CoreConfigError;
 pub use judgement::CalibrationRefusal;
 #[cfg(feature = "state")]
 pub use state::FORMAT as STATE_FORMAT;
 
-use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, Site};
 use crate::continuity::{Continuity, POINTS, block_ticks};
@@ -33,6 +34,7 @@ use crate::schedule::{Cursor, dwell_s};
 use crate::screen::Screen;
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Quality};
+use aligning::Aligning;
 use disturbance::Disturbance;
 use estimation::{Estimation, Standstill};
 use judgement::quality_of;
@@ -101,7 +103,7 @@ pub struct Core {
     disturbance: Option<Disturbance>,
     /// Turn and velocity beyond the known motion in the last blocks, the newest first.
     recent: [(Vector3<f64>, Vector3<f64>); POINTS],
-    alignment: Option<(CoarseAlignment, u64)>,
+    alignment: Option<(Aligning, u64)>,
     estimation: Estimation,
     standstill: Standstill,
     parameters: Parameters,
@@ -155,14 +157,13 @@ impl Core {
     pub fn new(config: &CoreConfig) -> Result<Self, CoreConfigError> {
         check::check(config)?;
         let sample_s = config.sample_period_ns as f64 * 1e-9;
-        let (q_nb, velocity, alignment) = match &config.alignment {
-            Alignment::Given { q_nb, velocity_mps } => (*q_nb, *velocity_mps, None),
-            Alignment::Coarse { duration_s } => (
-                UnitQuaternion::identity(),
-                Vector3::zeros(),
-                Some((CoarseAlignment::new(&config.site), ticks(*duration_s, sample_s))),
-            ),
+        let (q_nb, velocity) = match &config.alignment {
+            Alignment::Given { q_nb, velocity_mps } => (*q_nb, *velocity_mps),
+            Alignment::Coarse { .. } | Alignment::Inertial { .. } => {
+                (UnitQuaternion::identity(), Vector3::zeros())
+            }
         };
+        let alignment = Aligning::new(config).map(|(aligning, s)| (aligning, ticks(s, sample_s)));
         let sqrt_s = libm::sqrt(sample_s);
         let sigmas =
             (config.noise.angle_random_walk * sqrt_s, config.noise.velocity_random_walk * sqrt_s);
@@ -229,7 +230,7 @@ impl Core {
         let home = GimbalAngles::default();
         let sequence = calibration.sequence.clone();
         let cursor = Cursor::new(sequence, home, rates, dwell, self.sample_s, false);
-        if let Alignment::Coarse { duration_s: alignment_s } = self.config.alignment {
+        if let Some(alignment_s) = self.config.alignment.duration_s() {
             let dwell_s = cursor.departure_s();
             if cursor.arrival_s() > 0.0 || alignment_s > dwell_s {
                 return Err(CoreConfigError::Alignment { alignment_s, dwell_s });

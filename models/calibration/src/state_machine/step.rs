@@ -160,11 +160,11 @@ impl Core {
             return;
         }
         match alignment.finish() {
-            Some(q_nb) => {
+            Ok(q_nb) => {
                 self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
                 self.leave_alignment();
             }
-            None => self.refuse(CalibrationRefusal::Alignment),
+            Err(refusal) => self.refuse(refusal),
         }
     }
 

@@ -21,6 +21,7 @@ enumerations! {
     pub ALIGNMENT "AlignmentMethod" "How the initial attitude is found." {
         0 given "Attitude and velocity are handed over.";
         1 coarse "Gravity and Earth rate averaged over the first seconds of the first stop.";
+        2 inertial "Turn of gravity in the inertial frame: the base may turn meanwhile.";
     }
     /// Sequences of a calibration; the named ones are those of [`octant_calibration::positions`].
     pub POSITIONS "Positions" "Sequence of positions of a calibration." {

@@ -91,7 +91,7 @@ const ALIGNMENT: [DeclaredVariable; 4] = variables! {
         "How the initial attitude is found.";
     parameter("procedure.alignment.duration", Real) of(&q::TIME) min(0.0) nominal(60.0)
         start(&[60.0]):
-        "How long a coarse alignment averages, above 0. The first stop has to be at azimuth 0 and \
+        "How long a coarse or inertial alignment takes, above 0 and 10 s. The first stop has to be at azimuth 0 and \
          roll 0, and to be held for so long.";
     parameter("procedure.alignment.attitude", Real) elements(4) within(-1.0, 1.0) nominal(1.0)
         start(&[1.0, 0.0, 0.0, 0.0]):
