@@ -144,6 +144,8 @@ use_fmus() {
   "${zig[@]}" -target x86_64-linux-gnu.2.17 -o "$work/fmu/x86_64" "$source" -ldl
   "${zig[@]}" -target aarch64-linux-gnu.2.17 -o "$work/fmu/aarch64" "$source" -ldl
   "${zig[@]}" -target x86_64-windows-gnu -o "$work/fmu/windows.exe" "$source"
+  # Beside the program, where Windows looks first; Wine 9 and later have their own.
+  "${zig[@]}" -target x86_64-windows-gnu -shared -o "$work/fmu/bcryptprimitives.dll" tests/rigs/fmu/bcryptprimitives.c -ladvapi32
   loop() {
     local platform=$1 extension=$2
     shift 2

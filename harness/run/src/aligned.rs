@@ -1,31 +1,22 @@
 //! Results of the alignment: reference, duration, solution with its σ.
 
 use super::watch::Watcher;
-use octant_calibration::config::{Estimator, Kalman};
+use octant_calibration::config::{Estimator, Prior};
 use octant_calibration::covariance::SolutionCovariance;
-use octant_scenario::{AlignmentSpec, Method, MotionSpec, Scenario};
+use octant_scenario::{AlignmentSpec, MotionSpec, Scenario};
 use octant_score::alignment::SolutionUncertainty;
 use octant_score::summary::{AlignmentReference, AlignmentResult, SolutionScore};
 
 /// Builds the result of a method's alignment; `None` if the unit never had an attitude.
-pub(super) fn alignment(
-    scenario: &Scenario,
-    method: Method,
-    watcher: &Watcher,
-) -> Option<AlignmentResult> {
+pub(super) fn alignment(scenario: &Scenario, watcher: &Watcher) -> Option<AlignmentResult> {
     let point = watcher.aligned.as_ref()?;
-    let calibration = match method {
-        Method::Primary => scenario.calibration.as_ref(),
-        Method::Baseline => scenario.baseline.as_ref(),
-    };
-    let prior = calibration.and_then(|calibration| match &calibration.estimator {
-        Estimator::Kalman(kalman) => Some(prior_of(kalman)),
-        Estimator::LeastSquares(_) | Estimator::ExternalTurntable(_) => None,
-    });
+    let prior = watcher.prior.as_ref().map(prior_of);
     Some(AlignmentResult {
         reference: match scenario.alignment {
             AlignmentSpec::Given { .. } => AlignmentReference::External,
-            AlignmentSpec::Coarse { .. } => AlignmentReference::Static,
+            AlignmentSpec::Coarse { .. } | AlignmentSpec::Inertial { .. } => {
+                AlignmentReference::Static
+            }
         },
         duration_s: watcher.alignment_s()?,
         solution: SolutionScore::of(point, prior.as_ref()),
@@ -33,12 +24,12 @@ pub(super) fn alignment(
 }
 
 /// Uncertainty with which the filter takes over from the alignment.
-fn prior_of(kalman: &Kalman) -> SolutionUncertainty {
+fn prior_of(prior: &Prior) -> SolutionUncertainty {
     let mut phi = [[0.0; 3]; 3];
-    for (axis, sigma) in kalman.prior.attitude_rad.iter().enumerate() {
+    for (axis, sigma) in prior.attitude_rad.iter().enumerate() {
         phi[axis][axis] = sigma * sigma;
     }
-    SolutionUncertainty { phi, velocity_mps: [kalman.prior.velocity_mps; 2] }
+    SolutionUncertainty { phi, velocity_mps: [prior.velocity_mps; 2] }
 }
 
 /// Uncertainty at the end of a calibration.

@@ -1,8 +1,9 @@
 //! Counts the completed work of a run from its stream, and takes the planned work from its
 //! scenario.
 
-use octant_calibration::config::{CoreConfig, Estimator, StaticIntervals};
+use octant_calibration::config::{CoreConfig, Estimator, Prior, StaticIntervals};
 use octant_calibration::schedule::{Cursor, dwell_s};
+use octant_calibration::state_machine::prior_after_alignment;
 use octant_endpoint::Tells;
 use octant_sample::{GimbalAngles, Mode, Output};
 use octant_scenario::{CalibrationSpec, Method, Scenario};
@@ -23,6 +24,8 @@ pub struct PlannedWork {
     pub work: Work,
     stops: Vec<PlannedStop>,
     alignment_s: f64,
+    /// Standard deviations with which a filter takes over from the alignment.
+    prior: Option<Prior>,
     period_ns: u64,
     /// Quantities that the unit reports; `None`: not known, and its answers aren't checked against
     /// its input.
@@ -36,6 +39,21 @@ struct PlannedStop {
 }
 
 impl PlannedWork {
+    /// Angles of azimuth and roll at which the gimbals stand through the whole calibration, rad; `None` where
+    /// they move, or aren't commanded.
+    #[must_use]
+    pub fn standing_rad(&self) -> Option<[f64; 2]> {
+        let first = self.stops.first()?.target;
+        let standing = self.stops.iter().all(|stop| stop.target == first);
+        standing.then(|| [first.azimuth_rad(), first.roll_rad()])
+    }
+
+    /// Standard deviations with which a filter takes over from the alignment, where one runs.
+    #[must_use]
+    pub fn prior(&self) -> Option<&Prior> {
+        self.prior.as_ref()
+    }
+
     /// Returns the quantities that the unit reports, where they are known.
     #[must_use]
     pub fn tells(&self) -> Option<Tells> {
@@ -79,11 +97,13 @@ impl PlannedWork {
             references: calibration.and_then(|c| references(c, core.sample_period_ns)),
             navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s.or(left_s)),
         };
-        let alignment_s = match core.alignment {
-            octant_calibration::config::Alignment::Given { .. } => 0.0,
-            octant_calibration::config::Alignment::Coarse { duration_s } => duration_s,
+        let alignment_s = core.alignment.duration_s().unwrap_or(0.0);
+        let prior = match core.calibration.as_ref().map(|calibration| &calibration.estimator) {
+            Some(Estimator::Kalman(kalman)) => Some(prior_after_alignment(core, kalman).prior),
+            _ => None,
         };
-        Self { work, stops, alignment_s, period_ns: core.sample_period_ns, tells: Some(tells) }
+        let period_ns = core.sample_period_ns;
+        Self { work, stops, alignment_s, prior, period_ns, tells: Some(tells) }
     }
 }
 

@@ -443,7 +443,7 @@ pub(super) fn finish(
     Ok(MethodRun {
         label: scenario.method_label(method),
         ended,
-        alignment: aligned::alignment(scenario, method, &watcher),
+        alignment: aligned::alignment(scenario, &watcher),
         calibration,
         navigation,
         recorder,

@@ -56,6 +56,10 @@ pub struct Watcher {
     /// Device time of the last sample of the drift.
     scored_ns: Option<u64>,
     last_ns: u64,
+    /// Angles at which the gimbals stand, where encoders don't tell, rad.
+    standing_rad: Option<[f64; 2]>,
+    /// Standard deviations with which a filter takes over from the alignment.
+    pub prior: Option<octant_calibration::config::Prior>,
     tells: Tells,
     check: AnswerCheck,
     follow: RunFollower,
@@ -129,6 +133,8 @@ impl Watcher {
             navigation_start_ns: None,
             scored_ns: None,
             last_ns: 0,
+            prior: plan.prior().copied(),
+            standing_rad: plan.standing_rad(),
             tells: plan.tells().unwrap_or(Tells::ALL),
             check: AnswerCheck::new(),
             follow: RunFollower::new(plan.tells()),
@@ -273,9 +279,15 @@ impl Watcher {
     #[cold]
     fn note(&mut self, sent: &Epoch, output: &Output) {
         let sample = &sent.sample;
-        let known = self.tells.attitude && !sample.status.contains(Status::GIMBAL_INVALID);
-        let gimbal_rad = [sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()];
-        let attitude = known.then(|| CaseAngles::of(output.navigation.q_nb, gimbal_rad));
+        let gimbal_rad = if sample.status.contains(Status::GIMBAL_INVALID) {
+            // Without encoders, as an instrument is that stands alone.
+            self.standing_rad
+        } else {
+            Some([sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()])
+        };
+        let attitude = gimbal_rad
+            .filter(|_| self.tells.attitude)
+            .map(|gimbal_rad| CaseAngles::of(output.navigation.q_nb, gimbal_rad));
         let point = Some(SolutionPoint { attitude, ..SolutionPoint::default() });
         match self.moment {
             Some(Moment::Aligned) => self.aligned = point,

@@ -7,6 +7,7 @@ use super::keys::{
     Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
 };
 use super::quantity::{self, UnitDimension};
+use super::recorded::NO_TIME;
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
 /// kind are left for the check.
@@ -164,6 +165,12 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
             &["tilt", "azimuth", "velocity", "attitude_error", "velocity_error"],
             "without effect with method = \"coarse\"",
         );
+    } else if is("procedure.alignment.method", "inertial") {
+        add(
+            "procedure.alignment",
+            &["tilt", "azimuth", "velocity", "attitude_error", "velocity_error"],
+            "without effect with method = \"inertial\"",
+        );
     } else {
         add("procedure.alignment", &["duration"], "without effect with method = \"given\"");
     }
@@ -193,6 +200,9 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
     let uri = text(document, "source.uri").unwrap_or_default();
     if !uri.starts_with("text:") {
         add("source", &["text"], "without effect: source.uri is not text:FILE");
+    }
+    if is("source.text.time_column", NO_TIME) {
+        add("source.text", &["time_unit"], "without effect with time_column = \"none\"");
     }
     if !uri.starts_with("replay:") {
         add("source", &["mcap"], "without effect: source.uri is not replay:FILE");

@@ -25,6 +25,9 @@ pub enum RecordedColumn {
     Name(String),
 }
 
+/// Column of the time stamp of rows that have none: they follow each other at the nominal rate.
+pub(crate) const NO_TIME: &str = "none";
+
 /// A column with its conversion to SI: `(value − offset) · scale`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisColumn {

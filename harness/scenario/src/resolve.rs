@@ -113,7 +113,7 @@ impl DrawnValues {
             }
         }
         let (attitude_error_rad, velocity_error_mps) = match scenario.alignment {
-            AlignmentSpec::Coarse { .. } => ([0.0; 3], [0.0; 3]),
+            AlignmentSpec::Coarse { .. } | AlignmentSpec::Inertial { .. } => ([0.0; 3], [0.0; 3]),
             AlignmentSpec::Given {
                 tilt_rad,
                 azimuth_rad,
@@ -218,6 +218,7 @@ impl Scenario {
             },
             alignment: match self.alignment {
                 AlignmentSpec::Coarse { duration_s } => core::Alignment::Coarse { duration_s },
+                AlignmentSpec::Inertial { duration_s } => core::Alignment::Inertial { duration_s },
                 AlignmentSpec::Given { .. } => core::Alignment::Given {
                     q_nb: with_error(true_q_nb, draws.attitude_error_rad),
                     velocity_mps: true_velocity_mps + Vector3::from(draws.velocity_error_mps),

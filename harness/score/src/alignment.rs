@@ -63,7 +63,7 @@ impl PointScore {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolutionScore {
     /// Computed heading of the case by the gimbals' encoders, deg, −180 to 180; null where the unit
-    /// doesn't tell its attitude, or the gimbal angles aren't known.
+    /// doesn't tell its attitude, or the gimbal angles aren't known: no encoders, and gimbals that move.
     pub heading_deg: Option<f64>,
     /// Computed pitch of the case, deg.
     pub pitch_deg: Option<f64>,

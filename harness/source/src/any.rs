@@ -2,6 +2,7 @@
 
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
+use super::known::KnownReference;
 use super::{Epoch, LiveSource, PlantSource, Replay, Source, SourceError, TextSource};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
@@ -9,7 +10,10 @@ use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 
 /// A source of any kind.
-pub struct AnySource(Kind);
+pub struct AnySource {
+    kind: Kind,
+    known: Option<KnownReference>,
+}
 
 enum Kind {
     Plant(Box<PlantSource>),
@@ -24,7 +28,7 @@ macro_rules! of {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for AnySource {
             fn from(source: $from) -> Self {
-                Self(Kind::$kind(Box::new(source)))
+                Self { kind: Kind::$kind(Box::new(source)), known: None }
             }
         })*
     };
@@ -46,47 +50,59 @@ macro_rules! each {
     };
 }
 
+impl AnySource {
+    /// Adds a reference that the source doesn't bring.
+    #[must_use]
+    pub(super) fn with_reference(self, known: Option<KnownReference>) -> Self {
+        Self { known, ..self }
+    }
+}
+
 impl Source for AnySource {
     fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
-        each!(&mut self.0, source => source.next(command, epoch))
+        let more = each!(&mut self.kind, source => source.next(command, epoch))?;
+        if let Some(known) = self.known.as_mut().filter(|_| more) {
+            epoch.aiding = known.at(epoch.sample.device_time);
+        }
+        Ok(more)
     }
 
     fn truth(&self) -> Option<Truth> {
-        each!(&self.0, source => source.truth())
+        each!(&self.kind, source => source.truth())
     }
 
     fn samples_total(&self) -> Option<u64> {
-        each!(&self.0, source => source.samples_total())
+        each!(&self.kind, source => source.samples_total())
     }
 
     fn samples_planned(&self) -> Option<u64> {
-        each!(&self.0, source => source.samples_planned())
+        each!(&self.kind, source => source.samples_planned())
     }
 
     fn cut_short(&self) -> Option<String> {
-        each!(&self.0, source => source.cut_short())
+        each!(&self.kind, source => source.cut_short())
     }
 
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
-        each!(&mut self.0, source => source.disturbed())
+        each!(&mut self.kind, source => source.disturbed())
     }
 
     fn is_live(&self) -> bool {
-        each!(&self.0, source => source.is_live())
+        each!(&self.kind, source => source.is_live())
     }
 
     fn conclude(
         &mut self,
         broken: Option<&str>,
     ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
-        each!(&mut self.0, source => source.conclude(broken))
+        each!(&mut self.kind, source => source.conclude(broken))
     }
 
     fn ahead(&self) -> Option<Box<dyn Source + Send>> {
-        each!(&self.0, source => source.ahead())
+        each!(&self.kind, source => source.ahead())
     }
 
     fn has_true_parameters(&self) -> bool {
-        each!(&self.0, source => source.has_true_parameters())
+        each!(&self.kind, source => source.has_true_parameters())
     }
 }

@@ -1,5 +1,6 @@
 //! Opens the source of a scenario.
 
+use super::known::KnownReference;
 use super::{AnySource, LiveSource, Replay, SourceError, TextSource};
 use octant_plant::config::PlantConfig;
 use octant_scenario::recorded::{TextFiles, TextMapping};
@@ -25,6 +26,11 @@ pub fn check(scenario: &Scenario, plant: &PlantConfig) -> Result<(), SourceError
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
 pub fn open(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
+    let opened = open_itself(scenario, plant)?;
+    Ok(opened.map(|source| source.with_reference(KnownReference::of(scenario))))
+}
+
+fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
     let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
     match &scenario.source {
         scenario::SourceSpec::Plant => Ok(None),

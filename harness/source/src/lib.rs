@@ -8,6 +8,7 @@ mod fields;
 mod fmu;
 mod foreign;
 mod from_scenario;
+mod known;
 mod live;
 mod plant;
 mod replay;

@@ -30,6 +30,9 @@ pub(super) struct Arguments {
     /// the program.
     #[arg(long, value_name = "FILE")]
     library: Vec<PathBuf>,
+    /// Leave out the inputs and outputs to check a tool with, a quarter of each file and more.
+    #[arg(long)]
+    without_reference: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -53,7 +56,7 @@ impl From<BuildError> for Failure {
 
 /// Runs the command.
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let Arguments { out, scenario, set, target, library, json } = arguments;
+    let Arguments { out, scenario, set, target, library, without_reference, json } = arguments;
     let scenario = match scenario {
         Some(path) => {
             let loaded = Scenario::load(path, set).map_err(Failure::input)?;
@@ -67,6 +70,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         libraries: library.clone(),
         targets: target.clone(),
         scenario,
+        without_reference: *without_reference,
     })?;
     if *json {
         print_json(&Built { files })?;

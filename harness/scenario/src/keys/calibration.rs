@@ -50,14 +50,17 @@ keys! {
 pub(crate) enum AlignmentMethod {
     Given,
     Coarse,
+    Inertial,
 }
 
 keys! {
     /// `[procedure.alignment]`.
     pub(crate) struct AlignmentKeys {
-        method: AlignmentMethod = choice! {
+        method: At<AlignmentMethod> = choice! {
                 "given" => AlignmentMethod::Given, "attitude and velocity are handed over, with an error drawn from the seed";
                 "coarse" => AlignmentMethod::Coarse, "gravity and Earth rate averaged over the first seconds of the first stop";
+                "inertial" => AlignmentMethod::Inertial,
+                    "the way in which gravity turns in the inertial frame over the first seconds of the first stop: the base may turn, and what doesn't fit the latitude is refused";
             }, "given",
             "How the initial attitude is found.";
         tilt: f64
@@ -73,7 +76,8 @@ keys! {
         velocity_error: Option<[f64; 3]>
             = si_array(UnitDimension::VELOCITY), absent("drawn from velocity"),
             "The velocity error itself, north, east, down.";
-        duration: At<f64> = duration(), "60 s", "Coarse alignment: how long to average.";
+        duration: At<f64> = duration(), "60 s",
+            "Coarse and inertial alignment: how long. 300 s and more in the inertial frame, on a ship 600 s.";
     }
 }
 

@@ -42,7 +42,7 @@ pub(crate) use run::{
     RequirementKeys, ScenarioKeys,
 };
 pub(crate) use screening::{GateKeys, ScreeningKeys};
-pub(crate) use source::{McapKeys, SignalKeys, SourceKeys, SourceLiveKeys, TextKeys};
+pub(crate) use source::{KnownMotion, McapKeys, SignalKeys, SourceKeys, SourceLiveKeys, TextKeys};
 pub(crate) use suite::{CaseKeys, SuiteKeys};
 pub(crate) use table::{At, FromTable, Keys, Raw};
 

@@ -38,10 +38,30 @@ keys! {
         fmu: Option<SourceFmuKeys>
             = table::<SourceFmuKeys>(), derived("fmu: the defaults of its keys"),
             "How the FMU of source.uri is run, and what its variables are.";
+        reference: At<Option<SourceReferenceKeys>>
+            = table::<SourceReferenceKeys>(),
+            absent("the source brings its own, or there is none"),
+            "What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP file, an instrument on a port.";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
             derived("serial, udp, can and slcan: the defaults of its keys"),
             "What the instrument of source.uri speaks, and how it is mounted.";
+    }
+}
+
+/// What is known of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum KnownMotion {
+    Static,
+}
+
+keys! {
+    /// `[source.reference]`.
+    pub(crate) struct SourceReferenceKeys {
+        kind: KnownMotion = choice! {
+                "static" => KnownMotion::Static, "the instrument stands at the site: zero velocity and a fixed position, as procedure.calibration.aiding says, whose sigma is the filter's";
+            }, "static",
+            "What is known.";
     }
 }
 
@@ -80,7 +100,8 @@ keys! {
         header: bool = boolean(), "false",
             "Whether the first line after those skipped names the columns.";
         comment: String = text(), "#", "Lines that start with this are skipped.";
-        time_column: At<RecordedColumn> = column(), "1", "Column of the time stamp.";
+        time_column: At<RecordedColumn> = column(), "1",
+            "Column of the time stamp; \"none\": rows without one, which follow each other at the nominal rate.";
         time_unit: TimeUnit = time_unit(), "s", "Unit of the time stamp.";
         gyro: GyroKeys = table(), required, "Columns of the gyros.";
         accelerometer: AccelerometerKeys = table(), required, "Columns of the accelerometers.";

@@ -29,11 +29,27 @@ pub enum AlignmentSpec {
         /// Velocity error, if it isn't drawn, m/s.
         velocity_error_mps: Option<[f64; 3]>,
     },
-    /// The core finds the attitude itself.
+    /// The core finds the attitude itself, from averages.
     Coarse {
         /// Averaging time, s.
         duration_s: f64,
     },
+    /// The core finds the attitude itself, from the way in which gravity turns.
+    Inertial {
+        /// Time of the alignment, s.
+        duration_s: f64,
+    },
+}
+
+impl AlignmentSpec {
+    /// Time that the core aligns for, s; `None` where the attitude is handed over.
+    #[must_use]
+    pub fn duration_s(&self) -> Option<f64> {
+        match *self {
+            Self::Given { .. } => None,
+            Self::Coarse { duration_s } | Self::Inertial { duration_s } => Some(duration_s),
+        }
+    }
 }
 
 /// One method of calibration.

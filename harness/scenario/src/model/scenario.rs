@@ -64,6 +64,8 @@ pub struct Scenario {
     pub record: RecordSpec,
     /// Source of the samples.
     pub source: SourceSpec,
+    /// Reference that the scenario knows and the source doesn't.
+    pub known_reference: Option<octant_sample::Reference>,
     /// Place of the core.
     pub endpoint: EndpointSpec,
     /// Pacing by the clock.

@@ -12,6 +12,7 @@ use crate::keys::{
 use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
 use crate::quantity::{self, UnitDimension};
 use octant_calibration::config as core;
+use octant_calibration::inertial_alignment::SHORTEST_S;
 use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_calibration::table::CalibrationTable;
@@ -73,7 +74,7 @@ fn alignment(
     keys: &AlignmentKeys,
     calibration: Option<&CalibrationSpec>,
 ) -> Result<AlignmentSpec, Problem> {
-    if keys.method == AlignmentMethod::Given {
+    if *keys.method == AlignmentMethod::Given {
         return Ok(AlignmentSpec::Given {
             tilt_rad: keys.tilt,
             azimuth_rad: keys.azimuth,
@@ -102,7 +103,16 @@ fn alignment(
             )));
         }
     }
-    Ok(AlignmentSpec::Coarse { duration_s })
+    if *keys.method == AlignmentMethod::Coarse {
+        return Ok(AlignmentSpec::Coarse { duration_s });
+    }
+    if duration_s < SHORTEST_S {
+        return Err(keys.duration.problem(format!(
+            "found {:?}, expected {SHORTEST_S} s at least with method = \"inertial\"",
+            keys.duration.text
+        )));
+    }
+    Ok(AlignmentSpec::Inertial { duration_s })
 }
 
 fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, Problem> {

@@ -5,7 +5,7 @@ use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
 use crate::model::{FileName, SourceSpec};
 use crate::recorded::{
-    AxisColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, RecordedColumn,
+    AxisColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, NO_TIME, RecordedColumn,
     RecordedQuantity, TextFiles, TextMapping, TimeColumn,
 };
 use std::path::PathBuf;
@@ -68,7 +68,10 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     let accelerometer = sensor(columns, accelerometer.signal())?;
     same_quantity(quantity, other)?;
     check_rate(&keys.rate, keys.split, sample_period_ns)?;
-    let time = TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit };
+    let time = match &*keys.time_column {
+        RecordedColumn::Name(name) if name == NO_TIME => None,
+        _ => Some(TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit }),
+    };
     let gimbal = keys.gimbal.as_ref().map(|gimbal| {
         let scale = unit_si(&gimbal.unit)?;
         let axis = |key| Ok(AxisColumn { column: column(key)?, offset: 0.0, scale });
@@ -76,7 +79,7 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     });
     Ok(TextMapping {
         files,
-        time: Some(time),
+        time,
         gyro,
         accelerometer,
         quantity,

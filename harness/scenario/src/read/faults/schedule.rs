@@ -4,7 +4,7 @@ use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
 use crate::keys::{At, Counted, TriggerKeys};
-use crate::model::{AlignmentSpec, CalibrationSpec, Fault, Method, Scenario};
+use crate::model::{CalibrationSpec, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
@@ -168,7 +168,7 @@ impl<'a> Timing<'a> {
             _ => return Ok(()),
         };
         let there = match mode {
-            Mode::Aligning => matches!(self.scenario.alignment, AlignmentSpec::Coarse { .. }),
+            Mode::Aligning => self.scenario.alignment.duration_s().is_some(),
             Mode::Calibrating => self.scenario.calibration.is_some(),
             _ => self.scenario.navigation.is_some(),
         };
@@ -280,11 +280,9 @@ impl<'a> Timing<'a> {
 
     /// First epoch of a mode.
     fn start(&self, mode: Mode) -> u64 {
-        match (mode, self.scenario.alignment) {
+        match (mode, self.scenario.alignment.duration_s()) {
             (Mode::Navigating, _) => self.calibration_samples,
-            (Mode::Calibrating, AlignmentSpec::Coarse { duration_s }) => {
-                self.grid.of_time(duration_s)
-            }
+            (Mode::Calibrating, Some(duration_s)) => self.grid.of_time(duration_s),
             _ => 0,
         }
     }
