@@ -81,7 +81,7 @@ def run_and_kill(folder, part, dice, kills):
             [OCTANT, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         try:
-            campaign.wait(dice.uniform(0.2, 5.0))
+            campaign.wait(dice.uniform(0.2, 3.0))
             check(f"part {part} is there to be killed", False, "it had ended")
         except subprocess.TimeoutExpired:
             campaign.send_signal(signal.SIGINT if dice.random() < 0.3 else signal.SIGKILL)

@@ -67,6 +67,7 @@ mod new_scenario;
 mod nightly;
 mod own_sequences;
 mod qualification;
+mod real_chain;
 mod real_recording;
 mod realtime;
 mod recorded_topics;

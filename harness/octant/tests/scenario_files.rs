@@ -22,12 +22,13 @@ fn both_configurations(scenario: &Scenario) -> String {
     let core = |method| scenario.core(method, &draws, &scenario.mean_attitude(), &Vector3::zeros());
     // Debug prints every field, and floats so that they read back to the same bits.
     format!(
-        "{plant:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+        "{plant:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         core(Method::Primary),
         core(Method::Baseline),
         scenario.requirements,
         scenario.record,
         scenario.source,
+        scenario.known_reference,
         scenario.endpoint
     )
 }
@@ -120,7 +121,8 @@ fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
             .to_owned(),
         "[source]\nuri = \"text:data/gyro.csv\"\n[source.text]\ndelimiter = \"comma\"\nheader = true\n\
          [source.text.gyro]\nx = \"gx\"\ny = 3\nz = 4\nunit = \"deg/s\"\naxes = [\"y\", \"x\", \"-z\"]\n\
-         [source.text.accelerometer]\nfile = \"/data/a.csv\"\nx = 2\ny = 3\nz = 4\nunit = \"g\"\n"
+         [source.text.accelerometer]\nfile = \"/data/a.csv\"\nx = 2\ny = 3\nz = 4\nunit = \"g\"\n\
+         [source.reference]\n"
             .to_owned(),
         "[source]\nuri = \"fmu:/data/imu.fmu\"\n[source.fmu]\ninterface = \"model-exchange\"\n\
          time_limit = \"3 s\"\nstep = \"1 ms\"\ntolerance = 1e-7\n\

@@ -92,15 +92,21 @@ const TESTABLE_COUNTS: f64 = 20.0;
 
 impl Monitor {
     /// Makes a monitor for samples of this period, noise (1σ of an increment, rad and m/s) and
-    /// number of identical counts in a row that make a channel stuck.
+    /// number of identical counts in a row that make a channel stuck. Pulses of a `resolution` (rad
+    /// and m/s) that is coarser than the noise repeat by themselves: the triad isn't tested.
     #[must_use]
-    pub fn new(period_ns: u64, sigmas: (f64, f64), stuck_samples: Option<u32>) -> Self {
+    pub fn new(
+        period_ns: u64,
+        sigmas: (f64, f64),
+        resolution: (f64, f64),
+        stuck_samples: Option<u32>,
+    ) -> Self {
         Self {
             period_ns,
             stuck_samples,
             testable: [
-                sigmas.0 / DELTA_THETA_LSB_RAD >= TESTABLE_COUNTS,
-                sigmas.1 / DELTA_VELOCITY_LSB_MPS >= TESTABLE_COUNTS,
+                sigmas.0 / DELTA_THETA_LSB_RAD >= TESTABLE_COUNTS && resolution.0 <= sigmas.0,
+                sigmas.1 / DELTA_VELOCITY_LSB_MPS >= TESTABLE_COUNTS && resolution.1 <= sigmas.1,
             ],
             last: None,
             counts: [0; 6],

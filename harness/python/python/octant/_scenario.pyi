@@ -847,9 +847,10 @@ class ProcedureAlignment(Section):
     """Error of the azimuth handed over, one standard deviation. Takes an angle such as "30.5 deg". Default: "0.1
     deg"."""
     duration: str
-    """Coarse alignment: how long to average. Takes a time such as "12 h". Default: "60 s"."""
-    method: Literal["given", "coarse"]
-    """How the initial attitude is found. Takes one of "given", "coarse". Default: "given"."""
+    """Coarse and inertial alignment: how long. 300 s and more in the inertial frame, on a ship 600 s. Takes a
+    time such as "12 h". Default: "60 s"."""
+    method: Literal["given", "coarse", "inertial"]
+    """How the initial attitude is found. Takes one of "given", "coarse", "inertial". Default: "given"."""
     tilt: str
     """Error of the tilt handed over, one standard deviation, about north and east. Takes an angle such as "40
     arcsec". Default: "60 arcsec"."""
@@ -1478,6 +1479,14 @@ class SourceMcap(Section):
     topic: str
     """Topic of the inertial samples. Takes a text in quotes."""
 
+class SourceReference(Section):
+    """What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP
+    file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or there is
+    none."""
+
+    kind: Literal["static"]
+    """What is known. Takes "static". Default: "static"."""
+
 class SourceTextAccelerometer(Section):
     """Columns of the accelerometers. Takes a table with file, x, y, z, unit, quantity, scale, offset, axes."""
 
@@ -1576,12 +1585,13 @@ class SourceText(Section):
     """Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179
     deg/s at 100 Hz, 358 deg/s at 200 Hz). Takes a whole number from 1 to 1000. Default: 1."""
     time_column: int | str
-    """Column of the time stamp. Takes a column number from 1, or a column's name. Default: 1."""
+    """Column of the time stamp; "none": rows without one, which follow each other at the nominal rate. Takes a
+    column number from 1, or a column's name. Default: 1."""
     time_unit: Literal["s", "ms", "us", "ns"]
     """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: "s"."""
 
 class Source(Section):
-    """Where the samples come from. Takes a table with uri, text, mcap, fmu, live."""
+    """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, live."""
 
     @property
     def fmu(self) -> SourceFmu:
@@ -1602,6 +1612,13 @@ class Source(Section):
         channels that this program writes."""
     @mcap.setter
     def mcap(self, value: SourceMcap | Mapping[str, Any]) -> None: ...
+    @property
+    def reference(self) -> SourceReference:
+        """What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP
+        file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or there
+        is none."""
+    @reference.setter
+    def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
     def text(self) -> SourceText:
         """How the text files are read. Takes a table with rate, split, delimiter, skip_lines, header, comment,
@@ -1758,7 +1775,7 @@ class Scenario(Section):
     def site(self, value: Site | Mapping[str, Any]) -> None: ...
     @property
     def source(self) -> Source:
-        """Where the samples come from. Takes a table with uri, text, mcap, fmu, live."""
+        """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, live."""
     @source.setter
     def source(self, value: Source | Mapping[str, Any]) -> None: ...
     title: str

@@ -41,7 +41,7 @@ keys! {
         reference: At<Option<SourceReferenceKeys>>
             = table::<SourceReferenceKeys>(),
             absent("the source brings its own, or there is none"),
-            "What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP file, an instrument on a port.";
+            "What is known of the instrument's motion, where the source doesn't tell: of text, another program's MCAP file, an instrument on a port.";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
             derived("serial, udp, can and slcan: the defaults of its keys"),

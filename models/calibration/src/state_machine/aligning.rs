@@ -1,8 +1,8 @@
 //! The alignment that runs.
 
-use super::CalibrationRefusal;
+use super::judgement::CalibrationRefusal;
 use crate::alignment::CoarseAlignment;
-use crate::config::{Alignment, CoreConfig, Kalman};
+use crate::config::{Alignment, Base, CoreConfig, Kalman};
 use crate::inertial_alignment::{AlignmentSigma, InertialAlignment};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -45,7 +45,7 @@ impl Aligning {
 }
 
 /// Prior of a filter: after an alignment in the inertial frame, its attitude is as uncertain as that
-/// leaves it at least.
+/// leaves it at least, and its velocity as the base may swing.
 #[must_use]
 pub fn prior_after_alignment(config: &CoreConfig, kalman: &Kalman) -> Kalman {
     let mut kalman = *kalman;
@@ -53,6 +53,13 @@ pub fn prior_after_alignment(config: &CoreConfig, kalman: &Kalman) -> Kalman {
         let found = AlignmentSigma::of(config, duration_s).attitude_rad;
         for (prior, found) in kalman.prior.attitude_rad.iter_mut().zip(found) {
             *prior = prior.max(found);
+        }
+        // The core starts from rest, wherever in its swing the base is.
+        if let Base::Moving(motion) = config.screening.base
+            && motion.jerk_mps3 > 0.0
+        {
+            let swing_mps = motion.force_mps2 * motion.force_mps2 / motion.jerk_mps3;
+            kalman.prior.velocity_mps = kalman.prior.velocity_mps.max(swing_mps);
         }
     }
     kalman

@@ -177,7 +177,12 @@ impl Core {
             phase_start: 0,
             mode: Mode::Aligning,
             cursor: None,
-            monitor: Monitor::new(config.sample_period_ns, sigmas, config.screening.stuck_samples),
+            monitor: Monitor::new(
+                config.sample_period_ns,
+                sigmas,
+                config.screening.resolution,
+                config.screening.stuck_samples,
+            ),
             screen: Screen::new(&config.screening, &config.noise, &config.turntable, sample_s),
             bridge: Bridge::default(),
             slips: Slips::default(),
