@@ -250,7 +250,7 @@ def _followed(arguments: list[str], folder: Path, bar: _Bar) -> None:
 
 
 def _results(folder: Path) -> int:
-    return sum(1 for _ in (folder / "results").glob("**/*.json"))
+    return sum(1 for _ in (folder / "cases").glob("*/*.json"))
 
 
 def observe(

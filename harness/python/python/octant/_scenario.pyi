@@ -1480,7 +1480,7 @@ class SourceMcap(Section):
     """Topic of the inertial samples. Takes a text in quotes."""
 
 class SourceReference(Section):
-    """What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP
+    """What is known of the instrument's motion, where the source doesn't tell: of text, another program's MCAP
     file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or there is
     none."""
 
@@ -1614,9 +1614,9 @@ class Source(Section):
     def mcap(self, value: SourceMcap | Mapping[str, Any]) -> None: ...
     @property
     def reference(self) -> SourceReference:
-        """What is known of the instrument's motion, where the source doesn't tell: text, another program's MCAP
-        file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or there
-        is none."""
+        """What is known of the instrument's motion, where the source doesn't tell: of text, another program's
+        MCAP file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or
+        there is none."""
     @reference.setter
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
