@@ -14,7 +14,7 @@
 
 use super::platform::KNOWN_AT_START;
 use super::setup::{Judge, level};
-use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, STATE_COUNT};
+use octant_calibration::covariance::{Covariance, DV, PARAMETERS, STATE_COUNT};
 use octant_calibration::schedule::DoesNotFit;
 use serde::Serialize;
 

@@ -20,8 +20,10 @@ pub(crate) const CALIBRATING_S: f64 = 1.0;
 /// Longest sub-step of a transition at rest in navigation, s. Each sub-step makes a Schuler oscillation
 /// larger by (ω h)² / 4: with 1 s by 10 % in 72 h, with this by 0.2 %.
 pub(crate) const NAVIGATING_S: f64 = 0.02;
-/// Longest sub-step while a gimbal turns, s: half a degree at 10 deg/s.
-const TURNING_S: f64 = 0.05;
+/// Longest sub-step while a gimbal turns, s: a degree at 10 deg/s, up to which the model's own step is accurate.
+const TURNING_S: f64 = 0.1;
+/// Largest angle of a sub-step, rad.
+const TURNED_RAD: f64 = 0.018;
 
 /// Number of parameters.
 pub(crate) const PARAMETER_COUNT: usize = STATE_COUNT - PARAMETERS;
@@ -110,7 +112,8 @@ impl Platform {
         length_s: f64,
         model: ErrorModel,
     ) -> Transition {
-        let steps = libm::ceil(length_s / TURNING_S - 1e-9).max(1.0);
+        let sub_step_s = TURNING_S.min(TURNED_RAD / self.rates.rate_radps);
+        let steps = libm::ceil(length_s / sub_step_s - 1e-9).max(1.0);
         let h = length_s / steps;
         let start = [from.azimuth_rad, from.roll_rad];
         let whole = [to.azimuth_rad - start[0], to.roll_rad - start[1]];

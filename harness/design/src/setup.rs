@@ -1,6 +1,6 @@
 //! What a scenario gives to a design, and what it must not ask for.
 
-use super::evaluate::{Conditions, Evaluator};
+use super::evaluate::{Conditions, Evaluator, PART_S};
 use super::navigation::{Drift, Quadratic, drift};
 use super::platform::Platform;
 use crate::measure::Measure;
@@ -163,6 +163,7 @@ impl Setup {
             start_s: truth.start_s,
             reference_sigma_mps: truth.reference_sigma.unwrap_or(sigma_mps),
             period_s: kalman.aiding_period_ns as f64 * 1e-9,
+            part_s: PART_S,
         };
         let (duration_s, navigation) = (calibration.duration_s, plan.clone());
         Ok(Self { c_nc, conditions, navigation, navigation_s, duration_s, truth, config })

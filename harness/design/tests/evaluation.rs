@@ -6,6 +6,7 @@ use octant_calibration::covariance::{Covariance, PARAMETERS, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
 use octant_calibration::positions::{SEQUENCES, from_degrees, named};
 use octant_calibration::sequence::{Sequence, Stop};
+use octant_design::evaluate::Evaluator;
 use octant_design::measure::Measure;
 use octant_design::setup::{Judge, Rotation, Setup};
 use octant_earth::ellipsoid::Ellipsoid;
@@ -52,6 +53,9 @@ fn the_covariance_is_that_of_the_full_recursion() {
     let cell: &Cell = &CELLS[1];
     let setup = cell.setup(Rotation::Sixteen);
     let mut judge = judge(&setup, "longitude");
+    let mut exact = setup.clone();
+    (exact.conditions.initial, exact.conditions.part_s) = (prior(&setup), 1.0);
+    let mut filter = Evaluator::new(exact.conditions);
     let odd = own(&[
         (0.0, 0.0, 1.0),
         (37.0, -61.0, 2.5),
@@ -66,13 +70,12 @@ fn the_covariance_is_that_of_the_full_recursion() {
     for sequence in all.chain([odd, thrice]) {
         // The filter's own covariance, from its own prior.
         let full = setup.observe(&sequence, cell.duration_s()).unwrap();
-        let mut filter = judge.from_initial(prior(&setup));
-        let fast = filter.evaluator.calibrate(&sequence, cell.duration_s()).unwrap();
+        let fast = filter.calibrate(&sequence, cell.duration_s()).unwrap();
         for state in (0..6).chain(PARAMETERS..STATE_COUNT) {
             let (expected, found) = (full.believed.sigma(state), fast.sigma(state));
-            // Parameters that show in moves alone, and the velocity, depend on the times of single
-            // measurements.
-            let part = 3.0 * PART;
+            // The velocity at the very end depends on the time of the last measurement, which can be most of
+            // a second off.
+            let part = if (3..6).contains(&state) { 3.0 * PART } else { PART };
             assert!((found / expected - 1.0).abs() < part, "{state}: {found} {expected}");
         }
         let expected = observed_rms72(&setup, &sequence, cell.duration_s());
