@@ -1,13 +1,15 @@
 //! `octant design`: the sequence and the rotation with the least drift, and the bound of all of them.
 
+mod files;
 mod text;
 
 use crate::arguments::{ScenarioArguments, load, seconds, seed};
 use crate::failure::Failure;
 use crate::progress::watch_interrupts;
 use crate::progress_bar::ProgressBar;
-use crate::terminal::{print, print_json, write};
+use crate::terminal::{print, print_json};
 use clap::{Args, ValueEnum};
+use files::{States, write_scenario};
 use octant_base::names::suggestion;
 use octant_base::{interrupt, pool};
 use octant_calibration::positions::{from_degrees, named};
@@ -17,10 +19,8 @@ use octant_design::report::{Design, SCHEMA};
 use octant_design::search::{Effort, Problem, SearchError, State};
 use octant_design::{DesignError, Rotation, Setup};
 use octant_requirements::Verdict;
-use octant_scenario::Scenario;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Duration of the eight positions whose drift `--shortest` keeps, s.
 const EIGHT_S: f64 = 4.0 * 3600.0;
@@ -123,9 +123,9 @@ enum EffortChoice {
 impl EffortChoice {
     fn work(self) -> Effort {
         match self {
-            Self::Quick => Effort { chains: 8, rounds: 10, steps: 50 },
-            Self::Normal => Effort { chains: 16, rounds: 40, steps: 100 },
-            Self::Thorough => Effort { chains: 32, rounds: 80, steps: 100 },
+            Self::Quick => Effort { chains: 8, rounds: 10, steps: 40 },
+            Self::Normal => Effort { chains: 16, rounds: 30, steps: 80 },
+            Self::Thorough => Effort { chains: 32, rounds: 60, steps: 80 },
         }
     }
 }
@@ -350,82 +350,4 @@ fn not_kept(problem: &Problem, target: f64) -> Failure {
         problem.measure.unit(),
         problem.measure.words()
     ))
-}
-
-/// Stored states of the searches, by rotation.
-struct States<'a> {
-    file: Option<&'a Path>,
-    all: BTreeMap<String, State>,
-}
-
-impl<'a> States<'a> {
-    fn read(arguments: &'a Arguments) -> Result<Self, Failure> {
-        let file = arguments.state.as_deref();
-        let Some(path) = file.filter(|_| arguments.resume) else {
-            return Ok(Self { file, all: BTreeMap::new() });
-        };
-        let bytes = std::fs::read(path).map_err(|error| {
-            Failure::input(format!("failed to read {}: {error}", path.display()))
-        })?;
-        let all = serde_json::from_slice(&bytes).map_err(|error| {
-            Failure::input(format!(
-                "failed to read {}: {error}, expected the state of a search",
-                path.display()
-            ))
-        })?;
-        Ok(Self { file, all })
-    }
-
-    fn stored(&self, rotation: Rotation) -> Option<State> {
-        self.all.get(name_of(rotation)).cloned()
-    }
-
-    fn keep(&mut self, rotation: Rotation, state: &State) -> Result<(), Failure> {
-        let Some(path) = self.file else { return Ok(()) };
-        self.all.insert(name_of(rotation).to_owned(), state.clone());
-        let bytes = serde_json::to_vec(&self.all).map_err(Failure::bench)?;
-        write(path, bytes)
-    }
-}
-
-/// Writes the scenario with a designed sequence, after it was read again.
-fn write_scenario(
-    scenario: &Scenario,
-    outcome: &Outcome,
-    measure: Measure,
-    seed: u64,
-    out: &Path,
-) -> Result<(), Failure> {
-    let Design { score, bound, duration_h, .. } = &outcome.design;
-    let stop = |stop: &GridStop| {
-        let GridStop { azimuth_deg, roll_deg, share } = stop;
-        format!(
-            "{{ azimuth = \"{azimuth_deg} deg\", roll = \"{roll_deg} deg\", weight = {share} }}"
-        )
-    };
-    let stops: Vec<String> = outcome.stops.iter().map(stop).collect();
-    let mut changes = vec![
-        format!("procedure.calibration.stops=[{}]", stops.join(", ")),
-        format!("procedure.calibration.name=designed, seed {seed}"),
-        "procedure.calibration.passes=1".to_owned(),
-        format!("procedure.calibration.duration={} s", duration_h * 3600.0),
-    ];
-    if let Some(name) = outcome.rotation.name() {
-        changes.push(format!("procedure.navigation.rotation={name}"));
-    }
-    let about = [
-        "Designed by octant design, with every default of its scenario.".to_owned(),
-        format!(
-            "Predicted: {score:.4} {}, {}; no sequence is below {:.4}.",
-            measure.unit(),
-            measure.words(),
-            bound.value
-        ),
-    ];
-    let written = scenario
-        .to_toml_with(&changes, &about)
-        .map_err(|problem| Failure::bench(problem.message))?;
-    let folder = out.parent().unwrap_or(Path::new(""));
-    Scenario::parse(&written, &out.display().to_string(), folder, &[]).map_err(Failure::input)?;
-    write(out, written)
 }
