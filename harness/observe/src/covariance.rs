@@ -157,7 +157,8 @@ impl PositionError {
 }
 
 /// Returns the metres per arc minute of latitude and of longitude.
-pub(super) fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
+#[must_use]
+pub fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
     [earth.meridian_radius_m * ARCMIN, earth.transverse_radius_m * earth.cos_latitude * ARCMIN]
 }
 

@@ -217,8 +217,11 @@ pub fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
     }
 }
 
-/// Collects the draws and effects of a scenario's plant.
-fn truth(
+/// Collects the draws and effects of a scenario's plant: what [`reach`] predicts the result of.
+///
+/// # Errors
+/// If the alignment is coarse on a ship, whose effect isn't linear.
+pub fn truth(
     scenario: &Scenario,
     config: &CoreConfig,
     sequence: &Sequence,

@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
-    campaign, compare, completions, diff, doctor, export, faults, fmu, new, nightly, observe,
-    progress, rejudge, replay, report, requirements, run, score, selftest, serve, turntable,
-    verify, watch,
+    campaign, compare, completions, design, diff, doctor, export, faults, fmu, new, nightly,
+    observe, progress, rejudge, replay, report, requirements, run, score, selftest, serve,
+    turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -52,6 +52,8 @@ enum Command {
     Export(export::Arguments),
     /// Predict the observability and the accuracy of a sequence, without running it.
     Observe(observe::Arguments),
+    /// Design the calibration sequence with the least drift, and tell the bound of all sequences.
+    Design(design::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
     /// Check that a folder of evidence is unchanged, bit for bit.
@@ -177,6 +179,7 @@ pub(crate) fn status() -> u8 {
         Command::Diff(arguments) => diff::command(&arguments),
         Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
+        Command::Design(arguments) => design::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),
         Command::Rejudge(arguments) => rejudge::command(&arguments),

@@ -9,6 +9,7 @@ mod case_progress;
 mod commands;
 mod compare;
 mod completions;
+mod design;
 mod diff;
 mod doctor;
 pub mod embedded;

@@ -26,6 +26,7 @@ mod covariance_golden;
 mod dashboard;
 #[cfg(feature = "dashboard")]
 mod dashboard_small;
+mod design;
 mod diff;
 mod document_links;
 mod ensemble_against;

@@ -1,8 +1,9 @@
 //! The resolved scenario, with every default and every drawn value.
 
+use super::arguments::override_set;
 use super::derive::without_effect;
 use super::document::{DocumentNode, DocumentTable, DocumentValue, KeyEntry, write_value};
-use super::error::Place;
+use super::error::{Place, Problem};
 use super::keys::{Kind, SCENARIO, Section};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
 use super::quantity::UnitDimension;
@@ -57,6 +58,25 @@ impl Scenario {
         );
         write_table(&document, SCENARIO, "", &mut out);
         out
+    }
+
+    /// Writes the scenario as TOML with every default and with changes, `KEY=VALUE` as of `--set`. What is
+    /// drawn stays to be drawn. `about` are the lines of the comment at its top.
+    ///
+    /// # Errors
+    /// If a change is of no key. Values are checked when the text is read.
+    pub fn to_toml_with(&self, changes: &[String], about: &[String]) -> Result<String, Problem> {
+        let mut document = self.document.clone();
+        for change in changes {
+            override_set(&mut document, change)?;
+        }
+        for (path, _) in without_effect(&document) {
+            document.remove_at(&path);
+        }
+        self.write_files(&mut document);
+        let mut out: String = about.iter().map(|line| format!("# {line}\n")).collect();
+        write_table(&document, SCENARIO, "", &mut out);
+        Ok(out)
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.

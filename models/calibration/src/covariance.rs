@@ -127,6 +127,17 @@ impl Covariance {
         self.p[i][j]
     }
 
+    /// Rows of the matrix, each padded to the length of a [`CovarianceRow`] with zeros.
+    #[must_use]
+    pub fn rows(&self) -> &[CovarianceRow; STATE_COUNT] {
+        &self.p
+    }
+
+    /// The same to be changed. The matrix has to stay symmetric, and its padding zero.
+    pub fn rows_mut(&mut self) -> &mut [CovarianceRow; STATE_COUNT] {
+        &mut self.p
+    }
+
     /// Standard deviation of state `i`.
     #[must_use]
     pub fn sigma(&self, i: usize) -> f64 {

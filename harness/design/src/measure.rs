@@ -1,0 +1,141 @@
+//! Measures that a design can minimise, each the root of a quadratic form of the errors at the start of
+//! navigation.
+
+use super::navigation::{Drift, Quadratic};
+use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::NAUTICAL_MILE_M;
+use octant_observe::covariance::{arcmin_m, state_name};
+use octant_observe::ensemble::state_unit;
+
+/// Quantity that a design minimises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Position error in navigation.
+    Drift(Part, Window),
+    /// σ of a parameter after the calibration: an index of the 39 states.
+    Sigma(usize),
+}
+
+/// Part of a position error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Latitude, arcmin.
+    Latitude,
+    /// Longitude, arcmin.
+    Longitude,
+    /// Horizontal distance, nmi.
+    Radial,
+}
+
+/// Time over which a position error counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// Root mean square over the last three hours.
+    Last,
+    /// Root mean square over the whole navigation.
+    Whole,
+    /// At the end.
+    End,
+}
+
+const PARTS: [(Part, &str); 3] =
+    [(Part::Longitude, "longitude"), (Part::Latitude, "latitude"), (Part::Radial, "radial")];
+const WINDOWS: [(Window, &str); 3] =
+    [(Window::Last, ""), (Window::Whole, ".time-rms"), (Window::End, ".final")];
+
+impl Measure {
+    /// All measures.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let drifts = PARTS
+            .iter()
+            .flat_map(|(part, _)| WINDOWS.iter().map(|(window, _)| Self::Drift(*part, *window)));
+        drifts.chain((PARAMETERS..STATE_COUNT).map(Self::Sigma))
+    }
+
+    /// Finds a measure by its name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|measure| measure.name() == name)
+    }
+
+    /// Its name: `longitude`, `radial.time-rms`, `sigma.g_zz`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::Sigma(state) => format!("sigma.{}", state_name(*state)),
+            Self::Drift(part, window) => {
+                let of = PARTS.iter().filter(|(known, _)| known == part);
+                let over = WINDOWS.iter().filter(|(known, _)| known == window);
+                of.zip(over).map(|((_, part), (_, window))| format!("{part}{window}")).collect()
+            }
+        }
+    }
+
+    /// What it is, in a line.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let (part, window) = match self {
+            Self::Sigma(state) => return format!("σ of {}", state_name(*state)),
+            Self::Drift(part, window) => (part, window),
+        };
+        let part = match part {
+            Part::Latitude => "latitude",
+            Part::Longitude => "longitude",
+            Part::Radial => "radial",
+        };
+        match window {
+            Window::Last => format!("rms of the {part} error in the last 3 h of navigation"),
+            Window::Whole => format!("rms of the {part} error over the whole navigation"),
+            Window::End => format!("σ of the {part} error at the end of navigation"),
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Drift(Part::Radial, _) => "nmi",
+            Self::Drift(..) => "arcmin",
+            Self::Sigma(state) => state_unit(*state).0,
+        }
+    }
+
+    /// Returns the form whose root is the measure, in its unit.
+    #[must_use]
+    pub fn form(&self, drift: &Drift, earth: &Ellipsoid) -> Quadratic {
+        let (part, window) = match self {
+            Self::Sigma(state) => {
+                let si = state_unit(*state).1;
+                return Quadratic::of_state(*state).times(1.0 / (si * si));
+            }
+            Self::Drift(part, window) => (part, window),
+        };
+        let [north, east] = match window {
+            Window::Last => &drift.last,
+            Window::Whole => &drift.whole,
+            Window::End => &drift.end,
+        };
+        let square = |unit_m: f64| 1.0 / (unit_m * unit_m);
+        let [latitude_m, longitude_m] = arcmin_m(earth);
+        match part {
+            Part::Latitude => north.clone().times(square(latitude_m)),
+            Part::Longitude => east.clone().times(square(longitude_m)),
+            Part::Radial => north.clone().plus(east, 1.0).times(square(NAUTICAL_MILE_M)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for measure in Measure::all() {
+            assert_eq!(Measure::named(&measure.name()), Some(measure));
+        }
+        assert!(Measure::named("longitude").is_some() && Measure::named("sigma.g_zz").is_some());
+        assert_eq!(Measure::named("longitudes"), None);
+    }
+}

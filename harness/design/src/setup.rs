@@ -1,0 +1,281 @@
+//! What a scenario gives to a design, and what it must not ask for.
+
+use super::evaluate::{Conditions, Evaluator, PART_S};
+use super::navigation::{Drift, Quadratic, drift};
+use super::platform::Platform;
+use crate::measure::Measure;
+use nalgebra::Matrix3;
+use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan};
+use octant_calibration::covariance::{Covariance, STATE_COUNT};
+use octant_calibration::positions;
+use octant_calibration::schedule::DoesNotFit;
+use octant_calibration::sequence::{Sequence, Stop};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::frames::c_nc;
+use octant_observe::covariance::{AnalysisError, reach};
+use octant_observe::ensemble::{EnsembleError, truth};
+use octant_observe::truth::EnsembleTruth;
+use octant_scenario::{Method, MotionSpec, Scenario};
+use octant_source::configure::{ConfigurationError, configurations};
+
+/// Reasons why a scenario can't be designed for.
+#[derive(Debug, thiserror::Error)]
+pub enum DesignError {
+    /// The scenario has no configuration.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// The scenario's draws can't be analysed.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
+    /// The result can't be predicted.
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+    /// A key has a value for which no design is built.
+    #[error("design a sequence: {key}: found {found}, expected {expected}")]
+    NotBuilt {
+        /// The key.
+        key: &'static str,
+        /// What was found.
+        found: String,
+        /// What a design needs.
+        expected: &'static str,
+    },
+    /// A sequence doesn't fit its duration.
+    #[error("plan the calibration: {0}")]
+    DoesNotFit(#[from] DoesNotFit),
+    /// Limits leave nothing to choose from.
+    #[error("design a sequence: {0}")]
+    Limits(String),
+}
+
+fn not_built<T>(
+    key: &'static str,
+    found: impl Into<String>,
+    expected: &'static str,
+) -> Result<T, DesignError> {
+    Err(DesignError::NotBuilt { key, found: found.into(), expected })
+}
+
+/// Rotation of navigation that a design can choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotation {
+    /// That of the scenario.
+    Given,
+    /// Sixteen moves of 180°.
+    Sixteen,
+    /// Twelve attitudes out and back.
+    Tetrahedral,
+}
+
+impl Rotation {
+    /// Name of the scheme in a scenario; `None`: the scenario's own.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::Given => None,
+            Self::Sixteen => Some("sixteen"),
+            Self::Tetrahedral => Some("tetrahedral"),
+        }
+    }
+
+    fn stops(self, given: &Sequence) -> Sequence {
+        let named = match self {
+            Self::Given => return given.clone(),
+            Self::Sixteen => positions::SIXTEEN,
+            Self::Tetrahedral => positions::TETRAHEDRAL,
+        };
+        // The shipped schemes are sequences, as their own tests show.
+        positions::from_degrees(named, 1).unwrap_or_else(|_| given.clone())
+    }
+}
+
+/// A scenario as a design sees it.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The core's configuration, with the scenario's own calibration.
+    pub config: CoreConfig,
+    /// Attitude of the case.
+    pub c_nc: Matrix3<f64>,
+    /// Draws of the instrument, and the conditions of a candidate.
+    pub conditions: Conditions,
+    /// Navigation after the calibration.
+    pub navigation: NavigationPlan,
+    /// Its duration, s.
+    pub navigation_s: f64,
+    /// Duration of the calibration, s.
+    pub duration_s: f64,
+    truth: EnsembleTruth,
+}
+
+impl Setup {
+    /// Reads what a design needs from a scenario.
+    ///
+    /// # Errors
+    /// If the scenario has something for which no design is built.
+    pub fn of(scenario: &Scenario) -> Result<Self, DesignError> {
+        if !scenario.source.is_plant_alone() {
+            return not_built("source.uri", "another source", "\"plant\"");
+        }
+        let MotionSpec::Static(mean) = &scenario.motion else {
+            return not_built("motion.kind", "\"dockside\"", "\"static\"");
+        };
+        let (_, config, _) = configurations(scenario, Method::Primary, scenario.seed)?;
+        let Some(calibration) = &config.calibration else {
+            return not_built("procedure.calibration", "nothing", "a calibration");
+        };
+        let Estimator::Kalman(kalman) = &calibration.estimator else {
+            return not_built("procedure.calibration.estimator", "another", "\"kalman\"");
+        };
+        if kalman.estimated != [true; 7] {
+            let key = "procedure.calibration.not_estimated";
+            return not_built(
+                key,
+                "a group that is not estimated",
+                "that all groups are estimated",
+            );
+        }
+        let AidingMode::Velocity { sigma_mps } = kalman.aiding else {
+            let key = "procedure.calibration.aiding.mode";
+            return not_built(key, "position", "velocity, the aiding of an instrument at rest");
+        };
+        let Some((plan, navigation_s)) =
+            config.navigation.as_ref().and_then(|plan| Some((plan, plan.duration_s?)))
+        else {
+            return not_built("procedure.navigation.duration", "nothing", "a duration");
+        };
+        let c_nc = c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad);
+        let level = level();
+        let truth = truth(scenario, &config, &level, &c_nc)?;
+        check(&truth)?;
+        let platform = Platform {
+            earth: Ellipsoid::at(config.site.latitude_rad, config.site.height_m),
+            c_nc,
+            rates: config.turntable,
+            non_orthogonality_rad: truth.non_orthogonality_rad,
+            error_model: kalman.error_model,
+            noise: truth.noise,
+        };
+        let mut initial = truth.covariance.clone();
+        add_means(&mut initial, &truth.mean);
+        let conditions = Conditions {
+            platform,
+            initial,
+            start_s: truth.start_s,
+            reference_sigma_mps: truth.reference_sigma.unwrap_or(sigma_mps),
+            period_s: kalman.aiding_period_ns as f64 * 1e-9,
+            part_s: PART_S,
+        };
+        let (duration_s, navigation) = (calibration.duration_s, plan.clone());
+        Ok(Self { c_nc, conditions, navigation, navigation_s, duration_s, truth, config })
+    }
+
+    /// Returns the same with another rotation in navigation.
+    #[must_use]
+    pub fn with_rotation(&self, rotation: Rotation) -> Self {
+        let mut other = self.clone();
+        other.navigation.rotation = rotation.stops(&self.navigation.rotation);
+        other
+    }
+
+    /// Predicts a measure by the full recursion of `octant observe`: the filter as the scenario tunes it,
+    /// every measurement at its own time.
+    ///
+    /// Of a drift over the whole navigation and over its last hours, the points every ten minutes count.
+    ///
+    /// # Errors
+    /// If the sequence doesn't fit.
+    pub fn observe(
+        &self,
+        sequence: &Sequence,
+        duration_s: f64,
+    ) -> Result<octant_observe::covariance::PredictedResult, DesignError> {
+        let mut config = self.config.clone();
+        if let Some(calibration) = &mut config.calibration {
+            calibration.sequence = sequence.clone();
+            calibration.duration_s = duration_s;
+        }
+        config.navigation = Some(self.navigation.clone());
+        Ok(reach(&config, &self.c_nc, &self.truth)?)
+    }
+}
+
+/// A stop at rest at zero, which every design begins with.
+pub(crate) fn level() -> Sequence {
+    let stops = [Stop { weight: 1.0, ..Stop::default() }];
+    Sequence::new(&stops, 1).unwrap_or_else(|_| unreachable!("one stop of weight 1 is a sequence"))
+}
+
+/// Counts a given error as one of that size with a random sign, on its own: a sequence that is designed for
+/// one instrument's signs is of no use to another.
+fn add_means(covariance: &mut Covariance, mean: &[f64; STATE_COUNT]) {
+    for (state, mean) in mean.iter().enumerate() {
+        covariance.add(state, state, mean * mean);
+    }
+}
+
+/// Refuses what changes the prediction and isn't carried along here.
+fn check(truth: &EnsembleTruth) -> Result<(), DesignError> {
+    if !truth.wanders.is_empty() {
+        let found = "biases that wander (Gauss-Markov, bias instability or rate random walk)";
+        return not_built("imu", found, "constant biases");
+    }
+    if truth.temperature.is_some() {
+        return not_built("imu.temperature", "a temperature effect", "none");
+    }
+    Ok(())
+}
+
+/// What a candidate is judged by: the covariance of its calibration, and a measure of navigation.
+#[derive(Debug)]
+pub struct Judge {
+    /// The covariance recursion.
+    pub evaluator: Evaluator,
+    form: Quadratic,
+    first: Stop,
+}
+
+impl Judge {
+    /// Creates the judge of a measure; `drift` is made once by [`Setup::drift`].
+    #[must_use]
+    pub fn new(setup: &Setup, measure: Measure, drift: &Drift) -> Self {
+        let form = measure.form(drift, &setup.conditions.platform.earth);
+        Self { evaluator: Evaluator::new(setup.conditions.clone()), form, first: drift.first }
+    }
+
+    /// Creates a judge of the same measure from another covariance at the start of the filter.
+    #[must_use]
+    pub fn from_initial(&self, initial: Covariance) -> Self {
+        let conditions = Conditions { initial, ..self.evaluator.conditions().clone() };
+        Self { evaluator: Evaluator::new(conditions), form: self.form.clone(), first: self.first }
+    }
+
+    /// The form of the measure.
+    #[must_use]
+    pub fn form(&self) -> &Quadratic {
+        &self.form
+    }
+
+    /// Returns the measure after a calibration by this sequence.
+    ///
+    /// # Errors
+    /// If the sequence doesn't fit.
+    pub fn score(&mut self, sequence: &Sequence, duration_s: f64) -> Result<f64, DoesNotFit> {
+        let covariance = self.evaluator.calibrate(sequence, duration_s)?;
+        let stops = sequence.stops();
+        Ok(self.score_of(covariance, &stops[stops.len() - 1]))
+    }
+
+    /// Returns the measure for a covariance at the end of a calibration, with the gimbals at `from`.
+    pub fn score_of(&mut self, mut covariance: Covariance, from: &Stop) -> f64 {
+        self.evaluator.start_navigation(&mut covariance, from, &self.first);
+        libm::sqrt(self.form.of(&covariance).max(0.0))
+    }
+}
+
+impl Setup {
+    /// Computes the weights of navigation.
+    #[must_use]
+    pub fn drift(&self) -> Drift {
+        drift(&self.conditions.platform, &self.navigation, self.navigation_s)
+    }
+}

@@ -1,0 +1,132 @@
+//! The search: how close it comes to the bound, and that nothing but problem and seed decides it.
+
+use crate::cells::CELLS;
+use octant_design::bound::bound;
+use octant_design::candidate::{Gimbals, Limits};
+use octant_design::measure::Measure;
+use octant_design::search::{Effort, Found, Problem, SearchError, State};
+use octant_design::setup::Rotation;
+
+fn problem(cell: usize, rotation: Rotation, limits: Limits) -> Problem {
+    let setup = CELLS[cell].setup(rotation);
+    Problem::new(setup, Measure::named("longitude").unwrap(), limits, 1).unwrap()
+}
+
+fn search(problem: &Problem, effort: Effort) -> Found {
+    problem.search(effort, 2, None, &mut |_, _, _| true).unwrap()
+}
+
+const SHORT: Effort = Effort { chains: 4, rounds: 3, steps: 10 };
+
+#[test]
+#[ignore = "minutes"]
+fn designs_come_close_to_the_bound() {
+    let effort = Effort { chains: 16, rounds: 40, steps: 100 };
+    for (cell, rotation) in
+        (0..6).flat_map(|c| [(c, Rotation::Sixteen), (c, Rotation::Tetrahedral)])
+    {
+        let problem = problem(cell, rotation, Limits::default());
+        let started = std::time::Instant::now();
+        let mut told = |state: &State, _: usize, best: f64| {
+            if state.round % 10 == 0 {
+                println!("  {} {best:.4}", state.round);
+            }
+            true
+        };
+        let found = problem.search(effort, 2, None, &mut told).unwrap();
+        let bound = bound(&problem.judge(), problem.duration_s).unwrap().value;
+        println!(
+            "{cell} {rotation:?} {:.4} {bound:.4} {:+.1} % {:?}\n{:?}",
+            found.score,
+            100.0 * (found.score / bound - 1.0),
+            started.elapsed(),
+            found.stops
+        );
+        let best = CELLS[cell].best;
+        println!("  found elsewhere for sixteen moves: {best}");
+        let large = CELLS[cell].g >= 2e-3 || rotation == Rotation::Tetrahedral;
+        assert!(!large || found.score < 1.05 * bound, "{} {bound}", found.score);
+    }
+}
+
+#[test]
+fn threads_and_interrupts_do_not_change_the_result() {
+    let problem = problem(1, Rotation::Sixteen, Limits::default());
+    let one = problem.search(SHORT, 1, None, &mut |_, _, _| true).unwrap();
+    let three = problem.search(SHORT, 3, None, &mut |_, _, _| true).unwrap();
+    assert_eq!((&one.stops, one.score.to_bits()), (&three.stops, three.score.to_bits()));
+    let mut stored = None;
+    let mut ended = |state: &State, _: usize, _: f64| {
+        stored = Some(serde_json::to_string(state).unwrap());
+        false
+    };
+    let interrupted = problem.search(SHORT, 2, None, &mut ended).unwrap_err();
+    assert!(matches!(interrupted, SearchError::Interrupted { done: 1, rounds: 3 }));
+    let state: State = serde_json::from_str(&stored.unwrap()).unwrap();
+    let resumed = problem.search(SHORT, 2, Some(state.clone()), &mut |_, _, _| true).unwrap();
+    assert_eq!((&one.stops, one.score.to_bits()), (&resumed.stops, resumed.score.to_bits()));
+    let other = Problem { seed: 2, ..problem };
+    let refused = other.search(SHORT, 2, Some(state), &mut |_, _, _| true).unwrap_err();
+    assert!(matches!(refused, SearchError::OtherSearch));
+}
+
+#[test]
+fn designs_keep_the_limits() {
+    let all = [
+        Limits {
+            gimbals: Gimbals::One,
+            azimuth_deg: (0, 180),
+            roll_deg: (-90, 90),
+            ..Limits::default()
+        },
+        Limits { gimbals: Gimbals::Azimuth, grid_deg: 30, stops_max: 9, ..Limits::default() },
+        Limits {
+            gimbals: Gimbals::Roll,
+            dwell_min_s: 600.0,
+            lead_in_s: 1200.0,
+            ..Limits::default()
+        },
+    ];
+    for limits in all {
+        let problem = problem(1, Rotation::Sixteen, limits);
+        let found = search(&problem, SHORT);
+        assert!(limits.keep(&found.stops), "{found:?}");
+        let contributions = problem.contributions(&mut problem.judge(), &found.sequence).unwrap();
+        assert!(contributions[0].dwell_s >= limits.lead_in_s);
+        assert!(contributions.iter().all(|stop| stop.dwell_s >= limits.dwell_min_s));
+        let last = contributions.last().unwrap();
+        assert!((last.measure_so_far / found.score - 1.0).abs() < 1e-12);
+        assert!((last.until_s - problem.duration_s).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn limits_that_leave_nothing_are_refused() {
+    let setup = CELLS[1].setup(Rotation::Sixteen);
+    let measure = Measure::named("longitude").unwrap();
+    for limits in [
+        Limits { grid_deg: 0, ..Limits::default() },
+        Limits { azimuth_deg: (30, 90), ..Limits::default() },
+        Limits { roll_deg: (0, 30), gimbals: Gimbals::Roll, ..Limits::default() },
+        Limits { stops_max: 65, ..Limits::default() },
+    ] {
+        assert!(Problem::new(setup.clone(), measure, limits, 1).is_err(), "{limits:?}");
+    }
+    let late = Limits { lead_in_s: 5.0 * 3600.0, ..Limits::default() };
+    let problem = Problem::new(setup, measure, late, 1).unwrap();
+    let found = problem.search(SHORT, 2, None, &mut |_, _, _| true).unwrap_err();
+    assert!(matches!(found, SearchError::NothingFits { .. }));
+}
+
+#[test]
+fn a_shorter_calibration_keeps_the_drift_of_eight_positions() {
+    let problem = problem(1, Rotation::Tetrahedral, Limits::default());
+    let effort = Effort { chains: 4, rounds: 4, steps: 30 };
+    // Eight positions in 4 h with sixteen moves.
+    let shortest = problem.shortest(3.29, effort, 2, &mut |_, _, _, _| true).unwrap().unwrap();
+    println!("{} {}", shortest.duration_s, shortest.bound_s);
+    assert!(shortest.found.score <= 3.29);
+    assert!(shortest.bound_s <= shortest.duration_s && shortest.duration_s < 4.0 * 3600.0);
+    // No sequence reaches a drift below the bound.
+    assert!(problem.shortest(1.0, effort, 2, &mut |_, _, _, _| true).unwrap().is_none());
+}
