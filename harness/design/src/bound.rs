@@ -25,7 +25,7 @@ const DIAGONAL: [usize; 3] = [G, G + 4, G + 8];
 
 /// A bound with its certificate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Bound {
+pub struct DriftBound {
     /// No sequence has a smaller measure.
     pub value: f64,
     /// Names of the errors that are left: attitude north, east, down, rad; velocity north, east, m/s; the
@@ -82,7 +82,7 @@ fn learn(covariance: &mut Covariance, combination: &[(usize, f64)]) {
 ///
 /// # Errors
 /// If the duration is shorter than a dwell can be.
-pub fn bound(judge: &Judge, duration_s: f64) -> Result<Bound, DoesNotFit> {
+pub fn bound(judge: &Judge, duration_s: f64) -> Result<DriftBound, DoesNotFit> {
     let initial = known_but_isotropic(&judge.evaluator.conditions().initial);
     let mut knowing = judge.from_initial(initial);
     let mut left = knowing.evaluator.calibrate(&level(), duration_s)?;
@@ -99,5 +99,5 @@ pub fn bound(judge: &Judge, duration_s: f64) -> Result<Bound, DoesNotFit> {
     let products = covariance.as_flattened().iter().zip(weights.as_flattened());
     let trace: f64 = products.map(|(variance, weight)| variance * weight).sum();
     let value = libm::sqrt((trace + form.constant).max(0.0));
-    Ok(Bound { value, errors: NAMES, covariance, weights, noise: form.constant })
+    Ok(DriftBound { value, errors: NAMES, covariance, weights, noise: form.constant })
 }

@@ -1,6 +1,6 @@
 //! What each stop of a sequence adds.
 
-use crate::search::Problem;
+use crate::search::SearchProblem;
 use crate::setup::Judge;
 use octant_calibration::schedule::DoesNotFit;
 use octant_calibration::sequence::Sequence;
@@ -24,7 +24,7 @@ pub struct Contribution {
     pub measure_without: Option<f64>,
 }
 
-impl Problem {
+impl SearchProblem {
     /// Returns what each stop of a sequence adds.
     ///
     /// # Errors

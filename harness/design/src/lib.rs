@@ -28,4 +28,4 @@ pub mod search;
 pub mod setup;
 pub mod shortest;
 
-pub use setup::{DesignError, Judge, Rotation, Setup};
+pub use setup::{DesignError, DesignSetup, Judge, Rotation};

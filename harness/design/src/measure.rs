@@ -10,7 +10,7 @@ use octant_observe::ensemble::state_unit;
 
 /// Quantity that a design minimises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum DesignMeasure {
     /// Position error in navigation.
     Drift(Part, Window),
     /// σ of a parameter after the calibration: an index of the 39 states.
@@ -44,7 +44,7 @@ const PARTS: [(Part, &str); 3] =
 const WINDOWS: [(Window, &str); 3] =
     [(Window::Last, ""), (Window::Whole, ".time-rms"), (Window::End, ".final")];
 
-impl Measure {
+impl DesignMeasure {
     /// All measures.
     pub fn all() -> impl Iterator<Item = Self> {
         let drifts = PARTS
@@ -132,10 +132,13 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_found() {
-        for measure in Measure::all() {
-            assert_eq!(Measure::named(&measure.name()), Some(measure));
+        for measure in DesignMeasure::all() {
+            assert_eq!(DesignMeasure::named(&measure.name()), Some(measure));
         }
-        assert!(Measure::named("longitude").is_some() && Measure::named("sigma.g_zz").is_some());
-        assert_eq!(Measure::named("longitudes"), None);
+        assert!(
+            DesignMeasure::named("longitude").is_some()
+                && DesignMeasure::named("sigma.g_zz").is_some()
+        );
+        assert_eq!(DesignMeasure::named("longitudes"), None);
     }
 }

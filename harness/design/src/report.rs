@@ -1,9 +1,9 @@
 //! The result of a design: its scores beside those of the published sequences, the bound, and what each
 //! stop adds.
 
-use crate::bound::{Bound, bound};
+use crate::bound::{DriftBound, bound};
 use crate::contribution::Contribution;
-use crate::search::{Found, Problem, SearchError};
+use crate::search::{Found, SearchError, SearchProblem};
 use crate::setup::DesignError;
 use octant_calibration::positions::{SEQUENCES, from_degrees};
 use serde::Serialize;
@@ -13,7 +13,7 @@ pub const SCHEMA: u32 = 1;
 
 /// A design for one rotation in navigation.
 #[derive(Clone, Debug, Serialize)]
-pub struct Design {
+pub struct SequenceDesign {
     /// Rotation in navigation: the name of a scheme, or "scenario" for the scenario's own.
     pub rotation: &'static str,
     /// Duration of the calibration, h.
@@ -23,7 +23,7 @@ pub struct Design {
     /// The same by the full recursion of `octant observe`, with the filter as the scenario tunes it.
     pub observed: f64,
     /// The bound with its certificate.
-    pub bound: Bound,
+    pub bound: DriftBound,
     /// Published sequences of the same duration.
     pub published: Vec<Published>,
     /// Stops of the designed sequence, and what each adds.
@@ -39,13 +39,13 @@ pub struct Published {
     pub score: Option<f64>,
 }
 
-impl Design {
+impl SequenceDesign {
     /// Reports a sequence that was found for a problem.
     ///
     /// # Errors
     /// If it doesn't fit.
     pub fn of(
-        problem: &Problem,
+        problem: &SearchProblem,
         rotation: &'static str,
         found: &Found,
     ) -> Result<Self, SearchError> {

@@ -5,10 +5,10 @@
 //! that goes on from a stored state gives the same sequence as one that was never interrupted.
 
 use crate::candidate::{GridStop, Limits, sequence_of};
-use crate::measure::Measure;
+use crate::measure::DesignMeasure;
 use crate::mutate::{Draws, changed, random};
 use crate::navigation::Drift;
-use crate::setup::{DesignError, Judge, Setup};
+use crate::setup::{DesignError, DesignSetup, Judge};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
 use octant_calibration::sequence::Sequence;
@@ -27,11 +27,11 @@ const STARTS_MAX: u64 = 200;
 
 /// What is searched for.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct SearchProblem {
     /// The scenario.
-    pub setup: Setup,
+    pub setup: DesignSetup,
     /// What is minimised.
-    pub measure: Measure,
+    pub measure: DesignMeasure,
     /// Weights of navigation.
     pub drift: Drift,
     /// Limits of gimbals and sequence.
@@ -44,7 +44,7 @@ pub struct Problem {
 
 /// Work that a search does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Effort {
+pub struct SearchEffort {
     /// Number of chains.
     pub chains: usize,
     /// Number of rounds.
@@ -53,7 +53,7 @@ pub struct Effort {
     pub steps: usize,
 }
 
-impl Effort {
+impl SearchEffort {
     /// Number of candidates that are judged, at most.
     #[must_use]
     pub fn candidates(&self) -> usize {
@@ -73,7 +73,7 @@ pub struct Chain {
 /// A search between two rounds, as it is stored.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct State {
+pub struct SearchState {
     /// [`STATE_VERSION`].
     pub version: u32,
     /// Hash of what is searched for, and how.
@@ -123,17 +123,17 @@ pub enum SearchError {
     },
     /// The scenario can't be designed for.
     #[error(transparent)]
-    Design(#[from] DesignError),
+    SequenceDesign(#[from] DesignError),
 }
 
-impl Problem {
+impl SearchProblem {
     /// Creates a problem; the duration is the scenario's.
     ///
     /// # Errors
     /// If the limits leave nothing to choose from.
     pub fn new(
-        setup: Setup,
-        measure: Measure,
+        setup: DesignSetup,
+        measure: DesignMeasure,
         limits: Limits,
         seed: u64,
     ) -> Result<Self, DesignError> {
@@ -151,7 +151,7 @@ impl Problem {
 
     /// Returns the hash of everything that the result depends on.
     #[must_use]
-    pub fn hash(&self, effort: Effort) -> String {
+    pub fn hash(&self, effort: SearchEffort) -> String {
         let mut hasher = blake3::Hasher::new();
         let Self { setup, measure, drift, limits, duration_s, seed } = self;
         let conditions = &setup.conditions;
@@ -222,7 +222,7 @@ impl Problem {
     fn round(
         &self,
         judge: &mut Judge,
-        effort: Effort,
+        effort: SearchEffort,
         round: usize,
         number: usize,
         chain: &mut Chain,
@@ -267,10 +267,10 @@ impl Problem {
     /// If nothing fits, the state is of another search, or the search was ended.
     pub fn search(
         &self,
-        effort: Effort,
+        effort: SearchEffort,
         jobs: usize,
-        stored: Option<State>,
-        after_round: &mut dyn FnMut(&State, usize, f64) -> bool,
+        stored: Option<SearchState>,
+        after_round: &mut dyn FnMut(&SearchState, usize, f64) -> bool,
     ) -> Result<Found, SearchError> {
         let hash = self.hash(effort);
         let mut judge = self.judge();
@@ -281,7 +281,7 @@ impl Problem {
             Some(state) => state,
             None => {
                 let chains = self.starts(&mut judge, effort.chains);
-                State { version: STATE_VERSION, problem: hash, round: 0, chains }
+                SearchState { version: STATE_VERSION, problem: hash, round: 0, chains }
             }
         };
         let judges = Mutex::new(vec![judge]);
@@ -298,7 +298,7 @@ impl Problem {
         self.best(&state, &judges)
     }
 
-    fn is_mine(&self, state: &State, hash: &str, effort: Effort) -> bool {
+    fn is_mine(&self, state: &SearchState, hash: &str, effort: SearchEffort) -> bool {
         state.version == STATE_VERSION
             && state.problem == hash
             && state.chains.len() == effort.chains
@@ -311,9 +311,9 @@ impl Problem {
 
     fn all_chains(
         &self,
-        effort: Effort,
+        effort: SearchEffort,
         jobs: usize,
-        state: &State,
+        state: &SearchState,
         judges: &Mutex<Vec<Judge>>,
     ) -> Vec<Chain> {
         let work = |number: usize| {
@@ -330,7 +330,7 @@ impl Problem {
 
     /// Lets the last quarter of the chains go on from the best candidates of the first; returns the
     /// measures of all best candidates.
-    fn meet(&self, state: &mut State, judges: &Mutex<Vec<Judge>>) -> Vec<f64> {
+    fn meet(&self, state: &mut SearchState, judges: &Mutex<Vec<Judge>>) -> Vec<f64> {
         let mut judge = take(judges).unwrap_or_else(|| self.judge());
         let scores: Vec<f64> =
             state.chains.iter_mut().map(|chain| self.score(&mut judge, &mut chain.best)).collect();
@@ -348,7 +348,7 @@ impl Problem {
         scores
     }
 
-    fn best(&self, state: &State, judges: &Mutex<Vec<Judge>>) -> Result<Found, SearchError> {
+    fn best(&self, state: &SearchState, judges: &Mutex<Vec<Judge>>) -> Result<Found, SearchError> {
         let mut judge = take(judges).unwrap_or_else(|| self.judge());
         let mut best: Option<(Vec<GridStop>, f64)> = None;
         for chain in &state.chains {

@@ -3,7 +3,7 @@
 use super::evaluate::{Conditions, Evaluator, PART_S};
 use super::navigation::{Drift, Quadratic, drift};
 use super::platform::Platform;
-use crate::measure::Measure;
+use crate::measure::DesignMeasure;
 use nalgebra::Matrix3;
 use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan};
 use octant_calibration::covariance::{Covariance, STATE_COUNT};
@@ -91,7 +91,7 @@ impl Rotation {
 
 /// A scenario as a design sees it.
 #[derive(Clone, Debug)]
-pub struct Setup {
+pub struct DesignSetup {
     /// The core's configuration, with the scenario's own calibration.
     pub config: CoreConfig,
     /// Attitude of the case.
@@ -107,7 +107,7 @@ pub struct Setup {
     truth: EnsembleTruth,
 }
 
-impl Setup {
+impl DesignSetup {
     /// Reads what a design needs from a scenario.
     ///
     /// # Errors
@@ -235,9 +235,9 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Creates the judge of a measure; `drift` is made once by [`Setup::drift`].
+    /// Creates the judge of a measure; `drift` is made once by [`DesignSetup::drift`].
     #[must_use]
-    pub fn new(setup: &Setup, measure: Measure, drift: &Drift) -> Self {
+    pub fn new(setup: &DesignSetup, measure: DesignMeasure, drift: &Drift) -> Self {
         let form = measure.form(drift, &setup.conditions.platform.earth);
         Self { evaluator: Evaluator::new(setup.conditions.clone()), form, first: drift.first }
     }
@@ -272,7 +272,7 @@ impl Judge {
     }
 }
 
-impl Setup {
+impl DesignSetup {
     /// Computes the weights of navigation.
     #[must_use]
     pub fn drift(&self) -> Drift {

@@ -1,7 +1,7 @@
 //! The shortest calibration that keeps a measure.
 
 use crate::bound::bound;
-use crate::search::{Effort, Found, Problem, SearchError, State};
+use crate::search::{Found, SearchEffort, SearchError, SearchProblem, SearchState};
 use crate::setup::DesignError;
 
 /// Durations are found to within this time, s.
@@ -19,21 +19,21 @@ pub struct Shortest {
     pub bound_s: f64,
 }
 
-impl Problem {
+impl SearchProblem {
     /// Searches for the shortest duration, in whole steps of [`STEP_S`], that keeps the measure at or below
     /// `target`; `None` if the problem's own duration doesn't.
     ///
     /// Durations are halved between the one at which the bound allows it and the problem's own.
-    /// `after_round` is called as by [`Problem::search`], with the duration, s.
+    /// `after_round` is called as by [`SearchProblem::search`], with the duration, s.
     ///
     /// # Errors
-    /// As [`Problem::search`].
+    /// As [`SearchProblem::search`].
     pub fn shortest(
         &self,
         target: f64,
-        effort: Effort,
+        effort: SearchEffort,
         jobs: usize,
-        after_round: &mut dyn FnMut(f64, &State, usize, f64) -> bool,
+        after_round: &mut dyn FnMut(f64, &SearchState, usize, f64) -> bool,
     ) -> Result<Option<Shortest>, SearchError> {
         let judge = self.judge();
         let allowed = |steps: u32| -> Result<bool, SearchError> {
@@ -53,7 +53,7 @@ impl Problem {
         let mut try_steps = |steps: u32| -> Result<Option<Found>, SearchError> {
             let duration_s = f64::from(steps) * STEP_S;
             let problem = Self { duration_s, ..self.clone() };
-            let mut told = |state: &State, rounds: usize, best: f64| {
+            let mut told = |state: &SearchState, rounds: usize, best: f64| {
                 after_round(duration_s, state, rounds, best)
             };
             match problem.search(effort, jobs, None, &mut told) {

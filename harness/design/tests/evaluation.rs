@@ -7,8 +7,8 @@ use octant_calibration::filter::prior_sigmas;
 use octant_calibration::positions::{SEQUENCES, from_degrees, named};
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_design::evaluate::Evaluator;
-use octant_design::measure::Measure;
-use octant_design::setup::{Judge, Rotation, Setup};
+use octant_design::measure::DesignMeasure;
+use octant_design::setup::{DesignSetup, Judge, Rotation};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::DEG;
 use octant_observe::covariance::arcmin_m;
@@ -16,12 +16,12 @@ use octant_observe::covariance::arcmin_m;
 /// Allowed difference of a measure from the full recursion: times of measurements are simplified.
 const PART: f64 = 0.01;
 
-fn judge(setup: &Setup, name: &str) -> Judge {
-    Judge::new(setup, Measure::named(name).unwrap(), &setup.drift())
+fn judge(setup: &DesignSetup, name: &str) -> Judge {
+    Judge::new(setup, DesignMeasure::named(name).unwrap(), &setup.drift())
 }
 
 /// Root mean square of the longitude error over hours 69 to 72 by the full recursion, arcmin.
-fn observed_rms72(setup: &Setup, sequence: &Sequence, duration_s: f64) -> f64 {
+fn observed_rms72(setup: &DesignSetup, sequence: &Sequence, duration_s: f64) -> f64 {
     let predicted = setup.observe(sequence, duration_s).unwrap();
     let earth = Ellipsoid::at(setup.config.site.latitude_rad, setup.config.site.height_m);
     let last: Vec<f64> = predicted
@@ -42,7 +42,7 @@ fn own(stops: &[(f64, f64, f64)]) -> Sequence {
     Sequence::new(&stops.iter().map(stop).collect::<Vec<_>>(), 1).unwrap()
 }
 
-fn prior(setup: &Setup) -> Covariance {
+fn prior(setup: &DesignSetup) -> Covariance {
     let calibration = setup.config.calibration.as_ref().unwrap();
     let Estimator::Kalman(kalman) = &calibration.estimator else { panic!("{calibration:?}") };
     Covariance::from_sigmas(&prior_sigmas(kalman))

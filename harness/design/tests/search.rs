@@ -3,31 +3,31 @@
 use crate::cells::CELLS;
 use octant_design::bound::bound;
 use octant_design::candidate::{Gimbals, Limits};
-use octant_design::measure::Measure;
-use octant_design::search::{Effort, Found, Problem, SearchError, State};
+use octant_design::measure::DesignMeasure;
+use octant_design::search::{Found, SearchEffort, SearchError, SearchProblem, SearchState};
 use octant_design::setup::Rotation;
 
-fn problem(cell: usize, rotation: Rotation, limits: Limits) -> Problem {
+fn problem(cell: usize, rotation: Rotation, limits: Limits) -> SearchProblem {
     let setup = CELLS[cell].setup(rotation);
-    Problem::new(setup, Measure::named("longitude").unwrap(), limits, 1).unwrap()
+    SearchProblem::new(setup, DesignMeasure::named("longitude").unwrap(), limits, 1).unwrap()
 }
 
-fn search(problem: &Problem, effort: Effort) -> Found {
+fn search(problem: &SearchProblem, effort: SearchEffort) -> Found {
     problem.search(effort, 2, None, &mut |_, _, _| true).unwrap()
 }
 
-const SHORT: Effort = Effort { chains: 4, rounds: 3, steps: 10 };
+const SHORT: SearchEffort = SearchEffort { chains: 4, rounds: 3, steps: 10 };
 
 #[test]
 #[ignore = "minutes"]
 fn designs_come_close_to_the_bound() {
-    let effort = Effort { chains: 16, rounds: 40, steps: 100 };
+    let effort = SearchEffort { chains: 16, rounds: 40, steps: 100 };
     for (cell, rotation) in
         (0..6).flat_map(|c| [(c, Rotation::Sixteen), (c, Rotation::Tetrahedral)])
     {
         let problem = problem(cell, rotation, Limits::default());
         let started = std::time::Instant::now();
-        let mut told = |state: &State, _: usize, best: f64| {
+        let mut told = |state: &SearchState, _: usize, best: f64| {
             if state.round % 10 == 0 {
                 println!("  {} {best:.4}", state.round);
             }
@@ -56,16 +56,16 @@ fn threads_and_interrupts_do_not_change_the_result() {
     let three = problem.search(SHORT, 3, None, &mut |_, _, _| true).unwrap();
     assert_eq!((&one.stops, one.score.to_bits()), (&three.stops, three.score.to_bits()));
     let mut stored = None;
-    let mut ended = |state: &State, _: usize, _: f64| {
+    let mut ended = |state: &SearchState, _: usize, _: f64| {
         stored = Some(serde_json::to_string(state).unwrap());
         false
     };
     let interrupted = problem.search(SHORT, 2, None, &mut ended).unwrap_err();
     assert!(matches!(interrupted, SearchError::Interrupted { done: 1, rounds: 3 }));
-    let state: State = serde_json::from_str(&stored.unwrap()).unwrap();
+    let state: SearchState = serde_json::from_str(&stored.unwrap()).unwrap();
     let resumed = problem.search(SHORT, 2, Some(state.clone()), &mut |_, _, _| true).unwrap();
     assert_eq!((&one.stops, one.score.to_bits()), (&resumed.stops, resumed.score.to_bits()));
-    let other = Problem { seed: 2, ..problem };
+    let other = SearchProblem { seed: 2, ..problem };
     let refused = other.search(SHORT, 2, Some(state), &mut |_, _, _| true).unwrap_err();
     assert!(matches!(refused, SearchError::OtherSearch));
 }
@@ -103,17 +103,17 @@ fn designs_keep_the_limits() {
 #[test]
 fn limits_that_leave_nothing_are_refused() {
     let setup = CELLS[1].setup(Rotation::Sixteen);
-    let measure = Measure::named("longitude").unwrap();
+    let measure = DesignMeasure::named("longitude").unwrap();
     for limits in [
         Limits { grid_deg: 0, ..Limits::default() },
         Limits { azimuth_deg: (30, 90), ..Limits::default() },
         Limits { roll_deg: (0, 30), gimbals: Gimbals::Roll, ..Limits::default() },
         Limits { stops_max: 65, ..Limits::default() },
     ] {
-        assert!(Problem::new(setup.clone(), measure, limits, 1).is_err(), "{limits:?}");
+        assert!(SearchProblem::new(setup.clone(), measure, limits, 1).is_err(), "{limits:?}");
     }
     let late = Limits { lead_in_s: 5.0 * 3600.0, ..Limits::default() };
-    let problem = Problem::new(setup, measure, late, 1).unwrap();
+    let problem = SearchProblem::new(setup, measure, late, 1).unwrap();
     let found = problem.search(SHORT, 2, None, &mut |_, _, _| true).unwrap_err();
     assert!(matches!(found, SearchError::NothingFits { .. }));
 }
@@ -121,7 +121,7 @@ fn limits_that_leave_nothing_are_refused() {
 #[test]
 fn a_shorter_calibration_keeps_the_drift_of_eight_positions() {
     let problem = problem(1, Rotation::Tetrahedral, Limits::default());
-    let effort = Effort { chains: 4, rounds: 4, steps: 30 };
+    let effort = SearchEffort { chains: 4, rounds: 4, steps: 30 };
     // Eight positions in 4 h with sixteen moves.
     let shortest = problem.shortest(3.29, effort, 2, &mut |_, _, _, _| true).unwrap().unwrap();
     println!("{} {}", shortest.duration_s, shortest.bound_s);

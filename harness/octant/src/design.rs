@@ -1,6 +1,7 @@
 //! `octant design`: the sequence and the rotation with the least drift, and the bound of all of them.
 
 mod files;
+mod outcome;
 mod text;
 
 use crate::arguments::{ScenarioArguments, load, seconds, seed};
@@ -13,13 +14,13 @@ use files::{States, write_scenario};
 use octant_base::names::suggestion;
 use octant_base::{interrupt, pool};
 use octant_calibration::positions::{from_degrees, named};
-use octant_design::candidate::{Gimbals, GridStop, Limits};
-use octant_design::measure::Measure;
-use octant_design::report::{Design, SCHEMA};
-use octant_design::search::{Effort, Problem, SearchError, State};
-use octant_design::{DesignError, Rotation, Setup};
+use octant_design::candidate::{Gimbals, Limits};
+use octant_design::measure::DesignMeasure;
+use octant_design::report::{SCHEMA, SequenceDesign};
+use octant_design::search::{SearchEffort, SearchError, SearchProblem, SearchState};
+use octant_design::{DesignError, DesignSetup, Rotation};
 use octant_requirements::Verdict;
-use serde::Serialize;
+use outcome::{Outcome, Report, ShortestReport, name_of};
 use std::path::PathBuf;
 
 /// Duration of the eight positions whose drift `--shortest` keeps, s.
@@ -121,11 +122,11 @@ enum EffortChoice {
 }
 
 impl EffortChoice {
-    fn work(self) -> Effort {
+    fn work(self) -> SearchEffort {
         match self {
-            Self::Quick => Effort { chains: 8, rounds: 10, steps: 40 },
-            Self::Normal => Effort { chains: 16, rounds: 30, steps: 80 },
-            Self::Thorough => Effort { chains: 32, rounds: 60, steps: 80 },
+            Self::Quick => SearchEffort { chains: 8, rounds: 10, steps: 40 },
+            Self::Normal => SearchEffort { chains: 16, rounds: 30, steps: 80 },
+            Self::Thorough => SearchEffort { chains: 32, rounds: 60, steps: 80 },
         }
     }
 }
@@ -142,54 +143,21 @@ fn range(text: &str) -> Result<Range, String> {
     Ok(Range(number(low)?, number(high)?))
 }
 
-/// What the command prints as JSON.
-#[derive(Serialize)]
-struct Report {
-    schema: u32,
-    octant: &'static str,
-    scenario: String,
-    measure: String,
-    unit: &'static str,
-    seed: u64,
-    limits: Limits,
-    candidates: usize,
-    /// The designs, the best first.
-    designs: Vec<Design>,
-    shortest: Option<ShortestReport>,
-}
-
-/// The shortest calibration.
-#[derive(Serialize)]
-struct ShortestReport {
-    /// Measure of eight positions in 4 h with the scenario's own rotation.
-    target: f64,
-    duration_h: f64,
-    /// Shortest duration that the bound allows, h.
-    bound_h: f64,
-}
-
-/// A design with the sequence that it reports.
-struct Outcome {
-    rotation: Rotation,
-    design: Design,
-    stops: Vec<GridStop>,
-    shortest: Option<ShortestReport>,
-}
-
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let duration = arguments.duration.as_ref();
     let more: Vec<String> =
         duration.map(|time| format!("procedure.calibration.duration={time}")).into_iter().collect();
     let scenario = load(&arguments.scenario, &more)?;
-    let setup = Setup::of(&scenario).map_err(failed)?;
+    let setup = DesignSetup::of(&scenario).map_err(failed)?;
     let measure = measure(&arguments.minimise)?;
     let limits = limits(arguments)?;
     let mut outcomes = Vec::new();
-    let mut states = States::read(arguments)?;
+    let mut states = States::read(arguments.state.as_deref(), arguments.resume)?;
     watch_interrupts();
     for rotation in rotations(arguments.rotation) {
-        let problem = Problem::new(setup.with_rotation(*rotation), measure, limits, arguments.seed)
-            .map_err(failed)?;
+        let problem =
+            SearchProblem::new(setup.with_rotation(*rotation), measure, limits, arguments.seed)
+                .map_err(failed)?;
         outcomes.push(design(arguments, &setup, &problem, *rotation, &mut states)?);
     }
     outcomes.sort_by(|a, b| {
@@ -234,9 +202,9 @@ fn search_failed(error: SearchError) -> Failure {
     }
 }
 
-fn measure(name: &str) -> Result<Measure, Failure> {
-    Measure::named(name).ok_or_else(|| {
-        let all: Vec<String> = Measure::all().map(|measure| measure.name()).collect();
+fn measure(name: &str) -> Result<DesignMeasure, Failure> {
+    DesignMeasure::named(name).ok_or_else(|| {
+        let all: Vec<String> = DesignMeasure::all().map(|measure| measure.name()).collect();
         let known = suggestion(name, all.iter().map(String::as_str), "measures");
         Failure::input(format!("--minimise: unknown measure {name:?}, {known}"))
     })
@@ -275,23 +243,18 @@ fn limits(arguments: &Arguments) -> Result<Limits, Failure> {
     })
 }
 
-/// Name of a rotation in reports and stored states.
-fn name_of(rotation: Rotation) -> &'static str {
-    rotation.name().unwrap_or("scenario")
-}
-
 /// Designs for one rotation.
 fn design(
     arguments: &Arguments,
-    setup: &Setup,
-    problem: &Problem,
+    setup: &DesignSetup,
+    problem: &SearchProblem,
     rotation: Rotation,
     states: &mut States<'_>,
 ) -> Result<Outcome, Failure> {
     let jobs = arguments.jobs.map_or_else(pool::processors, usize::from);
     let effort = arguments.effort.work();
     let bar = ProgressBar::new(None, |progress| progress.message.clone());
-    let show = |duration_s: f64, state: &State, rounds: usize, best: f64| {
+    let show = |duration_s: f64, state: &SearchState, rounds: usize, best: f64| {
         bar.update(|progress| {
             (progress.done, progress.total) = (state.round as u64, Some(rounds as u64));
             progress.message = format!(
@@ -306,7 +269,7 @@ fn design(
     let mut kept = Ok(());
     let (problem, found, shortest) = if arguments.shortest {
         let target = eight(setup, problem)?;
-        let mut told = |duration_s: f64, state: &State, rounds: usize, best: f64| {
+        let mut told = |duration_s: f64, state: &SearchState, rounds: usize, best: f64| {
             show(duration_s, state, rounds, best);
             !interrupt::seen()
         };
@@ -318,10 +281,10 @@ fn design(
             duration_h: duration_s / 3600.0,
             bound_h: shortest.bound_s / 3600.0,
         };
-        (Problem { duration_s, ..problem.clone() }, shortest.found, Some(report))
+        (SearchProblem { duration_s, ..problem.clone() }, shortest.found, Some(report))
     } else {
         let stored = states.stored(rotation);
-        let mut told = |state: &State, rounds: usize, best: f64| {
+        let mut told = |state: &SearchState, rounds: usize, best: f64| {
             show(problem.duration_s, state, rounds, best);
             kept = states.keep(rotation, state);
             kept.is_ok() && !interrupt::seen()
@@ -330,19 +293,19 @@ fn design(
         (problem.clone(), found.map_err(search_failed).or_else(|e| kept.and(Err(e)))?, None)
     };
     bar.finish();
-    let design = Design::of(&problem, name_of(rotation), &found).map_err(search_failed)?;
+    let design = SequenceDesign::of(&problem, name_of(rotation), &found).map_err(search_failed)?;
     Ok(Outcome { rotation, design, stops: found.stops, shortest })
 }
 
 /// Returns the measure of eight positions in 4 h with the scenario's own rotation.
-fn eight(setup: &Setup, problem: &Problem) -> Result<f64, Failure> {
+fn eight(setup: &DesignSetup, problem: &SearchProblem) -> Result<f64, Failure> {
     let mut judge = octant_design::Judge::new(setup, problem.measure, &setup.drift());
     let stops = named("eight").unwrap_or_default();
     let sequence = from_degrees(stops, 1).map_err(Failure::bench)?;
     judge.score(&sequence, EIGHT_S).map_err(|error| failed(error.into()))
 }
 
-fn not_kept(problem: &Problem, target: f64) -> Failure {
+fn not_kept(problem: &SearchProblem, target: f64) -> Failure {
     Failure::input(format!(
         "failed to find a shorter calibration: none of {} h that was found keeps {target:.4} {}, the {} of eight \
          positions in 4 h; expected a longer --duration or a larger --effort",

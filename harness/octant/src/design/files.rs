@@ -1,13 +1,13 @@
 //! Files of a design: stored searches, and the scenario with the designed sequence.
 
-use super::{Arguments, Outcome, name_of};
+use super::outcome::{Outcome, name_of};
 use crate::failure::Failure;
 use crate::terminal::write;
 use octant_design::Rotation;
 use octant_design::candidate::GridStop;
-use octant_design::measure::Measure;
-use octant_design::report::Design;
-use octant_design::search::State;
+use octant_design::measure::DesignMeasure;
+use octant_design::report::SequenceDesign;
+use octant_design::search::SearchState;
 use octant_scenario::Scenario;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,13 +15,12 @@ use std::path::Path;
 /// Stored states of the searches, by rotation.
 pub(super) struct States<'a> {
     file: Option<&'a Path>,
-    all: BTreeMap<String, State>,
+    all: BTreeMap<String, SearchState>,
 }
 
 impl<'a> States<'a> {
-    pub(super) fn read(arguments: &'a Arguments) -> Result<Self, Failure> {
-        let file = arguments.state.as_deref();
-        let Some(path) = file.filter(|_| arguments.resume) else {
+    pub(super) fn read(file: Option<&'a Path>, resume: bool) -> Result<Self, Failure> {
+        let Some(path) = file.filter(|_| resume) else {
             return Ok(Self { file, all: BTreeMap::new() });
         };
         let bytes = std::fs::read(path).map_err(|error| {
@@ -36,11 +35,11 @@ impl<'a> States<'a> {
         Ok(Self { file, all })
     }
 
-    pub(super) fn stored(&self, rotation: Rotation) -> Option<State> {
+    pub(super) fn stored(&self, rotation: Rotation) -> Option<SearchState> {
         self.all.get(name_of(rotation)).cloned()
     }
 
-    pub(super) fn keep(&mut self, rotation: Rotation, state: &State) -> Result<(), Failure> {
+    pub(super) fn keep(&mut self, rotation: Rotation, state: &SearchState) -> Result<(), Failure> {
         let Some(path) = self.file else { return Ok(()) };
         self.all.insert(name_of(rotation).to_owned(), state.clone());
         let bytes = serde_json::to_vec(&self.all).map_err(Failure::bench)?;
@@ -52,11 +51,11 @@ impl<'a> States<'a> {
 pub(super) fn write_scenario(
     scenario: &Scenario,
     outcome: &Outcome,
-    measure: Measure,
+    measure: DesignMeasure,
     seed: u64,
     out: &Path,
 ) -> Result<(), Failure> {
-    let Design { score, bound, duration_h, .. } = &outcome.design;
+    let SequenceDesign { score, bound, duration_h, .. } = &outcome.design;
     let stop = |stop: &GridStop| {
         let GridStop { azimuth_deg, roll_deg, share } = stop;
         format!(

@@ -1,12 +1,12 @@
 //! A design as text: scores, the bound, and a table of the stops.
 
-use super::Report;
+use super::outcome::Report;
 use octant_base::number::significant;
-use octant_design::measure::Measure;
-use octant_design::report::Design;
+use octant_design::measure::DesignMeasure;
+use octant_design::report::SequenceDesign;
 use std::fmt::Write as _;
 
-pub(super) fn of(report: &Report, measure: Measure) -> String {
+pub(super) fn of(report: &Report, measure: DesignMeasure) -> String {
     let mut out = format!("{}\n", report.scenario);
     let _ = writeln!(out, "  minimised: {}, {}", measure.words(), measure.unit());
     if let Some(shortest) = &report.shortest {
@@ -25,7 +25,7 @@ pub(super) fn of(report: &Report, measure: Measure) -> String {
     out
 }
 
-fn one(design: &Design, measure: Measure) -> String {
+fn one(design: &SequenceDesign, measure: DesignMeasure) -> String {
     let figure = |value: f64| significant(value, 4);
     let mut out = match design.rotation {
         "scenario" => format!("  {:.2} h, rotation of the scenario\n", design.duration_h),
