@@ -87,7 +87,7 @@ impl Limits {
             return refuse(format!("stops: found {}, expected 2 to {STOPS_MAX}", self.stops_max));
         }
         for (name, (low, high)) in [("azimuth", self.azimuth_deg), ("roll", self.roll_deg)] {
-            if !(-900 <= low && low <= 0 && 0 <= high && high <= 900) {
+            if !((-900..=0).contains(&low) && (0..=900).contains(&high)) {
                 return refuse(format!(
                     "{name} range: found {low} to {high} deg, expected a range within ±900 deg that \
                      contains 0, where every sequence starts"

@@ -338,7 +338,7 @@ impl SearchProblem {
         order.sort_by(|a, b| scores[*a].total_cmp(&scores[*b]));
         let quarter = order.len() / 4;
         // Chains find their own way first.
-        if state.round % MEET_EVERY == 0 {
+        if state.round.is_multiple_of(MEET_EVERY) {
             for (good, bad) in order.iter().zip(order.iter().rev()).take(quarter) {
                 let from = state.chains[*good].best.clone();
                 state.chains[*bad] = Chain { at: from.clone(), best: from };

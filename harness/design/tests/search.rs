@@ -28,7 +28,7 @@ fn designs_come_close_to_the_bound() {
         let problem = problem(cell, rotation, Limits::default());
         let started = std::time::Instant::now();
         let mut told = |state: &SearchState, _: usize, best: f64| {
-            if state.round % 10 == 0 {
+            if state.round.is_multiple_of(10) {
                 println!("  {} {best:.4}", state.round);
             }
             true
