@@ -126,13 +126,13 @@ fn everything_that_a_core_is_configured_with_survives() {
                         longitude_rad: -n.next(),
                         height_m: n.next(),
                     },
-                    alignment: if i % 2 == 0 {
-                        Alignment::Given {
+                    alignment: match i % 3 {
+                        0 => Alignment::Given {
                             q_nb: rotation::exp(&Vector3::from(n.array())),
                             velocity_mps: Vector3::from(n.array()),
-                        }
-                    } else {
-                        Alignment::Coarse { duration_s: n.next() }
+                        },
+                        1 => Alignment::Coarse { duration_s: n.next() },
+                        _ => Alignment::Inertial { duration_s: n.next() },
                     },
                     calibration: (j > 0).then(|| Calibration {
                         sequence: sequence.clone(),
