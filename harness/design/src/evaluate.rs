@@ -1,6 +1,6 @@
 //! Covariance of a calibration, stop by stop: a candidate is judged in about a millisecond.
 //!
-//! Each dwell is one exact step ([`dwell`](super::dwell)). A move is carried in parts of a few seconds with
+//! Each dwell is one exact step (`dwell`). A move is carried in parts of a few seconds with
 //! its own attitudes, so that scale factors and misalignments act as they do in a run. What is simplified
 //! is the time of the measurements: they count from the arrival at a stop, not from the start, and those in
 //! a part of a move stand at its end, with the variance of their mean.

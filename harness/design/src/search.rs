@@ -123,7 +123,7 @@ pub enum SearchError {
     },
     /// The scenario can't be designed for.
     #[error(transparent)]
-    SequenceDesign(#[from] DesignError),
+    Design(#[from] DesignError),
 }
 
 impl SearchProblem {
