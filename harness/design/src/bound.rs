@@ -35,7 +35,7 @@ pub struct DriftBound {
     pub covariance: [[f64; LEFT]; LEFT],
     /// Weights of their products in the square of the measure.
     pub weights: [[f64; LEFT]; LEFT],
-    /// What the white noise of navigation adds to the square of the measure.
+    /// Square of the part by white noise of navigation.
     pub noise: f64,
 }
 
@@ -72,7 +72,7 @@ fn learn(covariance: &mut Covariance, combination: &[(usize, f64)]) {
             }
         }
     }
-    // What rounding left over.
+    // Remainder of the rounding.
     if let [(state, _)] = combination {
         covariance.reopen(*state, 0.0);
     }

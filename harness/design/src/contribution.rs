@@ -1,4 +1,4 @@
-//! What each stop of a sequence adds.
+//! Contribution of each stop of a sequence.
 
 use crate::search::SearchProblem;
 use crate::setup::Judge;

@@ -72,7 +72,7 @@ impl DesignMeasure {
         }
     }
 
-    /// What it is, in a line.
+    /// Meaning, in a line.
     #[must_use]
     pub fn words(&self) -> String {
         let (part, window) = match self {

@@ -23,7 +23,7 @@ pub const LAST_S: f64 = 3.0 * 3600.0;
 #[derive(Clone, Debug)]
 pub struct Quadratic {
     weight: Box<[CovarianceRow; STATE_COUNT]>,
-    /// What the noise adds.
+    /// Part of the noise.
     pub constant: f64,
 }
 

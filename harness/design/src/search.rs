@@ -25,12 +25,12 @@ const ANNEALED: f64 = 0.8;
 /// Trials for a random start that fits its duration.
 const STARTS_MAX: u64 = 200;
 
-/// What is searched for.
+/// Subject of a search.
 #[derive(Clone, Debug)]
 pub struct SearchProblem {
     /// The scenario.
     pub setup: DesignSetup,
-    /// What is minimised.
+    /// Measure to minimise.
     pub measure: DesignMeasure,
     /// Weights of navigation.
     pub drift: Drift,

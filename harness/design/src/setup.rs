@@ -1,4 +1,4 @@
-//! What a scenario gives to a design, and what it must not ask for.
+//! Inputs of a design from a scenario, and the scenarios that are refused.
 
 use super::evaluate::{Conditions, Evaluator, PART_S};
 use super::navigation::{Drift, Quadratic, drift};
@@ -35,9 +35,9 @@ pub enum DesignError {
     NotBuilt {
         /// The key.
         key: &'static str,
-        /// What was found.
+        /// Value found.
         found: String,
-        /// What a design needs.
+        /// Value that a design needs.
         expected: &'static str,
     },
     /// A sequence doesn't fit its duration.

@@ -19,7 +19,7 @@ fn search(problem: &SearchProblem, effort: SearchEffort) -> Found {
 const SHORT: SearchEffort = SearchEffort { chains: 4, rounds: 3, steps: 10 };
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "a study: docs/testing.md"]
 fn designs_come_close_to_the_bound() {
     let effort = SearchEffort { chains: 16, rounds: 40, steps: 100 };
     for (cell, rotation) in

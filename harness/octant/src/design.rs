@@ -82,6 +82,9 @@ pub(super) struct Arguments {
     /// Go on from the state in --state.
     #[arg(long, requires = "state")]
     resume: bool,
+    /// Replace the files of --out and --state.
+    #[arg(long)]
+    force: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -144,6 +147,7 @@ fn range(text: &str) -> Result<Range, String> {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    refuse_to_replace(arguments)?;
     let duration = arguments.duration.as_ref();
     let more: Vec<String> =
         duration.map(|time| format!("procedure.calibration.duration={time}")).into_iter().collect();
@@ -186,6 +190,20 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         print(&text::of(&report, measure))?;
     }
     Ok(Verdict::Pass)
+}
+
+/// Checks, before the search, that no file is lost to its result.
+fn refuse_to_replace(arguments: &Arguments) -> Result<(), Failure> {
+    let state = arguments.state.as_ref().filter(|_| !arguments.resume);
+    for (option, file) in [("--out", arguments.out.as_ref()), ("--state", state)] {
+        if let Some(file) = file.filter(|file| !arguments.force && file.exists()) {
+            return Err(Failure::input(format!(
+                "{option}: {} exists already, expected another name, or --force",
+                file.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn failed(error: DesignError) -> Failure {

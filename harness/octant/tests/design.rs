@@ -48,7 +48,7 @@ fn a_design_is_a_scenario_that_runs() {
     let (text, _) = ended(octant_in(here.path(), &["observe", "d.toml"]), 0);
     assert!(text.contains("designed, seed 1 with G states"), "{text}");
     // The same from the stored state on, and on one thread.
-    let resumed = [&json[..], &["--resume", "--jobs", "1"]].concat();
+    let resumed = [&json[..], &["--resume", "--jobs", "1", "--force"]].concat();
     assert_eq!(design(here.path(), &resumed).0, said);
 }
 
@@ -82,4 +82,8 @@ fn what_is_not_built_is_refused() {
     refused(&["--azimuth-range", "30"], &["expected whole degrees"]);
     refused(&["--lead-in", "3 h"], &["no candidate keeps the limits"]);
     refused(&["--state", "none.json", "--resume"], &["none.json"]);
+    // Nothing that was there is lost, and nothing is searched for before that is known.
+    refused(&["--out", "s.toml"], &["--out", "s.toml exists already", "--force"]);
+    refused(&["--state", "s.toml"], &["--state", "s.toml exists already"]);
+    assert_eq!(std::fs::read_to_string(here.path().join("s.toml")).unwrap(), SCENARIO);
 }

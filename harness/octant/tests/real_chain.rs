@@ -172,6 +172,12 @@ fn a_filter_gets_one_reference_and_no_average_of_a_base_that_may_turn() {
     let coarse = INERTIAL.replace("inertial", "coarse");
     let said = refused(&format!("{coarse}{COLUMNS}{STATIC}"));
     assert!(said.contains("procedure.alignment.method") && said.contains("\"inertial\""), "{said}");
+    let noise = "[procedure.calibration.aiding]\nnoise = \"1 mm/s\"\n";
+    let noisy = SETTLING.replace("aiding = { reference = \"velocity\" }\n", noise);
+    let wrong = folder.join("noisy.toml");
+    std::fs::write(&wrong, format!("schema = 1\n{noisy}{INERTIAL}{COLUMNS}{STATIC}")).unwrap();
+    let (_, said) = ends(&["run", wrong.to_str().unwrap()], 2);
+    assert!(said.contains("aiding.noise") && said.contains("without effect"), "{said}");
     let short = INERTIAL.replace("10 min", "5 s");
     let said = refused(&format!("{short}{COLUMNS}{STATIC}"));
     assert!(said.contains("procedure.alignment.duration") && said.contains("10 s"), "{said}");

@@ -197,6 +197,13 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
             "without effect with intervals = \"commanded\"",
         );
     }
+    if document.at("source.reference").is_some() {
+        add(
+            "procedure.calibration.aiding",
+            &["noise"],
+            "without effect: what source.reference knows has no noise",
+        );
+    }
     let uri = text(document, "source.uri").unwrap_or_default();
     if !uri.starts_with("text:") {
         add("source", &["text"], "without effect: source.uri is not text:FILE");

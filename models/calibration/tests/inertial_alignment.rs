@@ -254,13 +254,13 @@ fn sigma_is_that_of_all_impulses_together() {
         let noise = if kind == 0 { arw } else { vrw };
         let heading = libm::sqrt(sum[2]) * noise;
         assert!(
-            (sigma[2] / heading - 1.0).abs() < 0.05,
+            (sigma[2] / heading - 1.0).abs() < 0.02,
             "{kind}: {:e}, expected {heading:e}",
             sigma[2]
         );
         // About north; about east, where the heading takes a part of the error, it is less.
         let [north, east] = [0, 1].map(|axis| libm::sqrt(sum[axis]) * noise);
-        let bounds = (0.95 * north.max(east), 1.05 * north.max(east));
+        let bounds = (0.98 * north.max(east), 1.02 * north.max(east));
         assert!(
             (bounds.0..bounds.1).contains(&sigma[0]),
             "{kind}: {:e}, expected {bounds:?}",

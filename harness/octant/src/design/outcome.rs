@@ -1,4 +1,4 @@
-//! What a design comes to.
+//! Results of a design, as text and JSON have them.
 
 use octant_design::Rotation;
 use octant_design::candidate::{GridStop, Limits};
