@@ -46,7 +46,8 @@ pub struct MotionInterval {
 
 impl Transition {
     /// Advances the transition over one interval: `Φ ← (I + F h) Φ`, with the attitude error at the
-    /// middle of the interval driving velocity and the velocity error driving position.
+    /// middle of the interval driving velocity, and the velocity error at the middle driving
+    /// position and transport rate.
     pub fn advance(&mut self, model: ErrorModel, interval: &MotionInterval, earth: &Ellipsoid) {
         let input = parameter_input(interval, [true; 3], true);
         self.advance_by(model, interval, earth, &input);
@@ -103,17 +104,26 @@ impl Transition {
         let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
         let g_d = 2.0 * g / rm;
 
+        let half = 0.5 * h;
         let rows = &mut self.rows;
         for j in 0..rows[0].len() {
             let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
             let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
             let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
 
+            // Errors at the middle of the interval close the Schuler loop: with those at its start
+            // an oscillation would grow by (ω h)²/4 in each.
+            let (vn, ve) = (
+                dv[0] + 0.5 * (f.y * phi[2] - f.z * phi[1] + input[3][j]),
+                dv[1] + 0.5 * (f.z * phi[0] - f.x * phi[2] + input[4][j]),
+            );
+            let middle = [0, 1, 2].map(|axis| dr[axis] + half * dv[axis]);
+
             let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
             let en = [
-                en_x_ve * dv[1] + en_x_rd * dr[2],
-                en_y_vn * dv[0] + en_y_rd * dr[2],
-                en_z_ve * dv[1] + en_z_rn * dr[0] + en_z_rd * dr[2],
+                en_x_ve * ve + en_x_rd * dr[2],
+                en_y_vn * vn + en_y_rd * dr[2],
+                en_z_ve * ve + en_z_rn * dr[0] + en_z_rd * dr[2],
             ];
             let phi_new = [
                 phi[0] - (w_in.y * phi[2] - w_in.z * phi[1]) + ie[0] + en[0] + input[0][j],
@@ -131,18 +141,17 @@ impl Transition {
             let dv_new = [
                 dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
                     + (v.y * a[2] - v.z * a[1])
-                    + g_n * dr[0]
+                    + g_n * middle[0]
                     + input[3][j],
                 dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
                     + (v.z * a[0] - v.x * a[2])
-                    + g_e * dr[1]
+                    + g_e * middle[1]
                     + input[4][j],
                 dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
                     + (v.x * a[1] - v.y * a[0])
-                    + g_d * dr[2]
+                    + g_d * middle[2]
                     + input[5][j],
             ];
-            let half = 0.5 * h;
             let dr_new = [
                 dr[0] + half * (dv[0] + dv_new[0]) - (w_en.y * dr[2] - w_en.z * dr[1]),
                 dr[1] + half * (dv[1] + dv_new[1]) - (w_en.z * dr[0] - w_en.x * dr[2]),
