@@ -13,6 +13,7 @@ mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
 mod chain;
+mod coloured_sway;
 mod compare_refused;
 mod completions;
 mod core_arbitrary;

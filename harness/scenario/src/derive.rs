@@ -109,7 +109,12 @@ fn calibration(document: &mut DocumentTable) {
     set(document, "procedure.calibration.aiding.reference", reference);
     let position =
         text(document, "procedure.calibration.aiding.reference") == Some("dock-position");
-    let (sigma, noise) = if position { ("0.15 m", "0.01 m") } else { ("1 mm/s", "1 mm/s") };
+    let coloured = text(document, "procedure.calibration.aiding.sway") == Some("coloured");
+    let (sigma, noise) = match (position, coloured) {
+        (true, false) => ("0.15 m", "0.01 m"),
+        (true, true) => ("0.01 m", "0.01 m"),
+        (false, _) => ("1 mm/s", "1 mm/s"),
+    };
     set(document, "procedure.calibration.aiding.sigma", sigma);
     set(document, "procedure.calibration.aiding.noise", noise);
 

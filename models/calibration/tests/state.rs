@@ -41,6 +41,7 @@ fn kalman() -> Estimator {
         },
         aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
         aiding_period_ns: 1_000_000_000,
+        sway: SwayNoise::White,
         refuse_above_mean_nis: 1e9,
     })
 }
@@ -227,7 +228,7 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
     let error = Core::load(&std::fs::read(format!("{folder}/core-1.bin")).unwrap()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the state of a calibration core has version 1, this program reads version 2"
+        "the state of a calibration core has version 1, this program reads version 3"
     );
 }
 
