@@ -862,7 +862,7 @@ class ProcedureAlignment(Section):
     out: drawn from velocity."""
 
 class ProcedureCalibrationAiding(Section):
-    """The reference that the filter measures against. Takes a table with reference, period, sigma, noise."""
+    """The reference that the filter measures against. Takes a table with reference, period, sway, sigma, noise."""
 
     noise: str
     """Standard deviation of the white noise that the reference really has. Takes a velocity such as "1 mm/s" or
@@ -874,7 +874,9 @@ class ProcedureCalibrationAiding(Section):
     velocity"; dockside: "dock-position"."""
     sigma: str
     """Standard deviation of each axis, as the filter believes it. Takes a velocity such as "1 mm/s" or a length
-    such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.15 m."""
+    such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.15 m, with sway = "coloured" 0.01 m."""
+    sway: Literal["white", "coloured"]
+    """What the sway of the ship is to the filter. Takes one of "white", "coloured". Default: "white"."""
 
 class ProcedureCalibrationLeastSquares(Section):
     """Settings of the least-squares estimator. Takes a table with gravity, gyro, intervals, initial, window,
@@ -929,7 +931,8 @@ class ProcedureCalibration(Section):
 
     @property
     def aiding(self) -> ProcedureCalibrationAiding:
-        """The reference that the filter measures against. Takes a table with reference, period, sigma, noise."""
+        """The reference that the filter measures against. Takes a table with reference, period, sway, sigma,
+        noise."""
     @aiding.setter
     def aiding(self, value: ProcedureCalibrationAiding | Mapping[str, Any]) -> None: ...
     duration: str

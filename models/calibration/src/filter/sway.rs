@@ -22,8 +22,10 @@ const FIRST_COUNT: u32 = 64;
 const SPACING_S: f64 = 1.0;
 /// Change of the damping's logarithm by one measurement, for each unit by which its squared
 /// innovation differs from its variance. With 0.05 the damping follows within a minute and
-/// scatters by a third.
+/// scatters by a third; in the first 150 measurements after the first estimate it is larger, since
+/// a minute of velocities tells the damping within orders of magnitude only.
 const LEARNING: f64 = 0.05;
+const FIRST_LEARNING: (f64, f64) = (10.0, 50.0);
 /// Largest squared normalized innovation that the damping learns from, and the mean of a χ² of one
 /// degree of freedom that is cut off there.
 const LEARNED_MAX: f64 = 9.0;
@@ -63,13 +65,15 @@ pub(super) struct SwayStates {
     stride: u32,
     since: u32,
     wanted: u32,
+    /// Measurements since the first estimate.
+    estimated: u32,
     recursions: [Recursion; 3],
 }
 
 #[cfg(feature = "state")]
 octant_state::state! {
     SwayStates {
-        values: axes, state, own, heading, heading_sum, headings, since, wanted, recursions;
+        values: axes, state, own, heading, heading_sum, headings, since, wanted, estimated, recursions;
         parts: cross;
         kept: period_s, stride;
         check: Self::check_counts
@@ -105,6 +109,7 @@ impl SwayStates {
             stride: stride as u32,
             since: 0,
             wanted: FIRST_COUNT,
+            estimated: 0,
             recursions: [Recursion::default(); 3],
         };
         sway.reopen();
@@ -203,6 +208,9 @@ impl SwayStates {
         errors: &mut Covariance,
         x: &mut [f64; STATE_COUNT],
     ) {
+        let learning =
+            LEARNING.max(FIRST_LEARNING.0 / (FIRST_LEARNING.1 + f64::from(self.estimated)));
+        self.estimated = self.estimated.saturating_add(u32::from(self.wanted > FIRST_COUNT));
         for axis in 0..3 {
             let along = self.axes_in_n().column(axis).into_owned();
             let gain = self.gain(axis, errors);
@@ -234,7 +242,7 @@ impl SwayStates {
             }
             if !held {
                 let square = (normalized * normalized).min(LEARNED_MAX);
-                self.axes[axis].damp(LEARNING * (square - LEARNED_MEAN));
+                self.axes[axis].damp(learning * (square - LEARNED_MEAN));
             }
         }
     }
