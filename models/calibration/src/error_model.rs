@@ -104,21 +104,19 @@ impl Transition {
         let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
         let g_d = 2.0 * g / rm;
 
+        // Errors at the middle of the interval close the Schuler loop: with those at its start an
+        // oscillation would grow by (ω h)²/4 in each. Of the velocity there the tilt's part counts,
+        // in psi-angle form of the position there that of the velocity.
         let half = 0.5 * h;
+        let half_lift = 0.5 * f.z;
+        let (keep_n, keep_e) = (1.0 + half * g_n, 1.0 + half * g_e);
         let rows = &mut self.rows;
         for j in 0..rows[0].len() {
             let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
             let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
             let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
 
-            // Errors at the middle of the interval close the Schuler loop: with those at its start
-            // an oscillation would grow by (ω h)²/4 in each.
-            let (vn, ve) = (
-                dv[0] + 0.5 * (f.y * phi[2] - f.z * phi[1] + input[3][j]),
-                dv[1] + 0.5 * (f.z * phi[0] - f.x * phi[2] + input[4][j]),
-            );
-            let middle = [0, 1, 2].map(|axis| dr[axis] + half * dv[axis]);
-
+            let (vn, ve) = (dv[0] - half_lift * phi[1], dv[1] + half_lift * phi[0]);
             let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
             let en = [
                 en_x_ve * ve + en_x_rd * dr[2],
@@ -139,17 +137,17 @@ impl Transition {
             let a = [2.0 * ie[0] + en[0], en[1], 2.0 * ie[2] + en[2]];
             let c = &w_coriolis;
             let dv_new = [
-                dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
+                dv[0] * keep_n + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
                     + (v.y * a[2] - v.z * a[1])
-                    + g_n * middle[0]
+                    + g_n * dr[0]
                     + input[3][j],
-                dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
+                dv[1] * keep_e + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
                     + (v.z * a[0] - v.x * a[2])
-                    + g_e * middle[1]
+                    + g_e * dr[1]
                     + input[4][j],
                 dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
                     + (v.x * a[1] - v.y * a[0])
-                    + g_d * middle[2]
+                    + g_d * dr[2]
                     + input[5][j],
             ];
             let dr_new = [
