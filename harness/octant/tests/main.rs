@@ -76,6 +76,7 @@ mod recording;
 #[cfg(unix)]
 mod recording_killed;
 mod recording_other_readers;
+mod reference_columns;
 mod rejudge;
 mod replay;
 mod report;
