@@ -60,6 +60,7 @@ mod generated;
 mod hostile;
 mod innovations;
 #[cfg(unix)]
+mod least_squares_end;
 mod live;
 mod master;
 mod measures;

@@ -378,7 +378,7 @@ fn bad_references_are_refused_with_their_place() {
             "read ref.csv: found no reference at the stamp of a sample: the first is at 1767225600.500 s, the last",
         ),
         (POSITION, "0.5,95,0,0\n", "line 1: latitude is 95 deg, expected -90 to 90 deg"),
-        (POSITION, "0.5,30.5,-190,0\n", "line 1: longitude is -190 deg, expected -180 to 360 deg"),
+        (POSITION, "0.5,30.5,-190,0\n", "line 1: longitude is −190 deg, expected -180 to 360 deg"),
         (POSITION, "0.5,0.532,2.0996,20\n", "line 1: latitude 0.532 deg, longitude 2.0996 deg is "),
         (POSITION, "0.5,120.3,30.5,20\n", "line 1: latitude is 120.3 deg"),
     ] {
