@@ -78,6 +78,7 @@ mod recording;
 mod recording_killed;
 mod recording_other_readers;
 mod reference_columns;
+mod reference_rows;
 mod rejudge;
 mod replay;
 mod report;

@@ -9,7 +9,7 @@ pub enum ReferenceSpec {
     /// The instrument stands: this holds at all times.
     Static(octant_sample::Reference),
     /// Measured, at stamps of its own.
-    Recorded(RecordedReference),
+    Recorded(Box<RecordedReference>),
 }
 
 /// Quantity of a recorded reference.
@@ -87,13 +87,10 @@ impl ReferenceSpec {
     /// File of the reference, where it is one beside those of the samples.
     #[must_use]
     pub fn own_file(&self) -> Option<&Path> {
-        match self {
-            Self::Recorded(RecordedReference { place: ReferencePlace::Text(text), .. })
-                if text.own_file =>
-            {
-                Some(&text.file)
-            }
-            _ => None,
+        let Self::Recorded(recorded) = self else { return None };
+        match &recorded.place {
+            ReferencePlace::Text(text) if text.own_file => Some(&text.file),
+            ReferencePlace::Text(_) | ReferencePlace::Mcap(_) => None,
         }
     }
 }

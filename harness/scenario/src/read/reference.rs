@@ -79,7 +79,8 @@ pub(super) fn read(
             if of_position { "position" } else { "velocity" }
         )));
     }
-    Ok(Some(ReferenceSpec::Recorded(recorded(kind, own, keys, calibration, scenario)?)))
+    let recorded = recorded(kind, own, keys, calibration, scenario)?;
+    Ok(Some(ReferenceSpec::Recorded(Box::new(recorded))))
 }
 
 /// The reference of an instrument at rest, as `procedure.calibration.aiding` measures it.

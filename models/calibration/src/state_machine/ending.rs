@@ -80,8 +80,9 @@ impl Core {
     ) -> Result<(), CalibrationRefusal> {
         let site = self.config.site;
         let still = self.standstill;
-        let (elapsed_s, apply) = (still.elapsed_s, &self.compensation);
-        let (dtheta, dv) = apply.apply(&still.delta_theta, &still.delta_velocity, elapsed_s);
+        let elapsed_s = still.elapsed_s;
+        let (dtheta, dv) =
+            self.compensation.apply(&still.delta_theta, &still.delta_velocity, elapsed_s);
         let mut alignment = CoarseAlignment::new(&site);
         alignment.step(&dtheta, &dv, elapsed_s);
         let q_nb = alignment.finish().ok_or(CalibrationRefusal::Alignment)?;
