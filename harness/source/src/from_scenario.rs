@@ -51,13 +51,14 @@ fn reference(scenario: &Scenario) -> Result<Option<AddedReference>, SourceError>
         ))),
         Some(ReferenceSpec::Recorded(recorded)) => {
             let rows = match &recorded.place {
-                ReferencePlace::Text(columns) => ReferenceRows::Text(ReferenceText::open(
-                    &path(&columns.file)?,
-                    columns,
-                    recorded.names,
-                )?),
+                ReferencePlace::Text(columns) => {
+                    let file = path(&columns.file)?;
+                    let rows = ReferenceText::open(&file, columns, recorded.names)?;
+                    ReferenceRows::Text(Box::new(rows))
+                }
                 ReferencePlace::Mcap(fields) => {
-                    ReferenceRows::Mcap(ReferenceMcap::open(&path(&fields.file)?, fields)?)
+                    let rows = ReferenceMcap::open(&path(&fields.file)?, fields)?;
+                    ReferenceRows::Mcap(Box::new(rows))
                 }
             };
             let measured = MeasuredReference::new(rows, recorded, period_ns);

@@ -18,8 +18,8 @@ const SITE_M_MAX: f64 = 10_000.0;
 
 /// Where the reference is read from.
 pub(super) enum ReferenceRows {
-    Text(ReferenceText),
-    Mcap(ReferenceMcap),
+    Text(Box<ReferenceText>),
+    Mcap(Box<ReferenceMcap>),
 }
 
 impl ReferenceRows {
