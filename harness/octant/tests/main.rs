@@ -7,6 +7,7 @@ mod common;
 
 mod allan;
 mod architecture;
+mod branches;
 mod campaign;
 mod campaign_report;
 mod campaign_selection;

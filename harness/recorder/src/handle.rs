@@ -134,6 +134,17 @@ impl Recorder {
         }
     }
 
+    /// Makes a second recorder that goes on from here on its own; `None` for one that writes a file.
+    #[must_use]
+    pub fn branch(&self) -> Option<Self> {
+        let worker = match &self.worker {
+            None => None,
+            Some(Worker::Here(digest)) => Some(Worker::Here(digest.clone())),
+            Some(Worker::Thread(_)) => return None,
+        };
+        Some(Self { block: self.block.clone(), worker, ..*self })
+    }
+
     /// Makes a recorder with an empty block, and without a worker for full ones.
     fn with_blocks(options: &RecorderOptions) -> Self {
         let mut recorder = Self::none();

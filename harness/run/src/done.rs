@@ -18,7 +18,7 @@ const DWELL_PART: f64 = 0.5;
 const ALIGNMENT_SLACK_S: f64 = 60.0;
 
 /// Planned work of a method of a scenario.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlannedWork {
     /// Planned amounts.
     pub work: Work,
@@ -32,7 +32,7 @@ pub struct PlannedWork {
     tells: Option<Tells>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct PlannedStop {
     target: GimbalAngles,
     dwell_ns: u64,

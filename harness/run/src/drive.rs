@@ -56,7 +56,7 @@ where
 }
 
 /// State of the loop between two steps.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Steps {
     epoch: Epoch,
     output: Output,

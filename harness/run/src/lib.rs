@@ -13,6 +13,7 @@
 mod aligned;
 pub mod assemble;
 pub mod at_rest;
+pub mod branches;
 pub mod done;
 pub mod drive;
 mod ended;

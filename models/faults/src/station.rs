@@ -15,7 +15,7 @@ use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
 use crate::rule::{FaultRule, SetPoints, UnitEvent};
 use crate::setup::{FaultBuildError, Setup};
-use crate::trigger::{Clock, Scene, Schedule, Trigger};
+use crate::trigger::{Clock, News, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
 use alloc::string::String;
@@ -261,6 +261,23 @@ impl Station {
         if self.epoch >= self.wake || self.busy || Scene::of(output).packed() != self.seen {
             self.look(output, world);
         }
+    }
+
+    /// Returns whether a fault sets in at the next epoch, after this output of the core. What the station has
+    /// seen so far has to be untouched by faults; a fault that is fired by hand isn't known in advance.
+    ///
+    /// A run with faults is its twin up to the epoch before: the station changes nothing until then.
+    #[inline]
+    #[must_use]
+    pub fn sets_in_next(&self, output: &Output, truth: impl FnOnce() -> Option<Truth>) -> bool {
+        let epoch = self.epoch + 1;
+        if epoch < self.wake && !self.busy && Scene::of(output).packed() == self.seen {
+            return false;
+        }
+        let truth = if self.truth { truth() } else { None };
+        let (before, scene) = (self.scene, Scene::of(output));
+        let news = News { epoch, before, scene, output, truth: truth.as_ref() };
+        self.stages.iter().any(|stage| stage.clock.sets_in(&news))
     }
 
     /// Lets faults act on the set point of the present epoch.

@@ -1,0 +1,140 @@
+//! Runs that share their beginning are the undivided ones, bit for bit: any kinds, triggers and positions.
+
+#[path = "../../../models/faults/tests/any_fault/draw.rs"]
+mod draw;
+
+use octant_base::control::Control;
+use octant_faults::FaultSpec;
+use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
+use octant_run::branches::{BranchPlan, run_branches};
+use octant_run::method::{MethodError, MethodRun};
+use octant_run::{Ended, StreamKeeping, assemble, run_method};
+use octant_scenario::{Fault, Method, Place, Scenario};
+use proptest::prelude::*;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+
+/// Epochs of a run: twelve seconds of calibration with one move, and three of navigation.
+const EPOCHS: u64 = 3000;
+const SCENARIO: &str = "schema = 1\n\
+    [procedure.calibration]\nduration = \"12 s\"\n\
+    stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]\n\
+    [procedure.navigation]\nduration = \"3 s\"\n[record]\nsamples = \"full\"\n";
+
+fn scenario(specs: &[FaultSpec]) -> Scenario {
+    let mut scenario = Scenario::parse(SCENARIO, "f.toml", Path::new(""), &[]).unwrap();
+    assert_eq!(scenario.samples(), Some(EPOCHS));
+    let fault = |(index, spec): (usize, &FaultSpec)| {
+        let mut spec = FaultSpec { id: format!("f{index}"), ..spec.clone() };
+        if matches!(&spec.schedule.trigger, Trigger::After { fault, .. } if *fault == spec.id) {
+            spec.schedule.trigger = Trigger::Epoch(1000);
+        }
+        Fault { spec, fires: vec![500], place: Place::Default }
+    };
+    scenario.faults = specs.iter().enumerate().map(fault).collect();
+    scenario
+}
+
+/// Everything that a run came to, as text.
+fn text(scenario: &Scenario, seed: u64, run: Result<MethodRun, MethodError>) -> String {
+    match run {
+        Err(error) => error.to_string(),
+        Ok(run) => {
+            let observed = format!("{:?} {:?} {:?}", run.watcher, run.recorder, run.receipts);
+            let summary = assemble(scenario, seed, run, None).unwrap().summary;
+            summary.to_json().unwrap() + &observed
+        }
+    }
+}
+
+fn shared(scenarios: &[Scenario], seed: u64, keeping: StreamKeeping<'_>, jobs: usize) -> Vec<String> {
+    let controls: Vec<Control> = scenarios.iter().map(|_| Control::default()).collect();
+    let method = Method::Primary;
+    let plans: Vec<BranchPlan<'_>> = (scenarios.iter().zip(&controls))
+        .map(|(scenario, control)| BranchPlan { scenario, method, seed, control })
+        .collect();
+    let found: Mutex<Vec<Vec<String>>> = Mutex::new(vec![Vec::new(); scenarios.len()]);
+    run_branches(&plans, keeping, jobs, &|index, run| {
+        found.lock().unwrap()[index].push(text(&scenarios[index], seed, run));
+    });
+    let found = found.into_inner().unwrap();
+    assert!(found.iter().all(|one| one.len() == 1), "every run is told once");
+    found.into_iter().flatten().collect()
+}
+
+fn undivided(scenarios: &[Scenario], seed: u64, keeping: StreamKeeping<'_>) -> Vec<String> {
+    let run = |scenario| run_method(scenario, Method::Primary, seed, keeping, &Control::default());
+    scenarios.iter().map(|scenario| text(scenario, seed, run(scenario))).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn runs_that_branch_off_are_the_undivided_ones(
+        sets in proptest::collection::vec(proptest::collection::vec(draw::spec(), 0..4), 2..6),
+        seed in 0..1000u64,
+        jobs in 1..4usize,
+        keeping in prop::sample::select(vec![StreamKeeping::Hash, StreamKeeping::HashAlone, StreamKeeping::None]),
+    ) {
+        let scenarios: Vec<Scenario> = (sets.iter().map(|specs| scenario(specs)))
+            .filter(|scenario| scenario.station(seed).is_ok())
+            .collect();
+        let found = shared(&scenarios, seed, keeping, jobs);
+        for (found, expected) in found.iter().zip(undivided(&scenarios, seed, keeping)) {
+            prop_assert_eq!(found, &expected);
+        }
+    }
+
+    #[test]
+    fn conditions_on_what_the_core_and_the_truth_say_are_seen_in_time(
+        spec in draw::spec(),
+        signal in prop::sample::select(vec![
+            Signal::Nis, Signal::TrueGimbal(1), Signal::Velocity(0), Signal::LatitudeError,
+        ]),
+        value in 1e-9..3.0,
+        delay in 0..300u64,
+        seed in 0..1000u64,
+    ) {
+        let mut spec = spec;
+        let comparison = ThresholdSide::Above;
+        spec.schedule.trigger = Trigger::Condition { signal, comparison, value, delay };
+        let scenarios = [scenario(&[]), scenario(&[spec])];
+        let found = shared(&scenarios, seed, StreamKeeping::Hash, 1);
+        prop_assert_eq!(found, undivided(&scenarios, seed, StreamKeeping::Hash));
+    }
+}
+
+#[test]
+fn other_instruments_places_and_lengths_share_nothing() {
+    let clean = scenario(&[]);
+    let set = |text: &str| {
+        let words = [text.to_owned()];
+        Scenario::parse(SCENARIO, "f.toml", Path::new(""), &words).unwrap()
+    };
+    let scenarios = [
+        clean.clone(),
+        clean,
+        set("site.latitude=\"10 deg\""),
+        set("procedure.navigation.duration=\"4 s\""),
+        set("imu.rate=\"100 Hz\""),
+        set("procedure.calibration.g_states=false"),
+        set("source.uri=\"plant\""),
+    ];
+    let found = shared(&scenarios, 7, StreamKeeping::Hash, 2);
+    assert_eq!(found, undivided(&scenarios, 7, StreamKeeping::Hash));
+}
+
+#[test]
+fn the_end_of_one_run_can_be_asked_for_before_it_branches_off_and_after() {
+    let scenario = scenario(&[]);
+    let control = Control::default();
+    control.cancel.store(true, Ordering::Relaxed);
+    let plan = BranchPlan { scenario: &scenario, method: Method::Primary, seed: 1, control: &control };
+    let ended = Mutex::new(Vec::new());
+    run_branches(&[plan, plan], StreamKeeping::Hash, 1, &|_, run| {
+        ended.lock().unwrap().push(run.unwrap().ended);
+    });
+    assert_eq!(ended.into_inner().unwrap(), [Ended::Cancelled; 2]);
+}
