@@ -5,10 +5,10 @@
 //! that goes on from a stored state gives the same sequence as one that was never interrupted.
 
 use crate::candidate::{GridStop, Limits, sequence_of};
+use crate::judge::{Judge, MeasureWeights};
 use crate::measure::DesignMeasure;
 use crate::mutate::{Draws, changed, random};
-use crate::navigation::Drift;
-use crate::setup::{DesignError, DesignSetup, Judge};
+use crate::setup::{DesignError, DesignSetup};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
 use octant_calibration::sequence::Sequence;
@@ -32,8 +32,8 @@ pub struct SearchProblem {
     pub setup: DesignSetup,
     /// Measure to minimise.
     pub measure: DesignMeasure,
-    /// Weights of navigation.
-    pub drift: Drift,
+    /// The same, prepared.
+    pub weights: MeasureWeights,
     /// Limits of gimbals and sequence.
     pub limits: Limits,
     /// Duration of the calibration, s.
@@ -87,12 +87,14 @@ pub struct SearchState {
 /// Result of a search.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// The best candidate.
+    /// The best candidate, with its lead-in.
     pub stops: Vec<GridStop>,
     /// The same as a sequence.
     pub sequence: Sequence,
     /// Its measure.
     pub score: f64,
+    /// The next best candidates that visit other angles or the same in another order, the best first.
+    pub others: Vec<Found>,
 }
 
 /// Reasons why a search gave no sequence.
@@ -138,28 +140,29 @@ impl SearchProblem {
         seed: u64,
     ) -> Result<Self, DesignError> {
         limits.check()?;
-        let drift = setup.drift();
+        limits.check_lead_in(&setup.conditions.platform.rates)?;
+        let weights = MeasureWeights::new(&setup, measure)?;
         let duration_s = setup.duration_s;
-        Ok(Self { setup, measure, drift, limits, duration_s, seed })
+        Ok(Self { setup, measure, weights, limits, duration_s, seed })
     }
 
     /// Creates a judge of candidates.
     #[must_use]
     pub fn judge(&self) -> Judge {
-        Judge::new(&self.setup, self.measure, &self.drift)
+        Judge::new(&self.setup, &self.weights)
     }
 
     /// Returns the hash of everything that the result depends on.
     #[must_use]
     pub fn hash(&self, effort: SearchEffort) -> String {
         let mut hasher = blake3::Hasher::new();
-        let Self { setup, measure, drift, limits, duration_s, seed } = self;
+        let Self { setup, measure, weights, limits, duration_s, seed } = self;
         let conditions = &setup.conditions;
         let mut number = |value: f64| {
             hasher.update(&value.to_le_bytes());
         };
         conditions.initial.rows().iter().flatten().for_each(|value| number(*value));
-        let form = measure.form(drift, &conditions.platform.earth);
+        let form = &weights.form;
         (0..39).for_each(|i| (0..39).for_each(|j| number(form.at(i, j))));
         let platform = &conditions.platform;
         platform.c_nc.iter().for_each(|value| number(*value));
@@ -173,7 +176,8 @@ impl SearchProblem {
             platform.noise.0,
             platform.noise.1,
             conditions.start_s,
-            conditions.reference_sigma_mps,
+            conditions.reference.first as f64,
+            conditions.reference.sigma,
             conditions.period_s,
             *duration_s,
         ]
@@ -183,7 +187,7 @@ impl SearchProblem {
             "{STATE_VERSION} {} {:?} {limits:?} {seed} {effort:?} {:?}",
             measure.name(),
             platform.error_model,
-            drift.first
+            weights.first
         );
         hasher.update(rest.as_bytes());
         hasher.finalize().to_hex().to_string()
@@ -191,8 +195,9 @@ impl SearchProblem {
 
     fn score(&self, judge: &mut Judge, stops: &mut [GridStop]) -> f64 {
         let rates = self.setup.conditions.platform.rates;
-        let sequence = self.limits.sequence(stops, self.duration_s, &rates);
-        let score = sequence.and_then(|sequence| judge.score(&sequence, self.duration_s).ok());
+        let led_in = self.limits.led_in(stops, self.duration_s, &rates);
+        let sequence = led_in.and_then(|all| sequence_of(&all));
+        let score = sequence.and_then(|sequence| judge.fast(&sequence, self.duration_s).ok());
         score.filter(|score| score.is_finite()).unwrap_or(f64::INFINITY)
     }
 
@@ -348,21 +353,47 @@ impl SearchProblem {
         scores
     }
 
+    /// Ranks the best candidates of the chains by the measure itself.
     fn best(&self, state: &SearchState, judges: &Mutex<Vec<Judge>>) -> Result<Found, SearchError> {
         let mut judge = take(judges).unwrap_or_else(|| self.judge());
-        let mut best: Option<(Vec<GridStop>, f64)> = None;
+        let mut all: Vec<(Vec<GridStop>, f64)> = Vec::new();
         for chain in &state.chains {
             let mut stops = chain.best.clone();
             let score = self.score(&mut judge, &mut stops);
-            if score.is_finite() && best.as_ref().is_none_or(|(_, least)| score < *least) {
-                best = Some((stops, score));
+            all.push((stops, score));
+        }
+        all.retain(|(_, score)| score.is_finite());
+        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut distinct: Vec<(Vec<GridStop>, f64)> = Vec::new();
+        for (stops, score) in all {
+            if !distinct.iter().any(|(known, _)| angles(known) == angles(&stops)) {
+                distinct.push((stops, score));
             }
         }
+        let rates = self.setup.conditions.platform.rates;
+        let mut ranked = Vec::new();
+        for (mut candidate, mut score) in distinct {
+            let stops = self.limits.led_in(&mut candidate, self.duration_s, &rates);
+            let Some((stops, sequence)) = stops.and_then(|s| sequence_of(&s).map(|made| (s, made)))
+            else {
+                continue;
+            };
+            if judge.has_draws() {
+                score = judge.score(&sequence, self.duration_s).map_err(DesignError::from)?;
+            }
+            ranked.push(Found { stops, sequence, score, others: Vec::new() });
+        }
+        ranked.sort_by(|a, b| a.score.total_cmp(&b.score));
+        let mut ranked = ranked.into_iter();
+        let best = ranked.next();
         let nothing = SearchError::NothingFits { duration_s: self.duration_s };
-        let Some((stops, score)) = best else { return Err(nothing) };
-        let Some(sequence) = sequence_of(&stops) else { return Err(nothing) };
-        Ok(Found { stops, sequence, score })
+        best.map(|best| Found { others: ranked.collect(), ..best }).ok_or(nothing)
     }
+}
+
+/// Angles of a candidate, deg.
+fn angles(stops: &[GridStop]) -> Vec<(i32, i32)> {
+    stops.iter().map(|stop| (stop.azimuth_deg, stop.roll_deg)).collect()
 }
 
 /// Rounds between two meetings of the chains.
