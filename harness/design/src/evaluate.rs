@@ -27,7 +27,7 @@ const TIME_MIN_S: f64 = 1e-6;
 
 /// Measurement of the filter, on three axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reference {
+pub struct AidingReference {
     /// First of the three states that are measured: those of the velocity or of the position.
     pub first: usize,
     /// Standard deviation on each axis, m/s or m.
@@ -44,7 +44,7 @@ pub struct Conditions {
     /// Start of the filter, s: the time of the alignment before it, at the first stop.
     pub start_s: f64,
     /// Measurement.
-    pub reference: Reference,
+    pub reference: AidingReference,
     /// Time between two measurements, s.
     pub period_s: f64,
     /// Longest part of a move between two measurements, s: [`PART_S`], or a period to be exact.
@@ -71,7 +71,7 @@ impl Evaluator {
     /// Creates a judge under these conditions.
     #[must_use]
     pub fn new(conditions: Conditions) -> Self {
-        let Reference { first, sigma } = conditions.reference;
+        let AidingReference { first, sigma } = conditions.reference;
         let dwells = Dwells::new(&conditions.platform, conditions.period_s, (first, sigma * sigma));
         let (inputs, moves, last_moves) = Default::default();
         Self { conditions, dwells, inputs, moves, last_moves }
@@ -180,7 +180,7 @@ impl Evaluator {
 
     /// Takes in the measurements of a part: one with the variance of their mean.
     fn measure(&self, covariance: &mut Covariance, length_s: f64) {
-        let Reference { first, sigma } = self.conditions.reference;
+        let AidingReference { first, sigma } = self.conditions.reference;
         let variance = sigma * sigma * self.conditions.period_s / length_s;
         for axis in 0..3 {
             covariance.update(first + axis, variance, 0.0, &mut [0.0; STATE_COUNT]);

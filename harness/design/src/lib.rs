@@ -34,6 +34,7 @@ pub mod measure;
 mod mutate;
 pub mod navigation;
 mod platform;
+mod ranked;
 pub mod report;
 pub mod search;
 pub mod setup;

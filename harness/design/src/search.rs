@@ -8,12 +8,14 @@ use crate::candidate::{GridStop, Limits, sequence_of};
 use crate::judge::{Judge, MeasureWeights};
 use crate::measure::DesignMeasure;
 use crate::mutate::{Draws, changed, random};
+use crate::ranked::rank;
 use crate::setup::{DesignError, DesignSetup};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
-use octant_calibration::sequence::Sequence;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, PoisonError};
+
+pub use crate::ranked::Found;
 
 /// Version of the form of a stored search.
 pub const STATE_VERSION: u32 = 1;
@@ -82,19 +84,6 @@ pub struct SearchState {
     pub round: usize,
     /// Chains.
     pub chains: Vec<Chain>,
-}
-
-/// Result of a search.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The best candidate, with its lead-in.
-    pub stops: Vec<GridStop>,
-    /// The same as a sequence.
-    pub sequence: Sequence,
-    /// Its measure.
-    pub score: f64,
-    /// The next best candidates that visit other angles or the same in another order, the best first.
-    pub others: Vec<Found>,
 }
 
 /// Reasons why a search gave no sequence.
@@ -353,7 +342,6 @@ impl SearchProblem {
         scores
     }
 
-    /// Ranks the best candidates of the chains by the measure itself.
     fn best(&self, state: &SearchState, judges: &Mutex<Vec<Judge>>) -> Result<Found, SearchError> {
         let mut judge = take(judges).unwrap_or_else(|| self.judge());
         let mut all: Vec<(Vec<GridStop>, f64)> = Vec::new();
@@ -362,38 +350,11 @@ impl SearchProblem {
             let score = self.score(&mut judge, &mut stops);
             all.push((stops, score));
         }
-        all.retain(|(_, score)| score.is_finite());
-        all.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut distinct: Vec<(Vec<GridStop>, f64)> = Vec::new();
-        for (stops, score) in all {
-            if !distinct.iter().any(|(known, _)| angles(known) == angles(&stops)) {
-                distinct.push((stops, score));
-            }
-        }
         let rates = self.setup.conditions.platform.rates;
-        let mut ranked = Vec::new();
-        for (mut candidate, mut score) in distinct {
-            let stops = self.limits.led_in(&mut candidate, self.duration_s, &rates);
-            let Some((stops, sequence)) = stops.and_then(|s| sequence_of(&s).map(|made| (s, made)))
-            else {
-                continue;
-            };
-            if judge.has_draws() {
-                score = judge.score(&sequence, self.duration_s).map_err(DesignError::from)?;
-            }
-            ranked.push(Found { stops, sequence, score, others: Vec::new() });
-        }
-        ranked.sort_by(|a, b| a.score.total_cmp(&b.score));
-        let mut ranked = ranked.into_iter();
-        let best = ranked.next();
+        let ranked = rank(all, &mut judge, &self.limits, (self.duration_s, &rates));
         let nothing = SearchError::NothingFits { duration_s: self.duration_s };
-        best.map(|best| Found { others: ranked.collect(), ..best }).ok_or(nothing)
+        ranked.map_err(DesignError::from)?.ok_or(nothing)
     }
-}
-
-/// Angles of a candidate, deg.
-fn angles(stops: &[GridStop]) -> Vec<(i32, i32)> {
-    stops.iter().map(|stop| (stop.azimuth_deg, stop.roll_deg)).collect()
 }
 
 /// Rounds between two meetings of the chains.

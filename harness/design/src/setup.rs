@@ -1,6 +1,6 @@
 //! Inputs of a design from a scenario, and the scenarios that are refused.
 
-use super::evaluate::{Conditions, PART_S, Reference};
+use super::evaluate::{AidingReference, Conditions, PART_S};
 use super::navigation::{Drift, drift};
 use super::platform::{Platform, TURNING_S};
 use nalgebra::Matrix3;
@@ -227,14 +227,14 @@ fn reference(
     scenario: &Scenario,
     aiding: AidingMode,
     truth: &EnsembleTruth,
-) -> Result<Reference, DesignError> {
+) -> Result<AidingReference, DesignError> {
     let key = "procedure.calibration.aiding.reference";
     match (&scenario.motion, aiding) {
         (MotionSpec::Static(_), AidingMode::Velocity { sigma_mps }) => {
-            Ok(Reference { first: DV, sigma: truth.reference_sigma.unwrap_or(sigma_mps) })
+            Ok(AidingReference { first: DV, sigma: truth.reference_sigma.unwrap_or(sigma_mps) })
         }
         (MotionSpec::Dockside(_), AidingMode::Position { sigma_m }) => {
-            Ok(Reference { first: DR, sigma: sigma_m })
+            Ok(AidingReference { first: DR, sigma: sigma_m })
         }
         (MotionSpec::Static(_), AidingMode::Position { .. }) => {
             not_built(key, "\"dock-position\" at rest", "\"zero-velocity\"")

@@ -6,7 +6,7 @@ use octant_calibration::positions::{from_degrees, named};
 use octant_design::bound::bound;
 use octant_design::candidate::Limits;
 use octant_design::judge::{Judge, MeasureWeights};
-use octant_design::largest::{LargestErrors, Sampled};
+use octant_design::largest::LargestErrors;
 use octant_design::measure::DesignMeasure;
 use octant_design::search::{SearchEffort, SearchProblem};
 use octant_design::setup::{DesignSetup, Rotation};
@@ -23,43 +23,64 @@ fn eight(setup: &DesignSetup, duration_s: f64) -> LargestErrors {
     all[1]
 }
 
-/// Cells, and the rms of the largest longitude error in 72 h, arcmin: eight positions with sixteen moves and
-/// with the tetrahedral scheme, and the bound.
-fn expected() -> Vec<(Cell, [f64; 3])> {
-    let other = |g, hours| Cell { g, arw: 7e-4, hours, ..CELLS[0] };
-    let last = Cell { g: 5e-4, arw: 1e-4, hours: 24, ..CELLS[0] };
-    vec![
+#[test]
+fn the_bound_of_the_largest_error_is_that_of_an_independent_program() {
+    let golden = include_str!("../../../fixtures/golden/design.json");
+    let golden: serde_json::Value = serde_json::from_str(golden).unwrap();
+    for (cell, golden) in CELLS.iter().zip(golden["cells"].as_array().unwrap()) {
+        let number = |key: &str| golden[key].as_f64().unwrap();
+        let expected = number("largest_bound_arcmin");
+        let judge = judge(&cell.setup(Rotation::Tetrahedral), "longitude.largest");
+        let found = bound(&judge, cell.duration_s()).unwrap();
+        println!("{} ± {}, {expected}", found.value, found.sampling);
+        assert!(found.sampling < 0.01 * found.value, "{found:?}");
+        // Both are sampled. Points lie 200 s apart here and 120 s there: 0.3 % of an oscillation.
+        let error = number("largest_bound_standard_error_arcmin").hypot(found.sampling);
+        assert!(
+            (found.value - expected).abs() < 3.0 * error + 0.003 * expected,
+            "{cell:?} {} {expected} {error}",
+            found.value
+        );
+    }
+}
+
+/// Cells, and the rms of the largest longitude error in 72 h by another program, arcmin: eight positions with
+/// sixteen moves and with the tetrahedral scheme, and the bound.
+fn expected() -> [(Cell, [f64; 3]); 5] {
+    let other = Cell { g: 5e-3, arw: 7e-4, hours: 12, ..CELLS[0] };
+    [
         (CELLS[1], [3.71, 2.75, 2.41]),
         (CELLS[2], [2.20, 1.49, 1.38]),
         (CELLS[0], [5.28, 4.46, 3.18]),
-        (other(5e-3, 12), [2.35, 1.56, 1.40]),
+        (other, [2.35, 1.56, 1.40]),
         (CELLS[3], [1.70, 1.36, 1.32]),
-        (last, [0.56, 0.29, 0.26]),
     ]
 }
 
 #[test]
 fn largest_errors_are_those_of_another_program() {
+    let mut sum = 0.0;
     for (cell, expected) in expected() {
         let [sixteen, tetrahedral] =
             [Rotation::Sixteen, Rotation::Tetrahedral].map(|rotation| cell.setup(rotation));
         let judge = judge(&sixteen, "longitude.largest");
-        let bound = bound(&judge, cell.duration_s()).unwrap();
         let found = [
-            eight(&sixteen, cell.duration_s()).longitude_arcmin,
-            eight(&tetrahedral, cell.duration_s()).longitude_arcmin,
-            Sampled { value: bound.value, error: bound.sampling },
+            eight(&sixteen, cell.duration_s()).longitude_arcmin.value,
+            eight(&tetrahedral, cell.duration_s()).longitude_arcmin.value,
+            bound(&judge, cell.duration_s()).unwrap().value,
         ];
-        println!("{} {} {}: {found:?}", cell.g, cell.arw, cell.hours);
+        println!("{} {}: {found:?} {expected:?}", cell.g, cell.hours);
         for (found, expected) in found.iter().zip(expected) {
-            println!("  {:+.1} % of {expected}", 100.0 * (found.value / expected - 1.0));
-            assert!(found.error < 0.02 * found.value, "{found:?}");
-            // The other program's figures are of some hundreds of draws, which leave 3 % of a root mean square,
-            // and of two digits.
-            let sampling = 3.0 * (0.03 * expected).hypot(found.error) + 0.005;
-            assert!((found.value - expected).abs() < sampling, "{cell:?} {found:?} {expected}");
+            let part = found / expected - 1.0;
+            println!("  {:+.1} %", 100.0 * part);
+            // The other program's figures are plain means of draws, of a number that isn't known: a relative
+            // standard error of 3 %, as of five hundred draws of one normal error, is what is allowed for.
+            assert!(part.abs() < 3.0 * 0.03, "{cell:?} {found} {expected}");
+            sum += part;
         }
     }
+    // Of fifteen figures, not all independent.
+    assert!((sum / 15.0).abs() < 0.03, "{sum}");
 }
 
 #[test]
@@ -108,4 +129,19 @@ fn designs_of_the_largest_error_are_ranked_by_it() {
     let eight = eight(&problem.setup, cell.duration_s()).longitude_arcmin.value;
     println!("{} {eight} {bound}", found.score);
     assert!(found.score < eight);
+}
+
+#[test]
+fn tmp_passes() {
+    for (g, arw, hours) in [(2e-3, 7e-4, 12), (5e-3, 7e-4, 12), (5e-4, 1e-4, 24)] {
+        let cell = Cell { g, arw, hours, ..CELLS[0] };
+        for passes in [1, hours / 4] {
+            for rotation in [Rotation::Sixteen, Rotation::Tetrahedral] {
+                let setup = cell.setup(rotation);
+                let sequence = from_degrees(named("eight").unwrap(), passes).unwrap();
+                let all = setup.largest_after(&sequence, cell.duration_s()).unwrap();
+                println!("TMP {g} {hours} {passes} {rotation:?} {:?}", all[1].longitude_arcmin);
+            }
+        }
+    }
 }

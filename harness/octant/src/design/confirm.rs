@@ -216,7 +216,7 @@ impl Runs<'_> {
     ) -> Result<Vec<[SideResult; 2]>, Failure> {
         let eight: Vec<GridStop> = EIGHT.iter().map(GridStop::of_published).collect();
         let duration_s = problem.duration_s;
-        let reference = self.side(("eight", &eight), duration_s, Rotation::Sixteen)?;
+        let reference = self.side(("reference", &eight), duration_s, Rotation::Sixteen)?;
         let designed = self.side(("designed", &found.stops), duration_s, rotation)?;
         let key = runs_hash(&reference.0, &designed.0);
         let sides = [&reference.1, &designed.1];

@@ -78,7 +78,11 @@ fn one(design: &SequenceDesign, measure: DesignMeasure) -> String {
             );
         }
     }
-    let _ = writeln!(out, "    {:24} {:>12}", "bound of all sequences", figure(bound));
+    let sampling = match design.bound.sampling > 0.0 {
+        true => format!("   ± {} by the number of draws", significant(design.bound.sampling, 2)),
+        false => String::new(),
+    };
+    let _ = writeln!(out, "    {:24} {:>12}{sampling}", "bound of all sequences", figure(bound));
     let _ = writeln!(
         out,
         "    {:>4} {:>12} {:>10} {:>10} {:>10} {:>14} {:>14}",
