@@ -121,13 +121,18 @@ fn a_quick_round_of_the_eight_positions_leads_in() {
     assert_eq!(contributions[..EIGHT.len()].iter().map(angles).collect::<Vec<_>>(), round);
     // Alignment and round take as long as asked for; shares of the time are whole numbers.
     assert!(contributions[0].dwell_s >= limits.lead_in_s);
-    let ended_s = contributions[EIGHT.len() - 2].until_s;
-    assert!((1100.0..1250.0).contains(&ended_s), "{ended_s}");
+    // Shares are whole numbers: each dwell is longer by less than a share and a part in hundred.
+    let share_s = contributions[1].dwell_s / f64::from(found.stops[1].share);
+    let moves_s = moves_s(&from_degrees(EIGHT, 1).unwrap(), &RATES);
     for (stop, (.., weight)) in contributions[1..EIGHT.len() - 1].iter().zip(&EIGHT[1..]) {
-        // 900 s without its moves of 10 s and 5.5 s, for 20 shares.
-        let least = (900.0 - moves_s(&from_degrees(EIGHT, 1).unwrap(), &RATES)) / 20.0 * weight;
-        assert!((least - 1e-6..1.3 * least).contains(&stop.dwell_s), "{} {least}", stop.dwell_s);
+        let least_s = (900.0 - moves_s) / 20.0 * weight;
+        let longer_s = stop.dwell_s - least_s;
+        assert!((-1e-3..1.1 * share_s).contains(&longer_s), "{longer_s} {share_s}");
     }
+    // The dwell that ends the round is part of the next one.
+    let ended_s = contributions[EIGHT.len() - 2].until_s;
+    let asked_s = 300.0 + 900.0 - (900.0 - moves_s) / 20.0;
+    assert!((0.0..21.0 * share_s).contains(&(ended_s - asked_s)), "{ended_s} {asked_s} {share_s}");
     let narrow = Limits { azimuth_deg: (0, 90), ..limits };
     let short = Limits { round_s: 300.0, ..limits };
     let many = Limits { stops_max: 60, ..limits };

@@ -14,7 +14,7 @@ use crate::arguments::load;
 use crate::failure::Failure;
 use crate::progress::watch_interrupts;
 use crate::terminal::{print, print_json};
-use confirm::{Confirmed, Runs, check_confirmable, confirm};
+use confirm::{Confirmed, Runs, confirm};
 use files::{States, write_scenario};
 use octant_design::DesignSetup;
 use octant_design::report::SCHEMA;
@@ -32,8 +32,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = load(&arguments.scenario, &more)?;
     let setup = DesignSetup::of(&scenario).map_err(failed)?;
     let measure = measure(&arguments.minimise)?;
-    if arguments.confirm.is_some() {
-        check_confirmable(&setup)?;
+    let runs = arguments.confirm.map(|seeds| Runs {
+        scenario: &scenario,
+        setup: &setup,
+        seeds,
+        arguments,
+    });
+    if let Some(runs) = &runs {
+        runs.check()?;
     }
     let limits = limits(arguments)?;
     let mut outcomes = Vec::new();
@@ -49,11 +55,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let of = |outcome: &Outcome| (outcome.design.duration_h, outcome.design.score);
         of(a).0.total_cmp(&of(b).0).then(of(a).1.total_cmp(&of(b).1))
     });
-    let confirmation = match arguments.confirm {
-        Some(seeds) => {
-            let runs = Runs { scenario: &scenario, setup: &setup, seeds, arguments };
-            Some(confirm(&runs, &outcomes, &mut states)?)
-        }
+    let confirmation = match &runs {
+        Some(runs) => Some(confirm(runs, &outcomes, &mut states)?),
         None => None,
     };
     let written = confirmation.as_ref().and_then(Confirmed::design).or(outcomes.first());

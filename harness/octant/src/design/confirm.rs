@@ -48,18 +48,6 @@ impl Confirmed {
     }
 }
 
-/// Checks, before the search, that largest errors can be compared.
-pub(super) fn check_confirmable(setup: &DesignSetup) -> Result<(), Failure> {
-    if setup.navigation_s >= NAVIGATION_MIN_S {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "--confirm: found a navigation of {} h in procedure.navigation.duration, expected at least 24 h, the \
-         first time at which largest errors are compared",
-        setup.navigation_s / 3600.0
-    )))
-}
-
 /// A design to try.
 struct Candidate {
     about: String,
@@ -131,6 +119,20 @@ fn candidates(outcome: &Outcome, best: &str, next: &str) -> Vec<Candidate> {
 }
 
 impl Runs<'_> {
+    /// Checks, before the search, that the runs can be made and compared.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let navigation_s = self.setup.navigation_s;
+        if navigation_s < NAVIGATION_MIN_S {
+            return Err(Failure::input(format!(
+                "--confirm: found a navigation of {} h in procedure.navigation.duration, expected at least \
+                 24 h, the first time at which largest errors are compared",
+                navigation_s / 3600.0
+            )));
+        }
+        self.eight(self.setup.duration_s)?;
+        Ok(())
+    }
+
     fn rate(&self) -> String {
         let rate = self.arguments.confirm_rate.trim();
         match rate.parse::<f64>() {
@@ -214,10 +216,8 @@ impl Runs<'_> {
         found: &Found,
         states: &mut States<'_>,
     ) -> Result<Vec<[SideResult; 2]>, Failure> {
-        let eight: Vec<GridStop> = EIGHT.iter().map(GridStop::of_published).collect();
-        let duration_s = problem.duration_s;
-        let reference = self.side(("reference", &eight), duration_s, Rotation::Sixteen)?;
-        let designed = self.side(("designed", &found.stops), duration_s, rotation)?;
+        let reference = self.eight(problem.duration_s)?;
+        let designed = self.side(("designed", &found.stops), problem.duration_s, rotation)?;
         let key = runs_hash(&reference.0, &designed.0);
         let sides = [&reference.1, &designed.1];
         let seeds = self.seeds();
@@ -240,6 +240,12 @@ impl Runs<'_> {
             Ok::<_, Failure>(())
         })?;
         Ok(done)
+    }
+
+    /// Makes the side of eight positions with the sixteen moves.
+    fn eight(&self, duration_s: f64) -> Result<(String, MethodSide), Failure> {
+        let eight: Vec<GridStop> = EIGHT.iter().map(GridStop::of_published).collect();
+        self.side(("reference", &eight), duration_s, Rotation::Sixteen)
     }
 
     /// Makes the scenario of a side, as text and as what is run.

@@ -49,6 +49,13 @@ fn one(attempt: &Attempt) -> String {
             format!("{predicted} %"),
         );
     }
+    if result.refused != [0, 0] {
+        let [eight, designed] = result.refused;
+        let _ = writeln!(
+            out,
+            "      refused calibrations: {eight} of eight positions, {designed} of the design"
+        );
+    }
     let (low, high) = NORMALIZED;
     let sides = [("eight", &result.normalized_reference), ("designed", &result.normalized)];
     for (name, errors) in sides {
