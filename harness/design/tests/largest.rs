@@ -92,8 +92,8 @@ fn largest_errors_are_those_of_another_program() {
 fn of_one_error_alone_the_largest_is_that_of_the_closed_form() {
     // The isotropic part of G is a drift d = γ g about down. In a day it turns the latitude by
     // (d/Ω) cos L (1 − cos Ωt), at most 2 (d/Ω) cos L, beside Schuler oscillations of a part in hundred.
-    let cell = Cell { g: 5e-3, arw: 1e-6, hours: 4, ..CELLS[0] };
-    let setup = cell.setup(Rotation::Tetrahedral);
+    let mut setup = CELLS[0].setup(Rotation::Tetrahedral);
+    setup.conditions.platform.noise = (0.0, 0.0);
     let (gamma, diagonal) = (3e-9, [PARAMETERS + 12, PARAMETERS + 16, PARAMETERS + 20]);
     let mut start = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
     for i in diagonal {
