@@ -4,7 +4,7 @@ use super::evaluate::{AidingReference, Conditions, PART_S};
 use super::navigation::{Drift, drift};
 use super::platform::{Platform, TURNING_S};
 use nalgebra::Matrix3;
-use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan};
+use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan, SwayNoise};
 use octant_calibration::covariance::{Covariance, DR, DV, STATE_COUNT};
 use octant_calibration::positions;
 use octant_calibration::schedule::DoesNotFit;
@@ -133,6 +133,9 @@ impl DesignSetup {
                 "a group that is not estimated",
                 "that all groups are estimated",
             );
+        }
+        if kalman.sway != SwayNoise::White {
+            return not_built("procedure.calibration.aiding.sway", "\"coloured\"", "\"white\"");
         }
         let Some((plan, navigation_s)) =
             config.navigation.as_ref().and_then(|plan| Some((plan, plan.duration_s?)))

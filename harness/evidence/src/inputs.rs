@@ -47,5 +47,7 @@ pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputHashError> {
             Err(error) => Err(InputHashError::Read { file, error }),
         }
     };
-    scenario.source.recordings().into_iter().map(one).collect()
+    let reference = scenario.reference.as_ref().and_then(|reference| reference.own_file());
+    let reference = reference.map(|file| FileName(file.display().to_string()));
+    scenario.source.recordings().into_iter().chain(reference).map(one).collect()
 }

@@ -9,7 +9,9 @@
 use super::platform::{Platform, SAMPLE_S};
 use super::truth::{EnsembleTruth, TrueErrors, Unseen};
 use nalgebra::{Matrix3, Vector3};
-use octant_calibration::config::{AidingMode, CoreConfig, ErrorModel, Estimator, Kalman};
+use octant_calibration::config::{
+    AidingMode, CoreConfig, ErrorModel, Estimator, Kalman, SwayNoise,
+};
 use octant_calibration::covariance::{
     Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
 };
@@ -107,6 +109,12 @@ pub enum AnalysisError {
         "predict the covariance: found another estimator in procedure.calibration, expected \"kalman\""
     )]
     NotKalman,
+    /// The filter has states of the sway, which the prediction doesn't.
+    #[error(
+        "predict the covariance: found procedure.calibration.aiding.sway = \"coloured\", whose estimate isn't \
+         linear, expected \"white\""
+    )]
+    ColouredSway,
     /// The sequence doesn't fit.
     #[error("plan the calibration: {0}")]
     DoesNotFit(#[from] octant_calibration::schedule::DoesNotFit),
@@ -181,6 +189,9 @@ pub fn reach(
     let Estimator::Kalman(kalman) = &calibration.estimator else {
         return Err(AnalysisError::NotKalman);
     };
+    if kalman.sway != SwayNoise::White {
+        return Err(AnalysisError::ColouredSway);
+    }
     let rates = config.turntable;
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
     let home = GimbalAngles::default();

@@ -75,6 +75,7 @@ fn inputs() -> impl Strategy<Value = Vec<Input>> {
 enum Method {
     Kalman,
     Position,
+    ColouredSway,
     Psi,
     LeastSquares,
     Turntable,
@@ -92,6 +93,10 @@ fn config(method: Method, gate: u8, coarse: bool) -> CoreConfig {
     match method {
         Method::Kalman => {}
         Method::Position => kalman.aiding = AidingMode::Position { sigma_m: 0.15 },
+        Method::ColouredSway => {
+            kalman.aiding = AidingMode::Position { sigma_m: 0.01 };
+            kalman.sway = SwayNoise::Coloured;
+        }
         Method::Psi => kalman.error_model = ErrorModel::Psi,
         Method::LeastSquares => {
             calibration.estimator = Estimator::LeastSquares(LeastSquares {
@@ -178,6 +183,7 @@ proptest! {
         method in prop_oneof![
             Just(Method::Kalman),
             Just(Method::Position),
+            Just(Method::ColouredSway),
             Just(Method::Psi),
             Just(Method::LeastSquares),
             Just(Method::Turntable)

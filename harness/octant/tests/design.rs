@@ -86,6 +86,10 @@ fn what_is_not_built_is_refused() {
         &["procedure.calibration.aiding.reference", "expected \"zero-velocity\""],
     );
     refused(
+        &["--set", "motion.kind=dockside", "--set", "procedure.calibration.aiding.sway=coloured"],
+        &["procedure.calibration.aiding.sway", "found \"coloured\", expected \"white\""],
+    );
+    refused(
         &["--lead-in-round", "20 min", "--gimbals", "azimuth"],
         &["lead-in round", "expected both gimbals"],
     );

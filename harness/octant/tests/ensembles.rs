@@ -122,14 +122,14 @@ fn twenty_seeds_are_consistent() {
 }
 
 /// Compares six positions without G states and eight with them, 20 seeds, by a shipped scenario. At
-/// 50 Hz, a quarter of the work: drift doesn't depend on the rate. `tests/claims` has the same
+/// 10 Hz, a twentieth of the work: drift doesn't depend on the rate. `tests/claims` has the same
 /// cells at 200 Hz.
 fn claim(scenario: &str) -> octant_score::compare::MethodComparison {
     use octant_base::control::Control;
     use octant_run::paired::{MethodSide, paired};
     use octant_scenario::{Method, Scenario};
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenarios/");
-    let rate = ["imu.rate=50 Hz".to_owned()];
+    let rate = ["imu.rate=10 Hz".to_owned()];
     let path = format!("{path}{scenario}");
     let scenario = Scenario::load(std::path::Path::new(&path), &rate).unwrap();
     let side = |method| MethodSide { scenario: scenario.clone(), method };

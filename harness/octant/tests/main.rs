@@ -13,6 +13,7 @@ mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
 mod chain;
+mod coloured_sway;
 mod compare_refused;
 mod completions;
 mod core_arbitrary;
@@ -60,6 +61,7 @@ mod generated;
 mod hostile;
 mod innovations;
 #[cfg(unix)]
+mod least_squares_end;
 mod live;
 mod master;
 mod measures;
@@ -76,6 +78,8 @@ mod recording;
 #[cfg(unix)]
 mod recording_killed;
 mod recording_other_readers;
+mod reference_columns;
+mod reference_rows;
 mod rejudge;
 mod replay;
 mod report;

@@ -28,7 +28,7 @@ fn both_configurations(scenario: &Scenario) -> String {
         scenario.requirements,
         scenario.record,
         scenario.source,
-        scenario.known_reference,
+        scenario.reference,
         scenario.endpoint
     )
 }

@@ -76,8 +76,16 @@ fn methods(seed: u64) -> Vec<(&'static str, plant::PlantConfig, CoreConfig)> {
     .into_iter()
     .map(|(name, core)| (name, ground.clone(), core))
     .collect();
-    let afloat_kalman = Estimator::Kalman(kalman(&afloat));
-    all.push(("ship", ship, with_estimator(afloat, afloat_kalman)));
+    let white = kalman(&afloat);
+    let coloured = Kalman {
+        sway: SwayNoise::Coloured,
+        aiding: AidingMode::Position { sigma_m: 0.01 },
+        ..white
+    };
+    for (name, kalman) in [("ship", white), ("ship, coloured sway", coloured)] {
+        let core = with_estimator(afloat.clone(), Estimator::Kalman(kalman));
+        all.push((name, ship.clone(), core));
+    }
     all
 }
 

@@ -103,7 +103,8 @@ pub(super) fn alignment(summary: &Summary, units: &DisplayUnits) -> Markup {
     let degrees = |value: Option<f64>| number::optional(value, 3);
     html! {
         p.hint { "Attitude of the case by the encoders of the gimbals, with error and σ at the end of each phase. The σ \
-            is that of the filter: its prior after an alignment, its covariance after a calibration." }
+            is that of the filter: its prior after an alignment, its covariance after a calibration; without a filter \
+            that of the average of the last standstill." }
         table {
             thead { tr {
                 th { "Method" } th { "After" } th.n { "Heading, deg" } th.n { "Pitch, deg" } th.n { "Roll, deg" }

@@ -1,10 +1,10 @@
 //! Defaults that depend on other keys, and keys that have no effect beside others.
 
 use super::document::{DocumentNode, DocumentTable, DocumentValue, parse_default};
-use super::error::Problem;
+use super::error::{Place, Problem};
 use super::grades::GradeSheet;
 use super::keys::{
-    Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
+    Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys, TextKeys,
 };
 use super::quantity::{self, UnitDimension};
 use super::recorded::NO_TIME;
@@ -51,6 +51,9 @@ pub(crate) fn derive(document: &mut DocumentTable) {
             }
         }
     }
+    if document.at("source.reference").is_some() {
+        reference(document);
+    }
     if document.at("turntable.drive").is_some() {
         set(document, "turntable.drive.guard", if cfg!(unix) { "1 s" } else { "0 s" });
     }
@@ -66,6 +69,34 @@ pub(crate) fn derive(document: &mut DocumentTable) {
                 _ => rate,
             };
             set(document, &format!("{table}.rate"), &rate);
+        }
+    }
+}
+
+/// Layout of a text file that a reference shares with the samples, unless it gives its own.
+const LAYOUT: [&str; 4] = ["delimiter", "skip_lines", "header", "comment"];
+
+/// Adds the layout and the stamps of a recorded reference: those of the samples' text files.
+fn reference(document: &mut DocumentTable) {
+    let position = text(document, "source.reference.kind") == Some("position");
+    set(document, "source.reference.unit", if position { "deg" } else { "m/s" });
+    let as_text = text(document, "source.uri").is_some_and(|uri| uri.starts_with("text:"));
+    for name in LAYOUT.into_iter().chain(["time_column", "time_unit"]) {
+        let path = format!("source.reference.{name}");
+        let of_text = document.at(&format!("source.text.{name}")).map(|node| node.value.clone());
+        let value = match of_text.filter(|_| as_text) {
+            Some(value) => value,
+            None if name == "time_unit" && !as_text => parse_default("ns").value,
+            None => {
+                let mut keys = TextKeys::SECTION.keys.iter();
+                match keys.find(|key| key.name == name).map(|key| key.default) {
+                    Some(Default::Value(value)) => parse_default(value).value,
+                    _ => continue,
+                }
+            }
+        };
+        if document.at(&path).is_none() && reachable(document, &path) {
+            document.set_at(&path, DocumentNode { value, place: Place::Default });
         }
     }
 }
@@ -105,11 +136,21 @@ fn calibration(document: &mut DocumentTable) {
         set(document, "procedure.calibration.positions", "eight");
     }
     let dockside = text(document, "motion.kind") == Some("dockside");
-    let reference = if dockside { "dock-position" } else { "zero-velocity" };
+    let reference = match text(document, "source.reference.kind") {
+        Some("velocity") => "velocity",
+        Some("position") => "dock-position",
+        _ if dockside => "dock-position",
+        _ => "zero-velocity",
+    };
     set(document, "procedure.calibration.aiding.reference", reference);
     let position =
         text(document, "procedure.calibration.aiding.reference") == Some("dock-position");
-    let (sigma, noise) = if position { ("0.15 m", "0.01 m") } else { ("1 mm/s", "1 mm/s") };
+    let coloured = text(document, "procedure.calibration.aiding.sway") == Some("coloured");
+    let (sigma, noise) = match (position, coloured) {
+        (true, false) => ("0.15 m", "0.01 m"),
+        (true, true) => ("0.01 m", "0.01 m"),
+        (false, _) => ("1 mm/s", "1 mm/s"),
+    };
     set(document, "procedure.calibration.aiding.sigma", sigma);
     set(document, "procedure.calibration.aiding.noise", noise);
 
@@ -137,13 +178,17 @@ fn text<'a>(document: &'a DocumentTable, path: &str) -> Option<&'a str> {
     }
 }
 
+/// False if something other than a table is in the way.
+fn reachable(document: &DocumentTable, path: &str) -> bool {
+    let mut parents = path.match_indices('.').map(|(index, _)| &path[..index]);
+    parents.all(|parent| {
+        document.at(parent).is_none_or(|node| matches!(node.value, DocumentValue::Table(_)))
+    })
+}
+
 /// Sets a default, unless there is a value or something other than a table is in the way.
 fn set(document: &mut DocumentTable, path: &str, value: &str) {
-    let parents = path.match_indices('.').map(|(index, _)| &path[..index]);
-    let blocked = parents.into_iter().any(|parent| {
-        document.at(parent).is_some_and(|node| !matches!(node.value, DocumentValue::Table(_)))
-    });
-    if !blocked && document.at(path).is_none() {
+    if reachable(document, path) && document.at(path).is_none() {
         document.set_at(path, parse_default(value));
     }
 }
@@ -201,9 +246,10 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
         add(
             "procedure.calibration.aiding",
             &["noise"],
-            "without effect: what source.reference knows has no noise",
+            "without effect: source.reference is no simulation, to which noise is added",
         );
     }
+    reference_without_effect(document, &mut add);
     let uri = text(document, "source.uri").unwrap_or_default();
     if !uri.starts_with("text:") {
         add("source", &["text"], "without effect: source.uri is not text:FILE");
@@ -251,6 +297,46 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
     all
 }
 
+/// Keys of a reference that another key of it, or the source, leaves without effect.
+fn reference_without_effect(
+    document: &DocumentTable,
+    add: &mut impl FnMut(&str, &[&str], &'static str),
+) {
+    const TABLE: &str = "source.reference";
+    const VELOCITY: &[&str] = &["north", "east", "down", "up"];
+    const POSITION: &[&str] = &["latitude", "longitude", "height"];
+    const TEXT: &[&str] = &["file", "time_column"];
+    const MCAP: &[&str] = &["topic", "time_field", "nanoseconds_field"];
+    match text(document, "source.reference.kind") {
+        Some("velocity") => add(TABLE, POSITION, "without effect with kind = \"velocity\""),
+        Some("position") => add(TABLE, VELOCITY, "without effect with kind = \"position\""),
+        _ => {
+            let reason = "without effect with kind = \"static\"";
+            for keys in [VELOCITY, POSITION, TEXT, MCAP, &LAYOUT, &["unit", "time_unit"]] {
+                add(TABLE, keys, reason);
+            }
+            return;
+        }
+    }
+    let uri = text(document, "source.uri").unwrap_or_default();
+    if !uri.starts_with("text:") {
+        add(TABLE, TEXT, "without effect: source.uri is not text:FILE");
+        add(TABLE, &LAYOUT, "without effect: source.uri is not text:FILE");
+    } else if document.at("source.reference.file").is_none() {
+        add(
+            TABLE,
+            &LAYOUT,
+            "without effect: the columns are in the gyros' file, which source.text describes",
+        );
+    }
+    if !uri.starts_with("replay:") {
+        add(TABLE, MCAP, "without effect: source.uri is not replay:FILE");
+    }
+    if text(document, "source.reference.time_column") == Some(NO_TIME) {
+        add(TABLE, &["time_unit"], "without effect: the rows have no stamps");
+    }
+}
+
 /// Problems of keys that are given and have no effect.
 pub(crate) fn refuse_without_effect(document: &DocumentTable) -> Vec<Problem> {
     let given = |(path, reason): (String, &'static str)| {
@@ -262,7 +348,7 @@ pub(crate) fn refuse_without_effect(document: &DocumentTable) -> Vec<Problem> {
 
 /// First value of a tree that isn't a default.
 fn first_given(node: &DocumentNode) -> Option<&DocumentNode> {
-    if node.place != super::error::Place::Default {
+    if node.place != Place::Default {
         return Some(node);
     }
     match &node.value {

@@ -23,6 +23,7 @@ mod ports;
 pub mod quantity;
 pub mod read;
 pub mod recorded;
+pub mod reference;
 pub mod resolve;
 mod schema;
 pub mod suite;

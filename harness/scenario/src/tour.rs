@@ -445,11 +445,14 @@ mod tests {
             } else {
                 let (grandparent, inline) = parent.rsplit_once('.').unwrap();
                 let header = tour.find(&format!("[{grandparent}]")).unwrap();
-                // The comment above the line describes the keys that the line doesn't use.
-                let line = header
-                    + tour[header..].find(&format!("\n{inline} = ")).unwrap_or_else(|| {
-                        tour[header..].find(&format!("\n#: {inline} = ")).unwrap()
-                    });
+                // The comment above the line describes the keys that the line doesn't use. Another
+                // table may have a key of this name.
+                let line = ["", "#: "]
+                    .iter()
+                    .filter_map(|mark| tour[header..].find(&format!("\n{mark}{inline} = ")))
+                    .min()
+                    .unwrap();
+                let line = header + line;
                 let above = tour[header..line].lines().rev();
                 line - above.take_while(|l| l.starts_with("# ")).map(|l| l.len() + 1).sum::<usize>()
             };

@@ -94,6 +94,7 @@ impl Scenario {
             "endpoint.uri",
             "source.text.gyro.file",
             "source.text.accelerometer.file",
+            "source.reference.file",
             "turntable.drive.dialect",
             "source.live.database",
             "source.live.mapping",

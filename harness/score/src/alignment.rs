@@ -54,6 +54,7 @@ pub struct PointScore {
 
 impl PointScore {
     fn of(error: Option<f64>, sigma: Option<f64>) -> Self {
+        let sigma = sigma.filter(|sigma| sigma.is_finite());
         let pair = error.zip(sigma.filter(|sigma| *sigma > 0.0));
         Self { error, sigma, normalized: pair.map(|(error, sigma)| error / sigma) }
     }

@@ -3,6 +3,7 @@
 use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
+use super::measured::MeasuredReference;
 use super::{Epoch, LiveSource, PlantSource, Replay, Source, SourceError, TextSource};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
@@ -12,7 +13,13 @@ use octant_sample::disturbance::Disturbed;
 /// A source of any kind.
 pub struct AnySource {
     kind: Kind,
-    known: Option<KnownReference>,
+    reference: Option<AddedReference>,
+}
+
+/// A reference that the source doesn't bring.
+pub(super) enum AddedReference {
+    Known(KnownReference),
+    Measured(Box<MeasuredReference>),
 }
 
 enum Kind {
@@ -28,7 +35,7 @@ macro_rules! of {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for AnySource {
             fn from(source: $from) -> Self {
-                Self { kind: Kind::$kind(Box::new(source)), known: None }
+                Self { kind: Kind::$kind(Box::new(source)), reference: None }
             }
         })*
     };
@@ -53,16 +60,23 @@ macro_rules! each {
 impl AnySource {
     /// Adds a reference that the source doesn't bring.
     #[must_use]
-    pub(super) fn with_reference(self, known: Option<KnownReference>) -> Self {
-        Self { known, ..self }
+    pub(super) fn with_reference(self, reference: Option<AddedReference>) -> Self {
+        Self { reference, ..self }
     }
 }
 
 impl Source for AnySource {
     fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         let more = each!(&mut self.kind, source => source.next(command, epoch))?;
-        if let Some(known) = self.known.as_mut().filter(|_| more) {
-            epoch.aiding = known.at(epoch.sample.device_time);
+        let stamp = epoch.sample.device_time;
+        match &mut self.reference {
+            None => {}
+            Some(AddedReference::Known(known)) if more => epoch.aiding = known.at(stamp),
+            Some(AddedReference::Measured(measured)) if more => {
+                epoch.aiding = measured.at(stamp)?
+            }
+            Some(AddedReference::Measured(measured)) => measured.came()?,
+            Some(AddedReference::Known(_)) => {}
         }
         Ok(more)
     }

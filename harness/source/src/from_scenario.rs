@@ -1,11 +1,16 @@
 //! Opens the source of a scenario.
 
+use super::any::AddedReference;
 use super::known::KnownReference;
+use super::measured::{MeasuredReference, ReferenceRows};
+use super::reference_mcap::ReferenceMcap;
+use super::reference_text::ReferenceText;
 use super::{AnySource, LiveSource, Replay, SourceError, TextSource};
 use octant_plant::config::PlantConfig;
 use octant_scenario::recorded::{TextFiles, TextMapping};
+use octant_scenario::reference::{ReferencePlace, ReferenceSpec};
 use octant_scenario::{self as scenario, FileName, Scenario};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Checks that the source of a scenario can be opened. An instrument's port is opened only once:
 /// data sent in between would be lost.
@@ -26,8 +31,40 @@ pub fn check(scenario: &Scenario, plant: &PlantConfig) -> Result<(), SourceError
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
 pub fn open(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
-    let opened = open_itself(scenario, plant)?;
-    Ok(opened.map(|source| source.with_reference(KnownReference::of(scenario))))
+    let Some(opened) = open_itself(scenario, plant)? else { return Ok(None) };
+    Ok(Some(opened.with_reference(reference(scenario)?)))
+}
+
+/// Opens the reference of a scenario whose source brings none.
+fn reference(scenario: &Scenario) -> Result<Option<AddedReference>, SourceError> {
+    let period_ns = scenario.sample_period_ns;
+    let path = |file: &Path| {
+        let name = FileName(file.display().to_string());
+        name.path(&scenario.folder).map_err(SourceError::FileName)
+    };
+    Ok(match &scenario.reference {
+        None => None,
+        Some(ReferenceSpec::Static(known)) => Some(AddedReference::Known(KnownReference::new(
+            *known,
+            scenario.aiding.period_ns,
+            period_ns,
+        ))),
+        Some(ReferenceSpec::Recorded(recorded)) => {
+            let rows = match &recorded.place {
+                ReferencePlace::Text(columns) => {
+                    let file = path(&columns.file)?;
+                    let rows = ReferenceText::open(&file, columns, recorded.names)?;
+                    ReferenceRows::Text(Box::new(rows))
+                }
+                ReferencePlace::Mcap(fields) => {
+                    let rows = ReferenceMcap::open(&path(&fields.file)?, fields)?;
+                    ReferenceRows::Mcap(Box::new(rows))
+                }
+            };
+            let measured = MeasuredReference::new(rows, recorded, period_ns);
+            Some(AddedReference::Measured(Box::new(measured)))
+        }
+    })
 }
 
 fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {

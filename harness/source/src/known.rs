@@ -1,7 +1,6 @@
 //! A reference that the scenario knows and the source doesn't: of a recording made at rest.
 
 use octant_sample::{Aiding, DeviceTime, Reference};
-use octant_scenario::Scenario;
 
 /// The reference, at equal times of the samples' clock.
 #[derive(Clone, Copy, Debug)]
@@ -17,17 +16,16 @@ pub(super) struct KnownReference {
 }
 
 impl KnownReference {
-    /// Makes that of a scenario, if it has one.
-    pub(super) fn of(scenario: &Scenario) -> Option<Self> {
-        let sample_period_ns = scenario.sample_period_ns;
-        scenario.known_reference.map(|reference| Self {
+    /// Makes one that comes once a period.
+    pub(super) fn new(reference: Reference, period_ns: u64, sample_period_ns: u64) -> Self {
+        Self {
             reference,
-            period_ns: scenario.aiding.period_ns,
+            period_ns,
             slack_ns: sample_period_ns / 2,
             started_ns: None,
             given: 0,
             sample_period_ns,
-        })
+        }
     }
 
     /// Returns the reference for a sample with this stamp, if one is due.
@@ -51,14 +49,8 @@ mod tests {
 
     #[test]
     fn it_comes_once_a_period_with_the_stamp_of_its_sample() {
-        let mut known = KnownReference {
-            reference: Reference::Velocity([0.0; 3]),
-            period_ns: 1_000_000_000,
-            slack_ns: 50_000_000,
-            started_ns: None,
-            given: 0,
-            sample_period_ns: 100_000_000,
-        };
+        let reference = Reference::Velocity([0.0; 3]);
+        let mut known = KnownReference::new(reference, 1_000_000_000, 100_000_000);
         let start_ns = 5_000_000_000;
         let mut came = Vec::new();
         // A tenth of a second each, two milliseconds of jitter, and a gap from 2.2 s to 4.5 s.

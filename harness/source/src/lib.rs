@@ -4,13 +4,18 @@
 mod any;
 pub mod configure;
 mod counting;
+mod decimal;
 mod fields;
 mod fmu;
 mod foreign;
 mod from_scenario;
 mod known;
 mod live;
+mod measured;
+mod messages;
 mod plant;
+mod reference_mcap;
+mod reference_text;
 mod replay;
 mod rows;
 mod text;

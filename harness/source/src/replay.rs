@@ -38,7 +38,7 @@ impl Replay {
         let kind = match mapping {
             Some(mapping) => {
                 let file = File::open(path).map_err(|e| read_error(&name, &ReadError::Open(e)))?;
-                Kind::Foreign(Box::new(Foreign::new(BufReader::new(file), &name, mapping.clone())?))
+                Kind::Foreign(Box::new(Foreign::new(BufReader::new(file), &name, mapping)?))
             }
             None => {
                 let recording = Recording::open(path).map_err(|e| read_error(&name, &e))?;

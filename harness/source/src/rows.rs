@@ -1,9 +1,10 @@
 //! Reads rows of a delimited text file and keeps the position for error messages.
 
 use super::SourceError;
+use super::decimal::decimal_ns;
 use csv::StringRecord;
 use octant_base::number::counted;
-use octant_scenario::recorded::{Delimiter, RecordedColumn};
+use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -146,6 +147,15 @@ impl Rows {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(self.column_error(index, format!("found {text:?}, expected a finite number"))),
         }
+    }
+
+    /// Returns a field as a time, ns.
+    pub(super) fn time_ns(&self, index: usize, unit: TimeUnit) -> Result<u64, SourceError> {
+        let text = self.field(index)?;
+        decimal_ns(text, unit).ok_or_else(|| {
+            let reason = format!("found {text:?}, expected a time from 0 to 2^64 ns");
+            self.column_error(index, reason)
+        })
     }
 
     pub(super) fn column_error(&self, index: usize, reason: String) -> SourceError {

@@ -126,8 +126,22 @@ pub struct Kalman {
     pub aiding: AidingMode,
     /// Period of aiding and of covariance propagation, ns: a multiple of the sample period.
     pub aiding_period_ns: u64,
+    /// What the sway of the base is to the filter.
+    pub sway: SwayNoise,
     /// Mean NIS (three axes) above which the calibration is refused.
     pub refuse_above_mean_nis: f64,
+}
+
+/// What the sway of the base is to a filter whose reference is fixed to the dock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub enum SwayNoise {
+    /// White noise, within the standard deviation of the reference.
+    #[default]
+    White,
+    /// Coloured noise of second order on each axis of the ship, whose period, size and damping are
+    /// estimated.
+    Coloured,
 }
 
 /// Prior standard deviations, SI.
@@ -161,7 +175,7 @@ pub enum AidingMode {
         /// Standard deviation of each axis, m/s.
         sigma_mps: f64,
     },
-    /// Position of the dock; sway is treated as white noise.
+    /// Position of the dock, from which the sway moves the instrument.
     Position {
         /// Standard deviation of each axis, m.
         sigma_m: f64,

@@ -49,7 +49,7 @@ impl octant_state::State for Transition {
 type Eights = [[f64; 8]; ROW / 8];
 
 #[cfg(feature = "state")]
-fn save_rows(rows: &[CovarianceRow], to: &mut octant_state::Writer) {
+pub(crate) fn save_rows(rows: &[CovarianceRow], to: &mut octant_state::Writer) {
     for row in rows {
         let eights: Eights = core::array::from_fn(|i| core::array::from_fn(|j| row[8 * i + j]));
         to.value("row", &eights);
@@ -57,7 +57,7 @@ fn save_rows(rows: &[CovarianceRow], to: &mut octant_state::Writer) {
 }
 
 #[cfg(feature = "state")]
-fn load_rows(
+pub(crate) fn load_rows(
     rows: &mut [CovarianceRow],
     from: &mut octant_state::StateReader<'_>,
 ) -> Result<(), octant_state::StateError> {
@@ -229,6 +229,17 @@ impl Covariance {
         }
         for (x, p) in x[..MOVING].iter_mut().zip(&row) {
             *x += p * (scale * scale * innovation);
+        }
+    }
+
+    /// Subtracts the square of a normalized gain; `held`: the parameters keep their covariance, as in
+    /// [`Self::update_moving`].
+    pub fn subtract_square(&mut self, gain: &CovarianceRow, held: bool) {
+        for (i, p_row) in self.p.iter_mut().enumerate() {
+            let end = if held && i >= MOVING { MOVING } else { ROW };
+            for (p, u) in p_row[..end].iter_mut().zip(gain) {
+                *p -= gain[i] * u;
+            }
         }
     }
 

@@ -26,6 +26,9 @@ const GYRO_OFF_DIAGONAL: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), 
 /// Rows and columns of M_a in the order of its off-diagonal states.
 const ACCEL_OFF_DIAGONAL: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
 
+/// Error states of the accelerometers' parameters.
+const ACCELEROMETERS: core::ops::Range<usize> = PARAMETERS + 21..PARAMETERS + 30;
+
 /// Motion in a short interval, as far as errors depend on it. Accurate to second order in its
 /// length as long as the body turns by less than about a degree.
 #[derive(Clone, Copy, Debug)]
@@ -46,10 +49,11 @@ pub struct MotionInterval {
 
 impl Transition {
     /// Advances the transition over one interval: `Φ ← (I + F h) Φ`, with the attitude error at the
-    /// middle of the interval driving velocity and the velocity error driving position.
+    /// middle of the interval driving velocity, and the velocity error at the middle driving
+    /// position and transport rate.
     pub fn advance(&mut self, model: ErrorModel, interval: &MotionInterval, earth: &Ellipsoid) {
         let input = parameter_input(interval, [true; 3], true);
-        self.advance_by(model, interval, earth, &input);
+        self.advance_in(model, interval, earth, input);
     }
 
     /// Advances the transition over an interval in which known motion replaced some of the gyros
@@ -68,15 +72,27 @@ impl Transition {
         if !accelerometers_used {
             interval.delta_velocity_n = Vector3::zeros();
         }
-        self.advance_by(model, &interval, earth, &input);
+        self.advance_in(model, &interval, earth, input);
     }
 
-    fn advance_by(
+    fn advance_in(
         &mut self,
         model: ErrorModel,
         interval: &MotionInterval,
         earth: &Ellipsoid,
-        input: &[CovarianceRow; 6],
+        input: [CovarianceRow; 6],
+    ) {
+        match model {
+            ErrorModel::Phi => self.advance_by::<true>(interval, earth, input),
+            ErrorModel::Psi => self.advance_by::<false>(interval, earth, input),
+        }
+    }
+
+    fn advance_by<const PHI_ANGLE: bool>(
+        &mut self,
+        interval: &MotionInterval,
+        earth: &Ellipsoid,
+        mut input: [CovarianceRow; 6],
     ) {
         let h = interval.interval_s;
         let v = &interval.velocity_mps;
@@ -89,7 +105,7 @@ impl Transition {
         let f = &interval.delta_velocity_n;
 
         // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; zero in psi-angle form.
-        let on = if model == ErrorModel::Phi { 1.0 } else { 0.0 };
+        let on = if PHI_ANGLE { 1.0 } else { 0.0 };
         let ie_x_rn = on * w_ie.z / rm;
         let ie_z_rn = -on * w_ie.x / rm;
         let en_x_ve = on * h / rn;
@@ -103,17 +119,33 @@ impl Transition {
         let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
         let g_d = 2.0 * g / rm;
 
+        // Errors at the middle of the interval close the Schuler loop: with those at its start an
+        // oscillation would grow by (ω h)²/4 in each. Of the velocity there the parts of tilt and
+        // accelerometers count, which a reference lets cancel; in psi-angle form of the position
+        // there that of the velocity.
+        let half = 0.5 * h;
+        let half_f = f * 0.5;
+        for j in ACCELEROMETERS {
+            let (vn, ve) = (0.5 * input[3][j], 0.5 * input[4][j]);
+            input[0][j] += en_x_ve * ve;
+            input[1][j] += en_y_vn * vn;
+            input[2][j] += en_z_ve * ve;
+        }
         let rows = &mut self.rows;
         for j in 0..rows[0].len() {
             let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
             let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
             let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
 
+            let (vn, ve) = (
+                dv[0] + (half_f.y * phi[2] - half_f.z * phi[1]),
+                dv[1] + (half_f.z * phi[0] - half_f.x * phi[2]),
+            );
             let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
             let en = [
-                en_x_ve * dv[1] + en_x_rd * dr[2],
-                en_y_vn * dv[0] + en_y_rd * dr[2],
-                en_z_ve * dv[1] + en_z_rn * dr[0] + en_z_rd * dr[2],
+                en_x_ve * ve + en_x_rd * dr[2],
+                en_y_vn * vn + en_y_rd * dr[2],
+                en_z_ve * ve + en_z_rn * dr[0] + en_z_rd * dr[2],
             ];
             let phi_new = [
                 phi[0] - (w_in.y * phi[2] - w_in.z * phi[1]) + ie[0] + en[0] + input[0][j],
@@ -128,21 +160,22 @@ impl Transition {
             // a = (2δω_ie + δω_en) h; −a × v = v × a.
             let a = [2.0 * ie[0] + en[0], en[1], 2.0 * ie[2] + en[2]];
             let c = &w_coriolis;
-            let dv_new = [
+            let mut dv_new = [
                 dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
                     + (v.y * a[2] - v.z * a[1])
-                    + g_n * dr[0]
                     + input[3][j],
                 dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
                     + (v.z * a[0] - v.x * a[2])
-                    + g_e * dr[1]
                     + input[4][j],
                 dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
                     + (v.x * a[1] - v.y * a[0])
                     + g_d * dr[2]
                     + input[5][j],
             ];
-            let half = 0.5 * h;
+            if !PHI_ANGLE {
+                dv_new[0] += g_n * (dr[0] + half * dv[0]);
+                dv_new[1] += g_e * (dr[1] + half * dv[1]);
+            }
             let dr_new = [
                 dr[0] + half * (dv[0] + dv_new[0]) - (w_en.y * dr[2] - w_en.z * dr[1]),
                 dr[1] + half * (dv[1] + dv_new[1]) - (w_en.z * dr[0] - w_en.x * dr[2]),

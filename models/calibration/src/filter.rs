@@ -7,15 +7,17 @@
 mod checkpoint;
 mod measurement;
 mod noise;
+mod oscillator;
 mod recovery;
 mod solution;
 mod sub_step;
+mod sway;
 
 pub use measurement::MeasurementResult;
 pub use noise::add_process_noise;
 pub use sub_step::{SensorIntegrals, sub_step_samples};
 
-use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Screening, Site};
+use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Screening, Site, SwayNoise};
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
 use crate::drift::DriftTest;
 use crate::error_model::MotionInterval;
@@ -26,6 +28,7 @@ use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use sub_step::SubStep;
+use sway::SwayStates;
 
 /// Counts over the whole calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,6 +80,8 @@ pub struct CalibrationFilter {
     keeps_attitude: bool,
     tally: Tally,
     drift: Option<DriftTest>,
+    /// States of the base's sway; `None`: none, or white noise of the reference.
+    sway: Option<SwayStates>,
     /// The older and the newer checkpoint.
     checkpoints: Option<[Checkpoint; 2]>,
 }
@@ -85,7 +90,7 @@ pub struct CalibrationFilter {
 octant_state::state! {
     CalibrationFilter {
         values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, keeps_attitude, tally;
-        parts: covariance, transition, sub_step, drift, checkpoints;
+        parts: covariance, transition, sub_step, drift, sway, checkpoints;
         kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s;
         check: Self::check_counts
     }
@@ -160,6 +165,10 @@ impl CalibrationFilter {
             keeps_attitude: false,
             tally: Tally::default(),
             drift,
+            sway: match kalman.sway {
+                SwayNoise::White => None,
+                SwayNoise::Coloured => Some(SwayStates::new(kalman.aiding_period_ns as f64 * 1e-9)),
+            },
             checkpoints: screening.checkpoints.then(|| [start.clone(), start]),
         }
     }
@@ -263,6 +272,9 @@ impl CalibrationFilter {
         if self.elapsed_s == 0.0 {
             return;
         }
+        if let Some(sway) = &mut self.sway {
+            sway.propagate(&self.transition, self.elapsed_s);
+        }
         self.covariance.propagate(&self.transition);
         add_process_noise(
             &mut self.covariance,
@@ -275,6 +287,22 @@ impl CalibrationFilter {
         self.elapsed_s = 0.0;
         self.force_sum = Vector3::zeros();
         self.advance_recovery();
+    }
+
+    /// Tells the sway what navigation shows when a reference came: heading of the case, rad. `None`:
+    /// no reference came.
+    pub fn learn_sway(&mut self, heading_rad: Option<f64>, strapdown: &Strapdown) {
+        match (&mut self.sway, heading_rad) {
+            (Some(sway), Some(heading_rad)) => sway.learn(heading_rad, strapdown.velocity_mps()),
+            (Some(sway), None) => sway.miss(),
+            (None, _) => {}
+        }
+    }
+
+    /// Returns whether the filter has states of the base's sway.
+    #[must_use]
+    pub fn has_sway(&self) -> bool {
+        self.sway.is_some()
     }
 
     /// Error covariance of all states after the last propagation and measurement.

@@ -26,11 +26,11 @@ use crate::config::{Base, CoreConfig, Estimator};
 pub const SHORTEST_S: f64 = 10.0;
 
 /// Largest deviation of the specific force from gravity, as a part of it: that of rough sensors.
-const FORCE_SHARE: f64 = 0.01;
+pub(crate) const FORCE_SHARE: f64 = 0.01;
 /// Largest deviation of the horizontal rate from the Earth's, in standard deviations.
-const RATE_SIGMAS: f64 = 5.0;
+pub(crate) const RATE_SIGMAS: f64 = 5.0;
 /// Largest standard deviation of a heading that the core navigates with, rad: 1°.
-const HEADING_SIGMA_MAX_RAD: f64 = 0.017_453_292_519_943_295;
+pub(crate) const HEADING_SIGMA_MAX_RAD: f64 = 0.017_453_292_519_943_295;
 
 /// Variance of the fitted rate of change, for unit noise and unit time: the fit is the integral with the weight
 /// `360 t² − 360 t + 60` over `α`, which is the noise integrated twice (gyros) or once (accelerometers).
@@ -142,7 +142,7 @@ pub enum AlignmentRefusal {
 }
 
 /// Converts rad/s to deg/h.
-fn dph(rate_radps: f64) -> f64 {
+pub(crate) fn dph(rate_radps: f64) -> f64 {
     rate_radps.to_degrees() * 3600.0
 }
 

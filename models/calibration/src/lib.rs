@@ -45,6 +45,7 @@ pub mod positions;
 pub mod schedule;
 pub mod screen;
 pub mod sequence;
+pub mod standstill;
 pub mod state_machine;
 pub mod strapdown;
 pub mod table;

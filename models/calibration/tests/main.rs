@@ -10,5 +10,6 @@ mod least_squares;
 mod mechanization;
 mod real_recording;
 mod schedule;
+mod standstill;
 #[cfg(feature = "state")]
 mod state;

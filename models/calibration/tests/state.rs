@@ -41,6 +41,7 @@ fn kalman() -> Estimator {
         },
         aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
         aiding_period_ns: 1_000_000_000,
+        sway: SwayNoise::White,
         refuse_above_mean_nis: 1e9,
     })
 }
@@ -224,11 +225,15 @@ fn the_layout_is_the_stored_one() {
 #[test]
 fn a_state_of_an_earlier_version_is_refused_in_words() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
-    let error = Core::load(&std::fs::read(format!("{folder}/core-1.bin")).unwrap()).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "the state of a calibration core has version 1, this program reads version 2"
-    );
+    for version in 1..STATE_FORMAT.version {
+        let stored = std::fs::read(format!("{folder}/core-{version}.bin")).unwrap();
+        assert_eq!(
+            Core::load(&stored).unwrap_err().to_string(),
+            format!(
+                "the state of a calibration core has version {version}, this program reads version 3"
+            )
+        );
+    }
 }
 
 #[test]

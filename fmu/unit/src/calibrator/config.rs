@@ -162,6 +162,7 @@ fn put_kalman(kalman: &Kalman, values: &mut CellValues) {
         prior: Prior { attitude_rad, velocity_mps, position_m, parameters },
         aiding,
         aiding_period_ns,
+        sway,
         refuse_above_mean_nis,
     } = kalman;
     let choice = match error_model {
@@ -188,6 +189,11 @@ fn put_kalman(kalman: &Kalman, values: &mut CellValues) {
     };
     values.set_integer(slot::AIDING_REFERENCE, choice);
     values.set_count(slot::AIDING_PERIOD, *aiding_period_ns);
+    let choice = match sway {
+        SwayNoise::White => 0,
+        SwayNoise::Coloured => 1,
+    };
+    values.set_integer(slot::AIDING_SWAY, choice);
     values.set_real(slot::REFUSE_ABOVE, *refuse_above_mean_nis);
 }
 
@@ -211,6 +217,11 @@ fn kalman(values: &CellValues) -> Result<Kalman, CalibratorValueError> {
             _ => return Err(no_item(slot::AIDING_REFERENCE, values)),
         },
         aiding_period_ns: values.count(slot::AIDING_PERIOD),
+        sway: match values.integer(slot::AIDING_SWAY) {
+            0 => SwayNoise::White,
+            1 => SwayNoise::Coloured,
+            _ => return Err(no_item(slot::AIDING_SWAY, values)),
+        },
         refuse_above_mean_nis: values.real(slot::REFUSE_ABOVE),
     })
 }

@@ -862,7 +862,7 @@ class ProcedureAlignment(Section):
     out: drawn from velocity."""
 
 class ProcedureCalibrationAiding(Section):
-    """The reference that the filter measures against. Takes a table with reference, period, sigma, noise."""
+    """The reference that the filter measures against. Takes a table with reference, period, sway, sigma, noise."""
 
     noise: str
     """Standard deviation of the white noise that the reference really has. Takes a velocity such as "1 mm/s" or
@@ -874,7 +874,9 @@ class ProcedureCalibrationAiding(Section):
     velocity"; dockside: "dock-position"."""
     sigma: str
     """Standard deviation of each axis, as the filter believes it. Takes a velocity such as "1 mm/s" or a length
-    such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.15 m."""
+    such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.15 m, with sway = "coloured" 0.01 m."""
+    sway: Literal["white", "coloured"]
+    """What the sway of the ship is to the filter. Takes one of "white", "coloured". Default: "white"."""
 
 class ProcedureCalibrationLeastSquares(Section):
     """Settings of the least-squares estimator. Takes a table with gravity, gyro, intervals, initial, window,
@@ -929,7 +931,8 @@ class ProcedureCalibration(Section):
 
     @property
     def aiding(self) -> ProcedureCalibrationAiding:
-        """The reference that the filter measures against. Takes a table with reference, period, sigma, noise."""
+        """The reference that the filter measures against. Takes a table with reference, period, sway, sigma,
+        noise."""
     @aiding.setter
     def aiding(self, value: ProcedureCalibrationAiding | Mapping[str, Any]) -> None: ...
     duration: str
@@ -1480,12 +1483,63 @@ class SourceMcap(Section):
     """Topic of the inertial samples. Takes a text in quotes."""
 
 class SourceReference(Section):
-    """What is known of the instrument's motion, where the source doesn't tell: of text, another program's MCAP
-    file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or there is
-    none."""
+    """The reference of a calibration, where the source brings none: what is known of the motion of text, another
+    program's MCAP file or an instrument on a port, or what was measured and recorded beside the samples.
+    Takes a table with kind, north, east, down, up, latitude, longitude, height, unit, file, delimiter,
+    skip_lines, header, comment, time_column, topic, time_field, nanoseconds_field, time_unit. Left out: the
+    source brings its own, or there is none."""
 
-    kind: Literal["static"]
-    """What is known. Takes "static". Default: "static"."""
+    comment: str
+    """Lines that start with this are skipped. Takes a text in quotes. Default: a file of its own: as
+    source.text."""
+    delimiter: Literal["whitespace", "comma", "semicolon", "tab"]
+    """What separates columns. Takes one of "whitespace", "comma", "semicolon", "tab". Default: a file of its
+    own: as source.text."""
+    down: int | str
+    """Velocity down. Takes a column number from 1, or a column's name. Left out: up is given."""
+    east: int | str
+    """Velocity east. Takes a column number from 1, or a column's name. Left out: needed by kind = "velocity"."""
+    file: str
+    """Text: file of these columns, with stamps of the same clock. Relative to the scenario. Takes a text in
+    quotes. Left out: the gyros' file."""
+    header: bool
+    """Whether the first line after those skipped names the columns. Takes true or false. Default: a file of its
+    own: as source.text."""
+    height: int | str
+    """Height above the ellipsoid, m. Takes a column number from 1, or a column's name. Left out: needed by kind
+    = "position"."""
+    kind: Literal["static", "velocity", "position"]
+    """What is known, or was measured. Takes one of "static", "velocity", "position". Default: "static"."""
+    latitude: int | str
+    """Geodetic latitude. Takes a column number from 1, or a column's name. Left out: needed by kind =
+    "position"."""
+    longitude: int | str
+    """Longitude, east of Greenwich. Takes a column number from 1, or a column's name. Left out: needed by kind =
+    "position"."""
+    nanoseconds_field: str
+    """Dotted name of a field with nanoseconds to add. Takes a text in quotes. Left out: the time stamp is one
+    number."""
+    north: int | str
+    """Velocity north: its column, number from 1 or name; in an MCAP file the dotted name of its field. Takes a
+    column number from 1, or a column's name. Left out: needed by kind = "velocity"."""
+    skip_lines: int
+    """Lines to skip at the start. Takes a whole number from 0 to 1000000. Default: a file of its own: as
+    source.text."""
+    time_column: int | str
+    """Column of the time at which the reference was measured. Takes a column number from 1, or a column's name.
+    Default: text: that of source.text."""
+    time_field: str
+    """Dotted name of the field with the time at which the reference was measured. Takes a text in quotes.
+    Default: the message's log time."""
+    time_unit: Literal["s", "ms", "us", "ns"]
+    """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: text: that of source.text; MCAP: ns."""
+    topic: str
+    """Topic of the reference's messages. Takes a text in quotes. Left out: needed in an MCAP file."""
+    unit: Literal["m/s", "mm/s", "kn", "deg", "rad"]
+    """Unit of the velocities, or of latitude and longitude. Takes one of "m/s", "mm/s", "kn", "deg", "rad".
+    Default: velocity: "m/s"; position: "deg"."""
+    up: int | str
+    """Velocity up, in place of down. Takes a column number from 1, or a column's name. Left out: down is given."""
 
 class SourceTextAccelerometer(Section):
     """Columns of the accelerometers. Takes a table with file, x, y, z, unit, quantity, scale, offset, axes."""
@@ -1614,9 +1668,11 @@ class Source(Section):
     def mcap(self, value: SourceMcap | Mapping[str, Any]) -> None: ...
     @property
     def reference(self) -> SourceReference:
-        """What is known of the instrument's motion, where the source doesn't tell: of text, another program's
-        MCAP file, an instrument on a port. Takes a table with kind. Left out: the source brings its own, or
-        there is none."""
+        """The reference of a calibration, where the source brings none: what is known of the motion of text,
+        another program's MCAP file or an instrument on a port, or what was measured and recorded beside the
+        samples. Takes a table with kind, north, east, down, up, latitude, longitude, height, unit, file,
+        delimiter, skip_lines, header, comment, time_column, topic, time_field, nanoseconds_field, time_unit.
+        Left out: the source brings its own, or there is none."""
     @reference.setter
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property

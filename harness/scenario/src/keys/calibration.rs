@@ -8,7 +8,7 @@ use super::table::{
 use crate::error::Problem;
 use crate::quantity::UnitDimension;
 use crate::read::reader::Reader;
-use octant_calibration::config::{ErrorModel, GyroReference};
+use octant_calibration::config::{ErrorModel, GyroReference, SwayNoise};
 use octant_calibration::positions::SEQUENCES;
 use octant_calibration::sequence::STOPS_MAX;
 use octant_earth::units::DEG;
@@ -223,14 +223,20 @@ keys! {
         reference: At<Reference> = choice! {
                 "zero-velocity" => Reference::ZeroVelocity, "the ground or dock doesn't move; knows nothing of sway";
                 "velocity" => Reference::Velocity, "true velocity of the instrument over ground";
-                "dock-position" => Reference::DockPosition, "position of the dock; sway is noise to the filter";
+                "dock-position" => Reference::DockPosition, "position of the dock, from which sway moves the instrument";
             }, derived("static: \"zero-velocity\"; dockside: \"dock-position\""),
             "What is measured.";
         period: At<f64> = time(1e-4, 3600.0, "above 0, up to 1 h"), "1 s",
             "Time between measurements: a multiple of the sample period.";
+        sway: At<SwayNoise> = choice! {
+                "white" => SwayNoise::White, "noise of the reference, within sigma: no period";
+                "coloured" => SwayNoise::Coloured,
+                    "motion of second order on each axis of the ship, with estimated period, size and damping";
+            }, "white",
+            "What the sway of the ship is to the filter.";
         sigma: At<f64>
             = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], Bounds::Positive),
-            derived("velocities: 1 mm/s; dock-position: 0.15 m"),
+            derived("velocities: 1 mm/s; dock-position: 0.15 m, with sway = \"coloured\" 0.01 m"),
             "Standard deviation of each axis, as the filter believes it.";
         noise: At<f64>
             = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], Bounds::NotNegative),

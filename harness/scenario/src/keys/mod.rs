@@ -42,7 +42,9 @@ pub(crate) use run::{
     RequirementKeys, ScenarioKeys,
 };
 pub(crate) use screening::{GateKeys, ScreeningKeys};
-pub(crate) use source::{KnownMotion, McapKeys, SignalKeys, SourceKeys, SourceLiveKeys, TextKeys};
+pub(crate) use source::{
+    McapKeys, ReferenceKind, SignalKeys, SourceKeys, SourceLiveKeys, SourceReferenceKeys, TextKeys,
+};
 pub(crate) use suite::{CaseKeys, SuiteKeys};
 pub(crate) use table::{At, FromTable, Keys, Raw};
 

@@ -41,7 +41,7 @@ keys! {
         reference: At<Option<SourceReferenceKeys>>
             = table::<SourceReferenceKeys>(),
             absent("the source brings its own, or there is none"),
-            "What is known of the instrument's motion, where the source doesn't tell: of text, another program's MCAP file, an instrument on a port.";
+            "The reference of a calibration, where the source brings none: what is known of the motion of text, another program's MCAP file or an instrument on a port, or what was measured and recorded beside the samples.";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
             derived("serial, udp, can and slcan: the defaults of its keys"),
@@ -49,19 +49,68 @@ keys! {
     }
 }
 
-/// What is known of the motion.
+/// Reference of a source that brings none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum KnownMotion {
+pub(crate) enum ReferenceKind {
     Static,
+    Velocity,
+    Position,
 }
+
+const REFERENCE_FILE: &str = "the gyros' file";
+const AS_TEXT: &str = "a file of its own: as source.text";
 
 keys! {
     /// `[source.reference]`.
     pub(crate) struct SourceReferenceKeys {
-        kind: KnownMotion = choice! {
-                "static" => KnownMotion::Static, "the instrument stands at the site: zero velocity and a fixed position, as procedure.calibration.aiding says, whose sigma is the filter's";
+        kind: At<ReferenceKind> = choice! {
+                "static" => ReferenceKind::Static, "the instrument stands at the site: zero velocity and a fixed position, as procedure.calibration.aiding says, whose sigma is the filter's";
+                "velocity" => ReferenceKind::Velocity, "a velocity over ground that was measured: columns of a text file, fields of a topic";
+                "position" => ReferenceKind::Position, "a position that was measured, likewise";
             }, "static",
-            "What is known.";
+            "What is known, or was measured.";
+        north: At<Option<RecordedColumn>> = column(), absent("needed by kind = \"velocity\""),
+            "Velocity north: its column, number from 1 or name; in an MCAP file the dotted name of its field.";
+        east: At<Option<RecordedColumn>> = column(), absent("needed by kind = \"velocity\""),
+            "Velocity east.";
+        down: At<Option<RecordedColumn>> = column(), absent("up is given"),
+            "Velocity down.";
+        up: At<Option<RecordedColumn>> = column(), absent("down is given"),
+            "Velocity up, in place of down.";
+        latitude: At<Option<RecordedColumn>> = column(), absent("needed by kind = \"position\""),
+            "Geodetic latitude.";
+        longitude: At<Option<RecordedColumn>> = column(), absent("needed by kind = \"position\""),
+            "Longitude, east of Greenwich.";
+        height: At<Option<RecordedColumn>> = column(), absent("needed by kind = \"position\""),
+            "Height above the ellipsoid, m.";
+        unit: At<String>
+            = Of::<String>::kind(Kind::Choice(&[
+                ("m/s", "of a velocity"), ("mm/s", "of a velocity"), ("kn", "of a velocity"),
+                ("deg", "of latitude and longitude"), ("rad", "of latitude and longitude"),
+            ])), derived("velocity: \"m/s\"; position: \"deg\""),
+            "Unit of the velocities, or of latitude and longitude.";
+        file: At<Option<String>> = text(), absent(REFERENCE_FILE),
+            "Text: file of these columns, with stamps of the same clock. Relative to the scenario.";
+        delimiter: Delimiter = choice! {
+                "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
+                "comma" => Delimiter::Character(b','), ",";
+                "semicolon" => Delimiter::Character(b';'), ";";
+                "tab" => Delimiter::Character(b'\t'), "one tab";
+            }, derived(AS_TEXT), "What separates columns.";
+        skip_lines: usize = integer(0, 1_000_000), derived(AS_TEXT), "Lines to skip at the start.";
+        header: bool = boolean(), derived(AS_TEXT),
+            "Whether the first line after those skipped names the columns.";
+        comment: String = text(), derived(AS_TEXT), "Lines that start with this are skipped.";
+        time_column: At<RecordedColumn> = column(), derived("text: that of source.text"),
+            "Column of the time at which the reference was measured.";
+        topic: At<Option<String>> = text(), absent("needed in an MCAP file"),
+            "Topic of the reference's messages.";
+        time_field: Option<String> = text(), derived("the message's log time"),
+            "Dotted name of the field with the time at which the reference was measured.";
+        nanoseconds_field: At<Option<String>> = text(), absent("the time stamp is one number"),
+            "Dotted name of a field with nanoseconds to add.";
+        time_unit: TimeUnit = time_unit(), derived("text: that of source.text; MCAP: ns"),
+            "Unit of the time stamp.";
     }
 }
 

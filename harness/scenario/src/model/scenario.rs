@@ -7,6 +7,7 @@ use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
+use crate::reference::ReferenceSpec;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
@@ -64,8 +65,8 @@ pub struct Scenario {
     pub record: RecordSpec,
     /// Source of the samples.
     pub source: SourceSpec,
-    /// Reference that the scenario knows and the source doesn't.
-    pub known_reference: Option<octant_sample::Reference>,
+    /// Reference of a source that brings none of its own.
+    pub reference: Option<ReferenceSpec>,
     /// Place of the core.
     pub endpoint: EndpointSpec,
     /// Pacing by the clock.

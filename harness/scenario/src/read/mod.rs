@@ -9,6 +9,7 @@ mod instrument_port;
 mod live;
 mod procedure;
 pub(crate) mod reader;
+mod reference;
 pub mod requirement;
 mod sequence;
 mod source;
@@ -17,8 +18,8 @@ pub(crate) use reader::Reader;
 
 use super::document::DocumentTable;
 use super::error::Problem;
-use super::keys::{FromTable, KnownMotion, RealtimeKeys, RecordKeys, Reference, ScenarioKeys};
-use super::model::{AlignmentSpec, MotionSpec, Realtime, RecordSpec, Scenario, SourceSpec};
+use super::keys::{FromTable, RealtimeKeys, RecordKeys, ScenarioKeys};
+use super::model::{MotionSpec, Realtime, RecordSpec, Scenario, SourceSpec};
 use octant_base::display::DisplayUnits;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::ARCMIN;
@@ -73,7 +74,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         equipment: requirement::equipment(keys.equipment.as_deref().unwrap_or_default())?,
         record: record(&keys.record, sample_period_ns)?,
         source,
-        known_reference: known_reference(&keys)?,
+        reference: None,
         endpoint,
         realtime: realtime(&keys.realtime),
         display: display(&keys),
@@ -82,70 +83,14 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         folder: folder.to_owned(),
         document: DocumentTable::default(),
     };
-    check_reference(&keys, &scenario)?;
+    let reference = reference::read(&keys, &scenario)?;
+    let scenario = Scenario { reference, ..scenario };
     check_once(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {
         drive::check_reach(keys, &scenario)?;
     }
     let faults = faults::read(&keys.faults, &scenario)?;
     Ok(Scenario { document, faults, ..scenario })
-}
-
-/// The reference of `[source.reference]`, as `procedure.calibration.aiding` measures it.
-fn known_reference(keys: &ScenarioKeys) -> Result<Option<octant_sample::Reference>, Problem> {
-    let Some(known) = &*keys.source.reference else { return Ok(None) };
-    let KnownMotion::Static = known.kind;
-    let Some(calibration) = &*keys.procedure.calibration else {
-        return Err(keys
-            .source
-            .reference
-            .problem("found without procedure.calibration: navigation uses no reference"));
-    };
-    Ok(Some(match *calibration.aiding.reference {
-        Reference::DockPosition => octant_sample::Reference::Position {
-            latitude_rad: keys.site.latitude,
-            longitude_rad: keys.site.longitude,
-            height_m: keys.site.height,
-        },
-        Reference::ZeroVelocity | Reference::Velocity => {
-            octant_sample::Reference::Velocity([0.0; 3])
-        }
-    }))
-}
-
-/// Checks that a filter has a reference, and not two.
-fn check_reference(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Problem> {
-    let tells_nothing = match &scenario.source {
-        SourceSpec::Text(_) | SourceSpec::Replay { mapping: Some(_), .. } => true,
-        SourceSpec::Live(_) => scenario.known_reference.is_some(),
-        SourceSpec::Plant | SourceSpec::Fmu(_) | SourceSpec::Replay { mapping: None, .. } => false,
-    };
-    if scenario.known_reference.is_some() && !tells_nothing {
-        return Err(keys.source.reference.problem(format!(
-            "found with source.uri = {:?}, which brings a reference of its own",
-            keys.source.uri.text
-        )));
-    }
-    let real = tells_nothing || scenario.source.instrument().is_some();
-    let filters =
-        [&scenario.calibration, &scenario.baseline].into_iter().flatten().any(|calibration| {
-            matches!(calibration.estimator, octant_calibration::config::Estimator::Kalman(_))
-        });
-    if tells_nothing && filters && scenario.known_reference.is_none() {
-        return Err(keys.source.uri.problem(format!(
-            "found {:?}, which brings no reference for estimator = \"kalman\": expected \
-             [source.reference] with kind = \"static\", or another estimator",
-            keys.source.uri.text
-        )));
-    }
-    if real && filters && matches!(scenario.alignment, AlignmentSpec::Coarse { .. }) {
-        return Err(keys.procedure.alignment.method.problem(
-            "found \"coarse\" with a filter on real data: an average takes a base that tilts by 0.2 deg in half an \
-             hour for 1.8 deg of heading, and nothing shows it. Expected \"inertial\", which sees the base turn, \
-             or \"given\"",
-        ));
-    }
-    Ok(())
 }
 
 /// Refuses a repetition of samples that exist only once, and pacing of instruments and ports that have

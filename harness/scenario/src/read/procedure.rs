@@ -255,7 +255,11 @@ fn moves_s(sequence: &Sequence, turntable: &plant::TurntableConfig) -> f64 {
 struct Aiding {
     source: plant::AidingSource,
     mode: core::AidingMode,
+    sway: core::SwayNoise,
 }
+
+/// Longest period of the reference for a filter that estimates the sway, s.
+const SWAY_PERIOD_MAX_S: f64 = 2.0;
 
 fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
     let period_ns = (*keys.period * 1e9).round() as u64;
@@ -289,7 +293,22 @@ fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
             core::AidingMode::Velocity { sigma_mps: sigma },
         ),
     };
-    Ok(Aiding { source: plant::AidingSource { kind, period_ns }, mode })
+    if *keys.sway == core::SwayNoise::Coloured {
+        if *keys.reference != Reference::DockPosition {
+            return Err(keys.sway.problem(format!(
+                "found \"coloured\" with reference = {:?}, expected \"white\", or reference = \"dock-position\"",
+                keys.reference.text
+            )));
+        }
+        if *keys.period > SWAY_PERIOD_MAX_S {
+            return Err(keys.period.problem(format!(
+                "found {:?} with sway = \"coloured\", expected {SWAY_PERIOD_MAX_S} s at most: a sway has to be seen \
+                 more than twice a period",
+                keys.period.text
+            )));
+        }
+    }
+    Ok(Aiding { source: plant::AidingSource { kind, period_ns }, mode, sway: *keys.sway })
 }
 
 fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Problem> {
@@ -320,6 +339,7 @@ fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Probl
         },
         aiding: aiding.mode,
         aiding_period_ns: aiding.source.period_ns,
+        sway: aiding.sway,
         refuse_above_mean_nis: keys.refuse_above_mean_nis,
     })
 }

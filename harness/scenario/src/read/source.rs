@@ -159,7 +159,7 @@ fn check_rate(rate: &At<f64>, split: u32, sample_period_ns: u64) -> Result<(), P
 }
 
 /// SI value of a unit.
-fn unit_si(unit: &At<String>) -> Result<f64, Problem> {
+pub(super) fn unit_si(unit: &At<String>) -> Result<f64, Problem> {
     crate::quantity::parse(&format!("1 {}", **unit))
         .map(|quantity| quantity.si)
         .map_err(|_| unit.problem(format!("found the unknown unit {:?}", **unit)))

@@ -3,7 +3,8 @@
 
 use super::numbers::Found;
 use octant_calibration::config::{
-    AidingMode, Base, BaseMotion, ErrorModel, Kalman, Noise, Prior, Screening, TurntableRates,
+    AidingMode, Base, BaseMotion, ErrorModel, Kalman, Noise, Prior, Screening, SwayNoise,
+    TurntableRates,
 };
 use octant_calibration::continuity::Continuity;
 use octant_calibration::screen::Screen;
@@ -98,6 +99,7 @@ fn breaks(all: &mut Found) -> Result<(), String> {
         },
         aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
         aiding_period_ns: 1_000_000_000,
+        sway: SwayNoise::White,
         refuse_above_mean_nis: 6.0,
     };
     let noise = Noise { angle_random_walk: 3e-7, velocity_random_walk: 6e-4 };

@@ -3,7 +3,7 @@
 
 use super::numbers::Found;
 use octant_calibration::config::{
-    AidingMode, ErrorModel, Gate, Kalman, Noise, Prior, Recovery, Screening, Site,
+    AidingMode, ErrorModel, Gate, Kalman, Noise, Prior, Recovery, Screening, Site, SwayNoise,
 };
 use octant_calibration::continuity::Edge;
 use octant_calibration::covariance::{DR, DV, PHI, STATE_COUNT};
@@ -87,6 +87,7 @@ impl Bench {
             },
             aiding,
             aiding_period_ns: 1_000_000_000,
+            sway: SwayNoise::White,
             refuse_above_mean_nis: 9.0,
         };
         let gate = Gate { nis: 36.0, rejections: REJECTIONS, recovery: Recovery::Widening };

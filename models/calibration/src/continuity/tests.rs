@@ -3,7 +3,7 @@
 use super::step::weights;
 use super::way::c_cb;
 use super::*;
-use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior};
+use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior, SwayNoise};
 use core::f64::consts::PI;
 
 const SAMPLE_S: f64 = 0.005;
@@ -24,6 +24,7 @@ fn continuity(base: Base, sample_s: f64) -> Continuity {
         },
         aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
         aiding_period_ns: 1_000_000_000,
+        sway: SwayNoise::White,
         refuse_above_mean_nis: 9.0,
     };
     let noise = Noise { angle_random_walk: WALK, velocity_random_walk: 4.9e-4 };

@@ -183,6 +183,7 @@ impl ExternalTurntableEstimator {
             sigma: solution.sigma(),
             gravity_residual_rms_mps2: self.norms.rms(&solution.correction, self.intervals),
             residual_rms: solution.residual_rms,
+            average: solution.average,
             intervals: self.intervals,
             moves: self.moves,
         })

@@ -1,5 +1,6 @@
 //! Use of a reference: gate, update, and feedback into navigation and parameters.
 
+use super::sway::SwayStates;
 use super::{CalibrationFilter, Stage};
 use crate::config::{AidingMode, ErrorModel, Recovery};
 use crate::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
@@ -35,7 +36,9 @@ impl CalibrationFilter {
         strapdown: &mut Strapdown,
         parameters: &mut Parameters,
     ) -> Option<MeasurementResult> {
-        let (first, sigma, error) = self.error_against(reference, strapdown)?;
+        let (first, sigma, measured) = self.error_against(reference, strapdown)?;
+        let expected = self.sway.as_ref().map_or_else(Vector3::zeros, SwayStates::expected_m);
+        let error = measured - expected;
         let r = sigma * sigma;
         let (nis, sigma) = self.nis(first, r, &error)?;
         let of = if first == DV { InnovationOf::Velocity } else { InnovationOf::Position };
@@ -79,12 +82,16 @@ impl CalibrationFilter {
 
         let mut x = [0.0; STATE_COUNT];
         let held = self.stage != Stage::Normal;
-        for axis in 0..3 {
-            let innovation = error[axis] - x[first + axis];
-            if held {
-                self.covariance.update_moving(first + axis, r, innovation, &mut x);
-            } else {
-                self.covariance.update(first + axis, r, innovation, &mut x);
+        if let Some(sway) = &mut self.sway {
+            sway.update(r, &measured, held, &mut self.covariance, &mut x);
+        } else {
+            for axis in 0..3 {
+                let innovation = error[axis] - x[first + axis];
+                if held {
+                    self.covariance.update_moving(first + axis, r, innovation, &mut x);
+                } else {
+                    self.covariance.update(first + axis, r, innovation, &mut x);
+                }
             }
         }
         let turned_rad = self.feed_back(&x, strapdown, parameters);
@@ -131,9 +138,11 @@ impl CalibrationFilter {
 
     /// Normalized innovation squared, and the standard deviation of each axis.
     fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<(f64, [f64; 3])> {
-        let s = Matrix3::from_fn(|i, j| {
-            self.covariance.at(first + i, first + j) + if i == j { r } else { 0.0 }
-        });
+        let errors = match &self.sway {
+            Some(sway) => sway.innovation_covariance(&self.covariance),
+            None => Matrix3::from_fn(|i, j| self.covariance.at(first + i, first + j)),
+        };
+        let s = errors + Matrix3::from_diagonal_element(r);
         let nis = error.dot(&(s.try_inverse()? * error));
         nis.is_finite().then(|| (nis, core::array::from_fn(|i| libm::sqrt(s[(i, i)]))))
     }

@@ -106,6 +106,7 @@ impl CalibrationFilter {
         if let Some(drift) = &mut self.drift {
             drift.go_back(older.time_s);
         }
+        self.reopen_sway();
     }
 
     pub(super) fn start_recovery(
@@ -188,6 +189,14 @@ impl CalibrationFilter {
             self.covariance.reopen(PHI + axis, attitude_rad[axis]);
             self.covariance.reopen(DV + axis, velocity_mps);
             self.covariance.reopen(DR + axis, position_m);
+        }
+        self.reopen_sway();
+    }
+
+    /// The sway starts anew with the states that it correlates with.
+    fn reopen_sway(&mut self) {
+        if let Some(sway) = &mut self.sway {
+            sway.reopen();
         }
     }
 }

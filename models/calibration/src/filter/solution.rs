@@ -54,7 +54,7 @@ fn upper_triangle(matrix: &Matrix3<f64>) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{AidingMode, Kalman, Noise, Prior, Screening, Site};
+    use crate::config::{AidingMode, Kalman, Noise, Prior, Screening, Site, SwayNoise};
     use crate::strapdown::Vertical;
     use nalgebra::UnitQuaternion;
     use octant_earth::ellipsoid::Ellipsoid;
@@ -77,6 +77,7 @@ mod tests {
             },
             aiding: AidingMode::Velocity { sigma_mps: 0.01 },
             aiding_period_ns: 1_000_000_000,
+            sway: SwayNoise::White,
             refuse_above_mean_nis: 9.0,
         };
         let site = Site { latitude_rad: LATITUDE_RAD, longitude_rad: 0.0, height_m: 0.0 };

@@ -15,7 +15,8 @@ use super::limits::RESIDUAL_RMS_MAX;
 use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
 use super::normal::solve;
 use super::refusal::AdjustmentRefusal;
-use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
+use crate::standstill::{AverageUncertainty, JointAttitude};
+use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{exp, log, skew};
 use octant_sample::Parameters;
 
@@ -71,6 +72,20 @@ pub(crate) struct AttitudePrior {
 const SIZE: usize = 36;
 type Row = SVector<f64, SIZE>;
 
+/// Sensitivity to the parameters and to the attitude of an interval.
+pub(crate) type Sensitivity = SVector<f64, 33>;
+
+/// Sensitivity of an axis' specific force to the parameters, at the force in b.
+pub(crate) fn parameters_of_force(force: &Vector3<f64>, axis: usize) -> Sensitivity {
+    let mut row = Sensitivity::zeros();
+    for (k, (at, of)) in ACCEL_TERMS.iter().enumerate() {
+        if *at == axis {
+            row[21 + k] = if *of == 0 { 1.0 } else { force[of - 1] };
+        }
+    }
+    row
+}
+
 /// The adjustment, interval by interval.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
@@ -102,6 +117,8 @@ octant_state::state! {
 pub(crate) struct Solution {
     pub(crate) correction: SVector<f64, 30>,
     covariance: SMatrix<f64, 30, 30>,
+    /// Uncertainty of the compensated means of the last interval.
+    pub(crate) average: AverageUncertainty,
     /// Root of the mean square of the residuals in units of their noise.
     pub(crate) residual_rms: f64,
     estimated: [bool; 30],
@@ -175,27 +192,17 @@ impl Chain {
             - gyro * rate
             - Vector3::from(self.parameters.gyro_bias)
             - g * force;
-        let force_turn = accel * skew(&force);
-        let rate_turn = gyro * skew(&rate) + g * skew(&force);
         for axis in 0..3 {
-            let mut row = Row::zeros();
-            for (k, (at, of)) in ACCEL_TERMS.iter().enumerate() {
-                if *at == axis {
-                    row[21 + k] = if *of == 0 { 1.0 } else { force[of - 1] };
-                }
-            }
-            row.fixed_rows_mut::<3>(33).copy_from(&force_turn.row(axis).transpose());
-            self.add(row, force_residual[axis], self.noise.force[axis] / interval.duration_s);
-
-            let mut row = Row::zeros();
-            for (k, (at, of)) in GYRO_TERMS.iter().enumerate() {
-                if *at == axis {
-                    row[k] = if *of == 0 { 1.0 } else { rate[of - 1] };
-                }
-            }
-            row.fixed_rows_mut::<3>(12 + 3 * axis).copy_from(&force);
-            row.fixed_rows_mut::<3>(33).copy_from(&rate_turn.row(axis).transpose());
-            self.add(row, rate_residual[axis], self.noise.rate[axis] / interval.duration_s);
+            let (of_force, of_rate) = self.rows(&force, &rate, axis);
+            let wide = |of: &Sensitivity| {
+                let mut row = Row::zeros();
+                row.fixed_rows_mut::<30>(0).copy_from(&of.fixed_rows::<30>(0));
+                row.fixed_rows_mut::<3>(33).copy_from(&of.fixed_rows::<3>(30));
+                row
+            };
+            let (force_row, rate_row) = (wide(&of_force), wide(&of_rate));
+            self.add(force_row, force_residual[axis], self.noise.force[axis] / interval.duration_s);
+            self.add(rate_row, rate_residual[axis], self.noise.rate[axis] / interval.duration_s);
         }
         if let Some(prior) = prior {
             for k in 0..3 {
@@ -214,6 +221,80 @@ impl Chain {
         }
         self.freedom -= 3;
         self.previous = Some(*q_nb);
+    }
+
+    /// Sensitivity of an axis' mean force and mean rate to the parameters and to the attitude.
+    fn rows(
+        &self,
+        force: &Vector3<f64>,
+        rate: &Vector3<f64>,
+        axis: usize,
+    ) -> (Sensitivity, Sensitivity) {
+        let g = matrix(self.parameters.g_matrix());
+        let accel = Matrix3::identity() + matrix(self.parameters.accel_matrix());
+        let gyro = Matrix3::identity() + matrix(self.parameters.gyro_matrix());
+        let force_turn = accel * skew(force);
+        let rate_turn = gyro * skew(rate) + g * skew(force);
+        let mut of_force = parameters_of_force(force, axis);
+        of_force.fixed_rows_mut::<3>(30).copy_from(&force_turn.row(axis).transpose());
+        let mut of_rate = Sensitivity::zeros();
+        for (k, (at, of)) in GYRO_TERMS.iter().enumerate() {
+            if *at == axis {
+                of_rate[k] = if *of == 0 { 1.0 } else { rate[of - 1] };
+            }
+        }
+        of_rate.fixed_rows_mut::<3>(12 + 3 * axis).copy_from(force);
+        of_rate.fixed_rows_mut::<3>(30).copy_from(&rate_turn.row(axis).transpose());
+        (of_force, of_rate)
+    }
+
+    /// Uncertainty of the compensated means of the last interval, without the residuals; its attitude by the whole
+    /// adjustment. Covariance of the means by the parameters `p`, less what compensation removes of
+    /// its noise `n`: `H P Hᵀ − H C − Cᵀ Hᵀ`, where `C`, the covariance of p with n, is `P rᵀ` with the rows `r` of the
+    /// interval, whose part of the parameters is `H`, and with the posterior covariance `P` of parameters and attitude.
+    /// NaN where the attitude isn't determined.
+    #[inline(never)]
+    fn average(&self) -> AverageUncertainty {
+        let mut known = [true; 33];
+        known[..30].copy_from_slice(&self.estimated);
+        let information = self.information.fixed_view::<33, 33>(0, 0).into_owned();
+        let right = self.right.fixed_rows::<33>(0).into_owned();
+        let (force_noise, rate_noise) = (self.noise.force, self.noise.rate);
+        let Ok((correction, covariance)) = solve(&information, &right, &known) else {
+            let parameters = Matrix6::repeat(f64::NAN);
+            return AverageUncertainty {
+                parameters,
+                force_noise,
+                rate_noise,
+                joint: None,
+                residuals: (0.0, 0),
+            };
+        };
+        let q_nb = self.previous.unwrap_or_default();
+        let (force, rate) = (q_nb.inverse() * self.gravity, q_nb.inverse() * self.earth_rate);
+        let mut rows = SMatrix::<f64, 6, 33>::zeros();
+        for axis in 0..3 {
+            let (of_force, of_rate) = self.rows(&force, &rate, axis);
+            rows.row_mut(axis).copy_from(&of_force.transpose());
+            rows.row_mut(3 + axis).copy_from(&of_rate.transpose());
+        }
+        for i in (0..30).filter(|i| !self.estimated[*i]) {
+            rows.column_mut(i).fill(0.0);
+        }
+        let of_parameters = rows.fixed_view::<6, 30>(0, 0);
+        let with_noise = of_parameters * (covariance.fixed_view::<30, 33>(0, 0) * rows.transpose());
+        let of_parameters_alone =
+            of_parameters * covariance.fixed_view::<30, 30>(0, 0) * of_parameters.transpose();
+        AverageUncertainty {
+            parameters: of_parameters_alone - with_noise - with_noise.transpose(),
+            force_noise,
+            rate_noise,
+            joint: Some(JointAttitude {
+                q_nb: q_nb * exp(&correction.fixed_rows::<3>(30).into_owned()),
+                covariance: covariance.fixed_view::<3, 3>(30, 30).into_owned(),
+            }),
+            residuals: (0.0, 0),
+        }
     }
 
     /// `exp(ψ) R = exp(−θ₀) Q exp(θ₁)` with `Q = c_bn(0) exp(ω_ie t) c_nb(1)`, so with
@@ -279,6 +360,7 @@ impl Chain {
 
     /// Eliminates the last attitude and solves for the parameters.
     pub(crate) fn solve(&mut self) -> Result<Solution, AdjustmentRefusal> {
+        let average = self.average();
         self.eliminate_previous();
         let information = self.information.fixed_view::<30, 30>(0, 0).into_owned();
         let right = self.right.fixed_rows::<30>(0).into_owned();
@@ -288,6 +370,8 @@ impl Chain {
         let squares = (self.squares - correction.dot(&right)).max(0.0);
         let freedom = self.freedom.saturating_sub(unknowns);
         let residual_rms = if freedom > 0 { libm::sqrt(squares / freedom as f64) } else { 0.0 };
-        Ok(Solution { correction, covariance, residual_rms, estimated: self.estimated })
+        let average = AverageUncertainty { residuals: (squares, freedom), ..average };
+        let estimated = self.estimated;
+        Ok(Solution { correction, covariance, average, residual_rms, estimated })
     }
 }

@@ -39,11 +39,12 @@ mod rotated_gravity;
 
 use crate::alignment::attitude_of;
 use crate::config::{self, GyroReference, Site, StaticIntervals};
+use crate::standstill::AverageUncertainty;
 use chain::Chain;
 use detector::Detector;
 use interval::Segmenter;
 use moves::{Compensation, Move, corrected};
-use nalgebra::{SVector, Vector3};
+use nalgebra::{Matrix6, SVector, Vector3};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_sample::{Parameters, Sample};
 
@@ -72,6 +73,8 @@ pub struct Adjustment {
     /// residuals in units of their noise: expected 1 with the right model and noise (Earth rate and
     /// external turntable). A value above 1 has widened σ.
     pub residual_rms: f64,
+    /// Uncertainty of compensated means over the last interval.
+    pub average: AverageUncertainty,
     /// Static intervals used.
     pub intervals: usize,
     /// Complete moves used.
@@ -282,9 +285,25 @@ impl LeastSquaresEstimator {
             sigma,
             gravity_residual_rms_mps2,
             residual_rms,
+            average: self.average_of(&sigma),
             intervals: self.len,
             moves: self.between().iter().filter(|turn| turn.complete).count(),
         })
+    }
+
+    /// Uncertainty of the means of the last interval by σ, as if all errors were independent.
+    fn average_of(&self, sigma: &[f64; 30]) -> AverageUncertainty {
+        let last = self.intervals().last().copied().unwrap_or_default();
+        let mut parameters = Matrix6::zeros();
+        for axis in 0..3 {
+            let of_force = chain::parameters_of_force(&last.force_mps2, axis);
+            for (row, sigma) in of_force.iter().zip(sigma).skip(21) {
+                parameters[(axis, axis)] += row * row * sigma * sigma;
+            }
+            parameters[(3 + axis, 3 + axis)] = sigma[axis] * sigma[axis];
+        }
+        let StaticInterval { force_noise, rate_noise, .. } = last;
+        AverageUncertainty { parameters, force_noise, rate_noise, joint: None, residuals: (0.0, 0) }
     }
 
     fn finish_earth_rate(&self) -> Result<Adjustment, AdjustmentRefusal> {
@@ -345,6 +364,7 @@ impl LeastSquaresEstimator {
             sigma: solution.sigma(),
             gravity_residual_rms_mps2: libm::sqrt(squares / count),
             residual_rms: solution.residual_rms,
+            average: solution.average,
             intervals: self.len,
             moves: self.between().iter().filter(|turn| turn.complete).count(),
         })

@@ -1,8 +1,13 @@
 //! Checks of a configuration before a core is made from it.
 
-use crate::config::{AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator};
+use crate::config::{AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator, SwayNoise};
+
 use crate::inertial_alignment::SHORTEST_S;
 use crate::schedule::DoesNotFit;
+
+/// Longest period of the reference for a filter that estimates the sway, ns: a sway of 5 s and more is
+/// seen more than twice a period.
+const SWAY_PERIOD_MAX_NS: u64 = 2_000_000_000;
 
 /// Longest calibration or navigation, s: thirty years. Its number of ticks is small enough for all
 /// later multiplications.
@@ -60,6 +65,9 @@ pub enum CoreConfigError {
         /// Value found, rad.
         found_rad: f64,
     },
+    /// A coloured sway without the reference that shows it.
+    #[error("the sway is coloured and the reference a velocity, a position is expected")]
+    SwayWithoutPosition,
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::AdjustmentRefusal),
@@ -170,6 +178,18 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
             let (AidingMode::Velocity { sigma_mps: sigma }
             | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
             positive("aiding sigma", sigma)?;
+            if kalman.sway == SwayNoise::Coloured {
+                if !matches!(kalman.aiding, AidingMode::Position { .. }) {
+                    return Err(CoreConfigError::SwayWithoutPosition);
+                }
+                if kalman.aiding_period_ns > SWAY_PERIOD_MAX_NS {
+                    return Err(CoreConfigError::Period {
+                        field: "aiding period",
+                        found_ns: kalman.aiding_period_ns,
+                        expected: "2 s at most with a coloured sway",
+                    });
+                }
+            }
         }
     }
     if let Some(navigation) = &config.navigation {

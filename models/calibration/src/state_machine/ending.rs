@@ -6,9 +6,11 @@ use super::{CalibrationRefusal, Core, kalman_of, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Estimator, Site};
-use crate::covariance::PARAMETERS;
+use crate::covariance::{PARAMETERS, SolutionCovariance};
+use crate::standstill::{AverageUncertainty, StandstillAverage};
 use crate::table::{CalibrationTable, Provenance, Quality};
 use nalgebra::Vector3;
+use octant_earth::ellipsoid::Ellipsoid;
 use octant_sample::{DeviceTime, Health, Mode, Output};
 
 impl Core {
@@ -31,7 +33,9 @@ impl Core {
             Err(refusal) => self.refuse(refusal),
             Ok(quality) => {
                 self.table = self.export(at, quality);
-                self.concluded = self.filter().map(|filter| filter.covariance().solution());
+                if let Some(filter) = self.filter() {
+                    self.concluded = Some(filter.covariance().solution());
+                }
                 self.start_navigation();
             }
         }
@@ -63,16 +67,40 @@ impl Core {
         self.revision = self.revision.saturating_add(1);
         self.compensation = Compensation::new(&self.parameters);
         if self.config.navigation.is_some() {
-            let still = self.standstill;
-            let (dtheta, dv) =
-                self.compensation.apply(&still.delta_theta, &still.delta_velocity, still.elapsed_s);
-            let mut alignment = CoarseAlignment::new(&self.config.site);
-            alignment.step(&dtheta, &dv, still.elapsed_s);
-            let q_nb = alignment.finish().ok_or(CalibrationRefusal::Alignment)?;
-            self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
+            self.align_at_rest(&estimate.average)?;
         }
         let used = estimate.intervals as u64;
         Ok(Quality { nis_mean: f64::NAN, used, ..Quality::default() })
+    }
+
+    /// Sets the attitude from the averages of the last standstill, with its uncertainty.
+    fn align_at_rest(
+        &mut self,
+        uncertainty: &AverageUncertainty,
+    ) -> Result<(), CalibrationRefusal> {
+        let site = self.config.site;
+        let still = self.standstill;
+        let elapsed_s = still.elapsed_s;
+        let (dtheta, dv) =
+            self.compensation.apply(&still.delta_theta, &still.delta_velocity, elapsed_s);
+        let mut alignment = CoarseAlignment::new(&site);
+        alignment.step(&dtheta, &dv, elapsed_s);
+        let q_nb = alignment.finish().ok_or(CalibrationRefusal::Alignment)?;
+        // The line through increments that are averages themselves; biases have no slope.
+        let centred = still.velocity_moment - still.delta_velocity * (0.5 * elapsed_s);
+        let average = StandstillAverage {
+            force_mps2: dv / elapsed_s,
+            slope_mps3: centred * (12.0 / (elapsed_s * elapsed_s * elapsed_s)),
+            rate_radps: dtheta / elapsed_s,
+            elapsed_s,
+        };
+        let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
+        let phi = average.phi(&q_nb, uncertainty, &earth)?;
+        let phi = core::array::from_fn(|i| core::array::from_fn(|j| phi[(i, j)]));
+        // The velocity over ground of a base at rest isn't estimated: it is zero.
+        self.concluded = Some(SolutionCovariance { phi, velocity_mps: [f64::NAN; 3] });
+        self.strapdown = strapdown_at(&site, &q_nb, Vector3::zeros());
+        Ok(())
     }
 
     fn export(&self, at: DeviceTime, quality: Quality) -> Option<CalibrationTable> {

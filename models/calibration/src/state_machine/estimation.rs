@@ -76,6 +76,8 @@ impl Estimation {
 pub(super) struct Standstill {
     pub(super) delta_theta: Vector3<f64>,
     pub(super) delta_velocity: Vector3<f64>,
+    /// First moment of the velocity increments about the start, m.
+    pub(super) velocity_moment: Vector3<f64>,
     pub(super) elapsed_s: f64,
 }
 
@@ -83,6 +85,7 @@ impl Standstill {
     pub(super) fn add(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
         self.delta_theta += measured.0;
         self.delta_velocity += measured.1;
+        self.velocity_moment += measured.1 * (self.elapsed_s + 0.5 * interval_s);
         self.elapsed_s += interval_s;
     }
 }

@@ -109,6 +109,9 @@ pub enum CalibrationRefusal {
     /// The alignment in the inertial frame found no attitude that can be trusted.
     #[error("{0}")]
     Inertial(#[from] crate::inertial_alignment::AlignmentRefusal),
+    /// The average of the last standstill doesn't fit a base at rest at the site.
+    #[error("{0}")]
+    Standstill(#[from] crate::standstill::StandstillRefusal),
 }
 
 /// Quality of a filter's calibration so far.

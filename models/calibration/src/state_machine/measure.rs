@@ -5,6 +5,7 @@ use super::estimation::Estimation;
 use super::{CalibrationRefusal, Core, kalman_of};
 use crate::compensation::Compensation;
 use crate::drift::DriftTest;
+use octant_earth::frames::c_cb;
 use octant_sample::{Aiding, Health, Sample};
 
 /// Memory of the running mean of NIS, measurements.
@@ -49,6 +50,14 @@ impl Core {
             return;
         };
         filter.propagate(&self.strapdown);
+        if filter.has_sway() {
+            let heading = aiding.map(|_| {
+                let c_nc = self.strapdown.c_nb()
+                    * c_cb(sample.gimbal.azimuth_rad(), sample.gimbal.roll_rad()).transpose();
+                libm::atan2(c_nc[(1, 0)], c_nc[(0, 0)])
+            });
+            filter.learn_sway(heading, &self.strapdown);
+        }
         let before = self.parameters;
         let measured = aiding.and_then(|aiding| {
             filter.measure(&aiding.reference, &mut self.strapdown, &mut self.parameters)

@@ -129,6 +129,8 @@ pub struct Instrument {
     pub earth_rate: bool,
     /// Error of the encoders at each stop, 1σ, rad.
     pub encoder_sigma_rad: f64,
+    /// Rate of the case in n, rad/s, from a sample on.
+    pub turn: Option<(u64, Vector3<f64>)>,
     carry: [Accumulator; 6],
     sequence: u64,
 }
@@ -146,6 +148,7 @@ impl Instrument {
             noise: Noise::new(seed),
             earth_rate: true,
             encoder_sigma_rad: 0.0,
+            turn: None,
             carry: [Accumulator::default(); 6],
             sequence: 0,
         }
@@ -189,9 +192,16 @@ impl Instrument {
 
     fn sample(&mut self, from: (f64, f64), to: (f64, f64), encoder: (f64, f64)) -> Sample {
         let earth = Ellipsoid::at(SITE.latitude_rad, SITE.height_m);
-        let case = c_nc(HEADING_RAD, 0.0, 0.0);
+        let case_at = |sequence: u64| {
+            let turned = self.turn.map_or(Vector3::zeros(), |(from, rate)| {
+                rate * (sequence.saturating_sub(from) as f64 * DT_S)
+            });
+            let turned = octant_earth::rotation::exp(&turned).to_rotation_matrix();
+            turned.into_inner() * c_nc(HEADING_RAD, 0.0, 0.0)
+        };
+        let (case, case_after) = (case_at(self.sequence), case_at(self.sequence + 1));
         let rate_n = if self.earth_rate { earth.earth_rate() } else { Vector3::zeros() };
-        let (before, after) = (case * c_cb(from.0, from.1), case * c_cb(to.0, to.1));
+        let (before, after) = (case * c_cb(from.0, from.1), case_after * c_cb(to.0, to.1));
         // Rotation of the body in inertial space over the sample: its own, and that of the Earth.
         let earth_turn = octant_earth::rotation::exp(&(rate_n * DT_S)).to_rotation_matrix();
         let turn = before.transpose() * earth_turn * after;

@@ -55,7 +55,12 @@ enumerations! {
     /// Reference of the filter's measurements.
     pub AIDING "AidingReference" "The reference that the filter measures against." {
         0 velocity "Velocity over ground: zero when static, of the dock's reference on a ship.";
-        1 position "Position of the dock; sway is white noise to the filter.";
+        1 position "Position of the dock, from which sway moves the instrument.";
+    }
+    /// Sway of the base, as the filter sees it.
+    pub SWAY "SwayNoise" "What the sway of the base is to the filter." {
+        0 white "White noise of the reference, within its standard deviation.";
+        1 coloured "Motion of second order on each axis, with estimated period, size and damping.";
     }
     /// Reference of the gyros in the least-squares estimator.
     pub GYRO_REFERENCE "GyroReference"

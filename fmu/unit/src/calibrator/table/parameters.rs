@@ -171,7 +171,7 @@ const PRIOR: [DeclaredVariable; 9] = prior! {
     "accel_misalignment" SMALL_ANGLE 40.0 * ARCSEC, "each accelerometer misalignment";
 };
 
-const AIDING: [DeclaredVariable; 5] = variables! {
+const AIDING: [DeclaredVariable; 6] = variables! {
     parameter("procedure.calibration.refuse_above_mean_nis", Real) nominal(9.0) start(&[9.0]):
         "Mean normalized innovation squared (three axes) above which the calibration is refused.";
     parameter("procedure.calibration.aiding.reference", Enumeration(&of::AIDING)):
@@ -184,6 +184,8 @@ const AIDING: [DeclaredVariable; 5] = variables! {
         "Standard deviation of each axis of a position reference, above 0.";
     parameter("procedure.calibration.aiding.period_ns", Count) of(&q::NANOSECONDS) min(1.0)
         start(&[1e9]): "Time between references, ns: a multiple of the sample period.";
+    parameter("procedure.calibration.aiding.sway", Enumeration(&of::SWAY)):
+        "What the sway of the base is to the Kalman filter.";
 };
 
 const LEAST_SQUARES: [DeclaredVariable; 8] = variables! {

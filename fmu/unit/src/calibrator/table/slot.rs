@@ -76,6 +76,7 @@ slots! {
     AIDING_VELOCITY_SIGMA "procedure.calibration.aiding.velocity_sigma";
     AIDING_POSITION_SIGMA "procedure.calibration.aiding.position_sigma";
     AIDING_PERIOD "procedure.calibration.aiding.period_ns";
+    AIDING_SWAY "procedure.calibration.aiding.sway";
     GRAVITY_GIVEN "procedure.calibration.least_squares.gravity_given";
     GRAVITY "procedure.calibration.least_squares.gravity";
     GYRO_REFERENCE "procedure.calibration.least_squares.gyro";

@@ -110,6 +110,7 @@ impl Case {
                     },
                     aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
                     aiding_period_ns: 1_000_000_000,
+                    sway: SwayNoise::White,
                     refuse_above_mean_nis: 9.0,
                 }),
             }),
