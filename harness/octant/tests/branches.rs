@@ -48,7 +48,12 @@ fn text(scenario: &Scenario, seed: u64, run: Result<MethodRun, MethodError>) -> 
     }
 }
 
-fn shared(scenarios: &[Scenario], seed: u64, keeping: StreamKeeping<'_>, jobs: usize) -> Vec<String> {
+fn shared(
+    scenarios: &[Scenario],
+    seed: u64,
+    keeping: StreamKeeping<'_>,
+    jobs: usize,
+) -> Vec<String> {
     let controls: Vec<Control> = scenarios.iter().map(|_| Control::default()).collect();
     let method = Method::Primary;
     let plans: Vec<BranchPlan<'_>> = (scenarios.iter().zip(&controls))
@@ -131,7 +136,8 @@ fn the_end_of_one_run_can_be_asked_for_before_it_branches_off_and_after() {
     let scenario = scenario(&[]);
     let control = Control::default();
     control.cancel.store(true, Ordering::Relaxed);
-    let plan = BranchPlan { scenario: &scenario, method: Method::Primary, seed: 1, control: &control };
+    let plan =
+        BranchPlan { scenario: &scenario, method: Method::Primary, seed: 1, control: &control };
     let ended = Mutex::new(Vec::new());
     run_branches(&[plan, plan], StreamKeeping::Hash, 1, &|_, run| {
         ended.lock().unwrap().push(run.unwrap().ended);

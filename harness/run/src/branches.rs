@@ -44,7 +44,7 @@ pub struct BranchPlan<'a> {
 }
 
 /// Takes the result of a run, by its place among the plans.
-pub type Told<'a> = dyn Fn(usize, Result<MethodRun, MethodError>) + Sync + 'a;
+pub type RunTold<'a> = dyn Fn(usize, Result<MethodRun, MethodError>) + Sync + 'a;
 
 /// Everything that decides a run but its faults: equal beginnings give equal runs.
 #[derive(Debug, PartialEq)]
@@ -77,7 +77,7 @@ pub fn run_branches(
     plans: &[BranchPlan<'_>],
     keeping: StreamKeeping<'_>,
     jobs: usize,
-    told: &Told<'_>,
+    told: &RunTold<'_>,
 ) {
     let alone = |index: usize| {
         let BranchPlan { scenario, method, seed, control } = plans[index];
@@ -92,6 +92,19 @@ pub fn run_branches(
             trunk.run().into_iter().for_each(alone);
         }
     });
+}
+
+/// Returns for each plan the place of the first one whose run without faults is the same: its own where there
+/// is none.
+#[must_use]
+pub fn first_alike(plans: &[BranchPlan<'_>]) -> Vec<usize> {
+    let found: Vec<_> = plans.iter().map(beginning).collect();
+    let same = |a: usize, b: usize| {
+        let of = |place: usize| found[place].as_ref().map(|(beginning, _)| beginning);
+        (plans[a].method, plans[a].seed) == (plans[b].method, plans[b].seed)
+            && of(a).is_some_and(|a| of(b) == Some(a))
+    };
+    (0..plans.len()).map(|b| (0..b).find(|a| same(*a, b)).unwrap_or(b)).collect()
 }
 
 /// Puts runs that begin alike together.
@@ -163,7 +176,7 @@ struct Branch {
 }
 
 impl Branch {
-    fn run(self, plans: &[BranchPlan<'_>], told: &Told<'_>) {
+    fn run(self, plans: &[BranchPlan<'_>], told: &RunTold<'_>) {
         let index = self.index;
         told(index, self.to_the_end(&plans[index]));
     }
@@ -203,7 +216,7 @@ struct Trunk<'a, 'b> {
     plans: &'b [BranchPlan<'a>],
     group: &'b Group,
     keeping: StreamKeeping<'b>,
-    told: &'b Told<'b>,
+    told: &'b RunTold<'b>,
     waiting: &'b Waiting<Task>,
 }
 

@@ -8,7 +8,8 @@
 //! scores;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
-//! [`stepped`] runs one method a step at a time, with parts that others made.
+//! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
+//! share their beginning, [`many`] judges them.
 
 mod aligned;
 pub mod assemble;
@@ -25,6 +26,7 @@ pub mod follow;
 pub mod host;
 pub mod in_time;
 mod interfere;
+pub mod many;
 mod measured;
 pub mod method;
 pub mod minimise;

@@ -369,7 +369,8 @@ impl Clock {
     /// Returns whether the fault sets in with this news, and changes nothing.
     pub(crate) fn sets_in(&self, news: &News<'_>) -> bool {
         // These two wait for what another fault or a person does.
-        let waits_for_others = matches!(self.schedule.trigger, Trigger::After { .. } | Trigger::Manual);
+        let waits_for_others =
+            matches!(self.schedule.trigger, Trigger::After { .. } | Trigger::Manual);
         if waits_for_others && self.state == State::Waiting {
             return false;
         }
