@@ -5,10 +5,11 @@ mod draw;
 
 use octant_base::control::Control;
 use octant_faults::FaultSpec;
+use octant_faults::catalogue::Acts;
 use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
 use octant_run::branches::{BranchPlan, run_branches};
 use octant_run::method::{MethodError, MethodRun};
-use octant_run::{Ended, StreamKeeping, assemble, run_method};
+use octant_run::{Ended, Prepared, StreamKeeping, assemble, run_method};
 use octant_scenario::{Fault, Method, Place, Scenario};
 use proptest::prelude::*;
 use std::path::Path;
@@ -143,4 +144,47 @@ fn the_end_of_one_run_can_be_asked_for_before_it_branches_off_and_after() {
         ended.lock().unwrap().push(run.unwrap().ended);
     });
     assert_eq!(ended.into_inner().unwrap(), [Ended::Cancelled; 2]);
+}
+
+/// A recorded run and its twin share their beginning too: recording, twin and summary are those of two runs.
+fn with_twin_is_both_alone(scenario: &Scenario, seed: u64) {
+    let place = tempfile::tempdir().unwrap();
+    let folder = |name: &str| {
+        let path = place.path().join(name);
+        std::fs::create_dir(&path).unwrap();
+        path
+    };
+    let bytes = |folder: &Path| std::fs::read(folder.join("recording.mcap")).unwrap();
+    let (together, apart) = (folder("together"), folder("apart"));
+    let prepared = Prepared::of(scenario, seed, true).unwrap();
+    let mut both = prepared.run(&together).unwrap().remove(0);
+    let twin = std::sync::Arc::into_inner(both.twin.take().unwrap()).unwrap();
+    let control = Control::default();
+    let path = apart.join("recording.mcap");
+    let alone = |scenario, keeping| run_method(scenario, Method::Primary, seed, keeping, &control);
+    let clean = scenario.without_faults();
+    assert_eq!(
+        text(&clean, seed, Ok(twin)),
+        text(&clean, seed, alone(&clean, StreamKeeping::Hash))
+    );
+    let one = alone(scenario, StreamKeeping::File(&path));
+    assert_eq!(text(scenario, seed, Ok(both)), text(scenario, seed, one));
+    assert_eq!(bytes(&together), bytes(&apart));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn a_recorded_run_and_its_twin_are_two_runs(
+        specs in proptest::collection::vec(draw::spec(), 1..4),
+        seed in 0..1000u64,
+    ) {
+        let scenario = scenario(&specs);
+        // How long the host was kept busy differs from run to run.
+        let of_host = |fault: &Fault| fault.spec.kind.acts == Acts::Host;
+        if scenario.station(seed).is_ok() && !scenario.faults.iter().any(of_host) {
+            with_twin_is_both_alone(&scenario, seed);
+        }
+    }
 }

@@ -6,7 +6,7 @@
 //! or left out, and every run is the undivided one, bit for bit.
 
 use super::done::PlannedWork;
-use super::drive::{Books, Ended, Injects, Steps};
+use super::drive::{Books, Ended, Injects, NoFaults, Steps};
 use super::faulted::Faulted;
 use super::host::RunHost;
 use super::in_time::{CONTROL_EPOCHS, InTime};
@@ -48,11 +48,11 @@ pub type RunTold<'a> = dyn Fn(usize, Result<MethodRun, MethodError>) + Sync + 'a
 
 /// Everything that decides a run but its faults: equal beginnings give equal runs.
 #[derive(Debug, PartialEq)]
-struct Beginning {
-    plant: PlantConfig,
-    core: CoreConfig,
-    samples: u64,
-    work: PlannedWork,
+pub(super) struct Beginning {
+    pub(super) plant: PlantConfig,
+    pub(super) core: CoreConfig,
+    pub(super) samples: u64,
+    pub(super) work: PlannedWork,
 }
 
 /// Runs that begin alike.
@@ -137,7 +137,7 @@ fn tasks(plans: &[BranchPlan<'_>], keeping: StreamKeeping<'_>) -> Vec<Task> {
 }
 
 /// Returns what decides a run but its faults; `None` if it can't be divided.
-fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues)> {
+pub(super) fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues)> {
     let BranchPlan { scenario, method, seed, .. } = plan;
     let elsewhere = |acts| matches!(acts, Acts::Host | Acts::Wire);
     let divisible = scenario.source.is_plant_alone()
@@ -155,59 +155,55 @@ fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues)> {
 }
 
 /// State of a run after a step.
-#[derive(Clone)]
-struct Parts {
-    source: PlantSource,
-    endpoint: InProcess,
-    steps: Steps,
-    watcher: Watcher,
-    revision: u32,
+pub(super) struct Parts {
+    pub(super) source: PlantSource,
+    pub(super) endpoint: InProcess,
+    pub(super) steps: Steps,
+    pub(super) watcher: Watcher,
+    pub(super) revision: u32,
     /// How the trunk ended; `None`: it goes on.
-    ended: Option<Ended>,
+    pub(super) ended: Option<Ended>,
 }
 
 /// A run that goes on alone from where it branches off.
-struct Branch {
-    index: usize,
-    faulted: Option<Faulted>,
-    parts: Parts,
-    recorder: Recorder,
-    draws: DrawnValues,
+pub(super) struct Branch {
+    pub(super) index: usize,
+    pub(super) faulted: Option<Faulted>,
+    pub(super) parts: Parts,
+    pub(super) recorder: Recorder,
+    pub(super) draws: DrawnValues,
 }
 
 impl Branch {
     fn run(self, plans: &[BranchPlan<'_>], told: &RunTold<'_>) {
         let index = self.index;
-        told(index, self.to_the_end(&plans[index]));
+        let run = self.to_the_end(&plans[index]).and_then(|mut run| match run.broken.take() {
+            None => Ok(run),
+            Some(error) => Err(error.into()),
+        });
+        told(index, run);
     }
 
-    fn to_the_end(self, plan: &BranchPlan<'_>) -> Result<MethodRun, MethodError> {
+    pub(super) fn to_the_end(self, plan: &BranchPlan<'_>) -> Result<MethodRun, MethodError> {
         let Self { mut faulted, parts, mut recorder, draws, .. } = self;
         let Parts { mut source, mut endpoint, mut steps, mut watcher, revision, ended } = parts;
         let books = Books::new(&mut recorder, &mut watcher, faulted.as_ref());
         let look_every = CONTROL_EPOCHS;
         let mut keeper = InTime { books, control: plan.control, look_every, revision };
-        let mut driven = Ok(ended);
-        if let Some(faulted) = &mut faulted {
-            while let Ok(None) = driven {
-                driven = steps.step(&mut source, faulted, &mut endpoint, &mut keeper);
-            }
-            let words = faulted.last_words();
-            words.into_iter().for_each(|event| keeper.books.recorder.event(event));
-        }
-        // A run without faults is the trunk, to its end.
-        let driven = driven.map(|ended| ended.unwrap_or(Ended::SourceEnded));
+        let driven = match (ended, &mut faulted) {
+            (Some(ended), _) => Ok(ended),
+            (None, Some(faulted)) => steps.go_on(&mut source, faulted, &mut endpoint, &mut keeper),
+            (None, None) => steps.go_on(&mut source, &mut NoFaults, &mut endpoint, &mut keeper),
+        };
+        let words = faulted.iter().flat_map(Faulted::last_words);
+        words.for_each(|event| keeper.books.recorder.event(event));
         let books = (&mut recorder, &mut watcher);
         let control = plan.control;
         let closed = method::close((driven, None), &mut source, &mut endpoint, books, control)?;
         let truth = Some(draws.parameters);
         let run = method::finish(plan.scenario, plan.method, closed, recorder, watcher, truth)?;
         let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
-        let mut run = MethodRun { receipts, ..run };
-        match run.broken.take() {
-            None => Ok(run),
-            Some(error) => Err(error.into()),
-        }
+        Ok(MethodRun { receipts, ..run })
     }
 }
 
@@ -271,13 +267,13 @@ impl Trunk<'_, '_> {
                 break;
             }
             while let Some((index, faulted)) = waits.due(&steps, &source) {
-                let parts = (&source, &endpoint, &steps, &keeper);
+                let parts = (&source, &endpoint, &steps, &mut keeper);
                 self.branch(waits, (index, Some(faulted)), parts, None);
             }
             ended = steps.step(&mut source, waits, &mut endpoint, &mut keeper)?;
         }
         for waiting in std::mem::take(&mut waits.runs) {
-            let parts = (&source, &endpoint, &steps, &keeper);
+            let parts = (&source, &endpoint, &steps, &mut keeper);
             self.branch(waits, waiting, parts, ended);
         }
         Ok(())
@@ -304,10 +300,10 @@ impl Trunk<'_, '_> {
         &self,
         waits: &mut Waits,
         (index, faulted): (usize, Option<Faulted>),
-        (source, endpoint, steps, keeper): (&PlantSource, &InProcess, &Steps, &InTime<'_>),
+        (source, endpoint, steps, keeper): (&PlantSource, &InProcess, &Steps, &mut InTime<'_>),
         ended: Option<Ended>,
     ) {
-        let Some(recorder) = keeper.books.recorder.branch() else {
+        let Ok(recorder) = keeper.books.recorder.branch() else {
             waits.alone.push(index);
             return;
         };
@@ -326,6 +322,13 @@ impl Trunk<'_, '_> {
     }
 }
 
+/// Returns whether a fault sets in at the next step; by hand too.
+pub(super) fn is_due(faulted: &Faulted, steps: &Steps, source: &PlantSource) -> bool {
+    let next = steps.number() + 1;
+    faulted.fires.iter().any(|(at, _)| *at == next)
+        || faulted.station.sets_in_next(steps.output(), || source.truth())
+}
+
 /// Runs that haven't branched off. Their stations see what goes by and change nothing.
 #[derive(Default)]
 struct Waits {
@@ -338,11 +341,7 @@ struct Waits {
 impl Waits {
     /// Takes out a run of which a fault sets in at the next step.
     fn due(&mut self, steps: &Steps, source: &PlantSource) -> Option<(usize, Faulted)> {
-        let next = steps.number() + 1;
-        let is_due = |faulted: &Faulted| {
-            faulted.fires.iter().any(|(at, _)| *at == next)
-                || faulted.station.sets_in_next(steps.output(), || source.truth())
-        };
+        let is_due = |faulted: &Faulted| is_due(faulted, steps, source);
         let at = self.runs.iter().position(|(_, faulted)| faulted.as_ref().is_some_and(is_due))?;
         let (index, faulted) = self.runs.remove(at);
         Some((index, faulted?))

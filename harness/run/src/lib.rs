@@ -9,7 +9,7 @@
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
-//! share their beginning, [`many`] judges them.
+//! share their beginning, [`many`] judges them; `with_twin` shares that of a recorded run and its twin.
 
 mod aligned;
 pub mod assemble;
@@ -44,6 +44,7 @@ pub mod stepped;
 pub mod twin;
 pub mod unit;
 pub mod watch;
+mod with_twin;
 
 pub use assemble::{Run, assemble};
 pub use drive::{Ended, Line, RunError};
