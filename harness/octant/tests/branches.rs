@@ -9,6 +9,7 @@ use octant_faults::catalogue::Acts;
 use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
 use octant_run::branches::{BranchPlan, run_branches};
 use octant_run::method::{MethodError, MethodRun};
+use octant_run::stem::Stem;
 use octant_run::{Ended, Prepared, StreamKeeping, assemble, run_method};
 use octant_scenario::{Fault, Method, Place, Scenario};
 use proptest::prelude::*;
@@ -144,6 +145,32 @@ fn the_end_of_one_run_can_be_asked_for_before_it_branches_off_and_after() {
         ended.lock().unwrap().push(run.unwrap().ended);
     });
     assert_eq!(ended.into_inner().unwrap(), [Ended::Cancelled; 2]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn runs_with_some_of_the_faults_go_on_from_where_all_of_them_are_to_come(
+        specs in proptest::collection::vec(draw::spec(), 2..5),
+        kept in 1..15usize,
+        seed in 0..1000u64,
+    ) {
+        let keep = |index: usize| kept >> index & 1 == 1;
+        let all = scenario(&specs);
+        let some = all.with_faults(keep);
+        if all.station(seed).is_err() || some.station(seed).is_err() || some.faults.is_empty() {
+            return Ok(());
+        }
+        let (method, control) = (Method::Primary, Control::default());
+        let plan = |scenario| BranchPlan { scenario, method, seed, control: &control };
+        if let Some(stem) = Stem::of(&plan(&all)).unwrap() {
+            let found = text(&some, seed, stem.run(&plan(&some), keep));
+            prop_assert_eq!(&found, &undivided(std::slice::from_ref(&some), seed, StreamKeeping::None)[0]);
+            // It can be run from more than once.
+            prop_assert_eq!(text(&some, seed, stem.run(&plan(&some), keep)), found);
+        }
+    }
 }
 
 /// A recorded run and its twin share their beginning too: recording, twin and summary are those of two runs.

@@ -6,7 +6,7 @@
 //! or left out, and every run is the undivided one, bit for bit.
 
 use super::done::PlannedWork;
-use super::drive::{Books, Ended, Injects, NoFaults, Steps};
+use super::drive::{Books, Ended, Injects, NoFaults, RunError, Steps};
 use super::faulted::Faulted;
 use super::host::RunHost;
 use super::in_time::{CONTROL_EPOCHS, InTime};
@@ -155,6 +155,7 @@ pub(super) fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues
 }
 
 /// State of a run after a step.
+#[derive(Clone, Debug)]
 pub(super) struct Parts {
     pub(super) source: PlantSource,
     pub(super) endpoint: InProcess,
@@ -177,11 +178,7 @@ pub(super) struct Branch {
 impl Branch {
     fn run(self, plans: &[BranchPlan<'_>], told: &RunTold<'_>) {
         let index = self.index;
-        let run = self.to_the_end(&plans[index]).and_then(|mut run| match run.broken.take() {
-            None => Ok(run),
-            Some(error) => Err(error.into()),
-        });
-        told(index, run);
+        told(index, self.to_the_end(&plans[index]).and_then(method::whole));
     }
 
     pub(super) fn to_the_end(self, plan: &BranchPlan<'_>) -> Result<MethodRun, MethodError> {
@@ -327,6 +324,30 @@ pub(super) fn is_due(faulted: &Faulted, steps: &Steps, source: &PlantSource) -> 
     let next = steps.number() + 1;
     faulted.fires.iter().any(|(at, _)| *at == next)
         || faulted.station.sets_in_next(steps.output(), || source.truth())
+}
+
+/// A run on its way.
+pub(super) type Going<'a, 'b> =
+    (&'a mut PlantSource, &'a mut InProcess, &'a mut InTime<'b>, &'a mut Steps);
+
+/// Takes steps until a fault sets in at the next one; returns the end, where the run ends before.
+pub(super) fn until_due(
+    (source, endpoint, keeper, steps): Going<'_, '_>,
+    faulted: &mut Faulted,
+    other: &Control,
+) -> Result<Option<Ended>, RunError> {
+    loop {
+        if is_due(faulted, steps, source) {
+            return Ok(None);
+        }
+        if steps.number().is_multiple_of(CONTROL_EPOCHS) {
+            // The end of the other one is asked for together with that of this one.
+            _ = other.look(steps.number());
+        }
+        if let Some(ended) = steps.step(source, faulted, endpoint, keeper)? {
+            return Ok(Some(ended));
+        }
+    }
 }
 
 /// Runs that haven't branched off. Their stations see what goes by and change nothing.

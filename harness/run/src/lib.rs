@@ -9,7 +9,8 @@
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
-//! share their beginning, [`many`] judges them; `with_twin` shares that of a recorded run and its twin.
+//! share their beginning, [`many`] judges them; `with_twin` shares that of a
+//! recorded run and its twin, [`stem`] keeps one for runs with some of the faults.
 
 mod aligned;
 pub mod assemble;
@@ -40,6 +41,7 @@ pub mod replayed;
 mod rotation;
 pub mod scores_text;
 mod solution;
+pub mod stem;
 pub mod stepped;
 pub mod twin;
 pub mod unit;

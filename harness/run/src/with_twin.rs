@@ -3,14 +3,12 @@
 //! The recorded run is the trunk here, with its station at its side. Before the first fault sets in the twin
 //! branches off, on a thread of its own.
 
-use super::branches::{Beginning, Branch, BranchPlan, Parts, beginning, is_due};
-use super::drive::{Books, Ended, RunError, Steps};
-use super::faulted::Faulted;
+use super::branches::{Beginning, Branch, BranchPlan, Parts, beginning, until_due};
+use super::drive::{Books, Ended, Steps};
 use super::host::RunHost;
 use super::in_time::{CONTROL_EPOCHS, InTime};
 use super::method::{self, MethodError, MethodRun, SetupError, StreamKeeping, recorder_options};
 use super::watch::Watcher;
-use octant_base::control::Control;
 use octant_endpoint::{InProcess, Tells};
 use octant_recorder::{RecorderError, RecorderOptions, RecorderTrouble};
 use octant_scenario::resolve::DrawnValues;
@@ -60,8 +58,11 @@ fn both(
     let books = Books::new(&mut recorder, &mut watcher, Some(&faulted));
     let mut keeper = InTime { books, control, look_every: CONTROL_EPOCHS, revision: 0 };
     let mut steps = Steps::new(source.samples_total());
-    let begun =
-        begin((&mut source, &mut endpoint, &mut keeper, &mut steps), &mut faulted, twin.control);
+    let begun = until_due(
+        (&mut source, &mut endpoint, &mut keeper, &mut steps),
+        &mut faulted,
+        twin.control,
+    );
     // A recorder that fails here fails in the run too, which says so.
     let branch = match &begun {
         Ok(ended) => branch((&source, &endpoint, &mut keeper, &steps), &draws, *ended).ok(),
@@ -91,28 +92,6 @@ fn both(
     let run = method::finish(scenario, method, closed, recorder, watcher, truth)?;
     let receipts = faulted.station.receipts();
     Ok(MethodRun { receipts, twin: Some(Arc::new(twin?)), ..run })
-}
-
-type Going<'a, 'b> = (&'a mut PlantSource, &'a mut InProcess, &'a mut InTime<'b>, &'a mut Steps);
-
-/// Takes steps until a fault sets in at the next one; returns the end, where the run ends before.
-fn begin(
-    (source, endpoint, keeper, steps): Going<'_, '_>,
-    faulted: &mut Faulted,
-    twin: &Control,
-) -> Result<Option<Ended>, RunError> {
-    loop {
-        if is_due(faulted, steps, source) {
-            return Ok(None);
-        }
-        if steps.number().is_multiple_of(CONTROL_EPOCHS) {
-            // Its end is asked for together with that of the run.
-            _ = twin.look(steps.number());
-        }
-        if let Some(ended) = steps.step(source, faulted, endpoint, keeper)? {
-            return Ok(Some(ended));
-        }
-    }
 }
 
 /// Makes the twin from the run, which no fault has touched yet.

@@ -162,9 +162,6 @@ impl Station {
             let stage = Self::stage(spec, specs, &stages, setup);
             stages.push(stage.map_err(|error| (spec.id.clone(), error))?);
         }
-        let conditions = stages.iter().any(|stage| stage.clock.has_condition());
-        let truth = stages.iter().any(|stage| stage.clock.needs_truth());
-        let commands = stages.iter().any(|stage| matches!(stage.rule, FaultRule::Command(_)));
         let burst = burst(&stages)?;
         let mut station = Self {
             stages,
@@ -175,10 +172,10 @@ impl Station {
             seen: 0,
             scene: None,
             busy: false,
-            conditions,
-            truth,
+            conditions: false,
+            truth: false,
             remember: u64::MAX,
-            commands,
+            commands: false,
             set_points: SetPoints::default(),
             last: Epoch::default(),
             flight: Vec::with_capacity(burst),
@@ -188,8 +185,27 @@ impl Station {
             events: Vec::with_capacity(specs.len() + 1),
             without_power: false,
         };
-        station.plan();
+        station.survey();
         Ok(station)
+    }
+
+    /// Makes the station with some of its faults, selected by their numbers from 0, at the same epoch. No fault has set in
+    /// so far.
+    #[must_use]
+    pub fn with_only(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        let mut numbers = 0..;
+        some.stages.retain(|_| numbers.next().is_some_and(&keep));
+        some.survey();
+        some
+    }
+
+    /// Notes what the faults of the station need.
+    fn survey(&mut self) {
+        self.conditions = self.stages.iter().any(|stage| stage.clock.has_condition());
+        self.truth = self.stages.iter().any(|stage| stage.clock.needs_truth());
+        self.commands = self.stages.iter().any(|stage| matches!(stage.rule, FaultRule::Command(_)));
+        self.plan();
     }
 
     fn stage(
