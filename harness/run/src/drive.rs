@@ -1,6 +1,6 @@
 //! The loop: source → faults → endpoint → recorder and watcher, one step of the source at a time.
 //!
-//! `drive` is the only loop over samples. Its type parameters are the choices, so that each
+//! `Steps::step` is the only body of a loop over samples. Its type parameters are the choices, so that each
 //! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
 //! between them (nothing, faults, events of a recording); `Keeps` for the results and the pace: in
 //! time ([`in_time`](super::in_time)), by the clock ([`realtime`](super::realtime)), compared with a recording
