@@ -1,8 +1,6 @@
 //! Runs that share their beginning are the undivided ones, bit for bit: any kinds, triggers and positions.
 
-#[path = "../../../models/faults/tests/any_fault/draw.rs"]
-mod draw;
-
+use super::faults_any::{EPOCHS, SCENARIO, draw};
 use octant_base::control::Control;
 use octant_faults::FaultSpec;
 use octant_faults::catalogue::Acts;
@@ -16,13 +14,6 @@ use proptest::prelude::*;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
-
-/// Epochs of a run: twelve seconds of calibration with one move, and three of navigation.
-const EPOCHS: u64 = 3000;
-const SCENARIO: &str = "schema = 1\n\
-    [procedure.calibration]\nduration = \"12 s\"\n\
-    stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]\n\
-    [procedure.navigation]\nduration = \"3 s\"\n[record]\nsamples = \"full\"\n";
 
 fn scenario(specs: &[FaultSpec]) -> Scenario {
     let mut scenario = Scenario::parse(SCENARIO, "f.toml", Path::new(""), &[]).unwrap();

@@ -64,6 +64,10 @@ impl Worker {
 }
 
 /// What goes to the recorder's thread.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "almost all are blocks, and a box would be an allocation for each"
+)]
 #[derive(Debug)]
 enum ForThread {
     /// A full block.

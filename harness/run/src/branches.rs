@@ -64,7 +64,7 @@ struct Group {
 
 enum Task {
     Alone(usize),
-    Trunk(Group),
+    Trunk(Box<Group>),
     Branch(Box<Branch>),
 }
 
@@ -131,7 +131,7 @@ fn tasks(plans: &[BranchPlan<'_>], keeping: StreamKeeping<'_>) -> Vec<Task> {
     }
     tasks.extend(groups.into_iter().map(|(_, _, group)| match group.runs.as_slice() {
         [one] => Task::Alone(*one),
-        _ => Task::Trunk(group),
+        _ => Task::Trunk(Box::new(group)),
     }));
     tasks
 }
@@ -178,10 +178,10 @@ pub(super) struct Branch {
 impl Branch {
     fn run(self, plans: &[BranchPlan<'_>], told: &RunTold<'_>) {
         let index = self.index;
-        told(index, self.to_the_end(&plans[index]).and_then(method::whole));
+        told(index, self.finish(&plans[index]).and_then(method::whole));
     }
 
-    pub(super) fn to_the_end(self, plan: &BranchPlan<'_>) -> Result<MethodRun, MethodError> {
+    pub(super) fn finish(self, plan: &BranchPlan<'_>) -> Result<MethodRun, MethodError> {
         let Self { mut faulted, parts, mut recorder, draws, .. } = self;
         let Parts { mut source, mut endpoint, mut steps, mut watcher, revision, ended } = parts;
         let books = Books::new(&mut recorder, &mut watcher, faulted.as_ref());
@@ -288,8 +288,8 @@ impl Trunk<'_, '_> {
 
     /// Tells the runs that wait how far they are; true if the end of one was asked for.
     fn is_cancelled(&self, waits: &Waits, epochs: u64) -> bool {
-        let looked = waits.runs.iter().map(|(index, _)| self.plans[*index].control.look(epochs));
-        looked.fold(false, |any, cancelled| any || cancelled)
+        let look = |(index, _): &&(usize, _)| self.plans[*index].control.look(epochs);
+        waits.runs.iter().filter(look).count() > 0
     }
 
     /// Lets a run go on alone: on another thread, or here where none has time.

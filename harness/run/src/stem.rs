@@ -60,8 +60,6 @@ impl Stem {
         let faulted = Some(Faulted { station, fires, host: RunHost::default() });
         let recorder = Recorder::none();
         let (parts, draws) = (self.parts.clone(), self.draws.clone());
-        Branch { index: 0, faulted, parts, recorder, draws }
-            .to_the_end(plan)
-            .and_then(method::whole)
+        Branch { index: 0, faulted, parts, recorder, draws }.finish(plan).and_then(method::whole)
     }
 }

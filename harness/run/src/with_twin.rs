@@ -70,7 +70,7 @@ fn both(
     };
     let (driven, twin) = std::thread::scope(|scope| {
         let other = scope.spawn(|| match branch {
-            Some(branch) => branch.to_the_end(&twin),
+            Some(branch) => branch.finish(&twin),
             None => {
                 let BranchPlan { scenario, method, seed, control } = twin;
                 let keeping = StreamKeeping::Hash;
