@@ -273,7 +273,8 @@ impl Station {
     /// unit under test.
     #[inline]
     pub fn begin(&mut self, output: &Output, world: &mut dyn World) {
-        self.epoch += 1;
+        // 64 bits of epochs don't overflow, and a state with so many isn't loaded.
+        self.epoch = self.epoch.wrapping_add(1);
         if self.epoch >= self.wake || self.busy || Scene::of(output).packed() != self.seen {
             self.look(output, world);
         }
