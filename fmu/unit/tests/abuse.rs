@@ -118,6 +118,7 @@ fn run(mut command: Command) {
     let output = command.output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     let complained = String::from_utf8_lossy(&output.stderr);
+    print!("{said}");
     assert!(output.status.success(), "{}\n{said}{complained}", output.status);
 }
 
