@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 /// Does tasks 0 to `count`, at most `jobs` at a time. Each result stands in its task's place: `None` for a
 /// task that gave none, or was not begun because `is_cancelled`.
@@ -22,7 +23,7 @@ pub fn in_order<T: Send, E: Send>(
         Mutex::new((0..count).map(|_| Ok(None)).collect());
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, count.max(1)) {
-            scope.spawn(|| {
+            spawn(scope, || {
                 while !is_cancelled() {
                     let task = next.fetch_add(1, Ordering::Relaxed);
                     if task >= count {
@@ -108,7 +109,7 @@ pub fn with_added<T: Send>(
     let waiting = Waiting { state: Mutex::new(state), changed: Condvar::new(), most: jobs - 1 };
     std::thread::scope(|scope| {
         for _ in 0..jobs {
-            scope.spawn(|| {
+            spawn(scope, || {
                 while let Some(task) = waiting.next() {
                     let _done = Done(&waiting);
                     work(task, &waiting);
@@ -125,6 +126,22 @@ impl<T> Drop for Done<'_, T> {
     fn drop(&mut self) {
         self.0.done();
     }
+}
+
+/// Stack of a thread that runs cores, bytes: that of a main thread. A core is some 100 KiB, and passes by
+/// value where it is made, copied and ended.
+const STACK: usize = 8 << 20;
+
+/// Starts a thread of a scope, with a stack on which cores can be made and copied.
+///
+/// # Panics
+/// If the system has no thread, as [`Scope::spawn`].
+pub fn spawn<'scope, T: Send + 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    work: impl FnOnce() -> T + Send + 'scope,
+) -> ScopedJoinHandle<'scope, T> {
+    let started = Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+    started.unwrap_or_else(|error| panic!("failed to start a thread: {error}"))
 }
 
 /// Processors that this process may use, at least 1.

@@ -4,6 +4,7 @@ use super::branches::BranchPlan;
 use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
 use super::with_twin::run_with_twin;
 use octant_base::control::Control;
+use octant_base::pool::spawn;
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
@@ -100,7 +101,8 @@ impl<'a> Prepared<'a> {
         }
         std::thread::scope(|scope| {
             let one = &one;
-            let threads: Vec<_> = tasks.iter().map(|task| scope.spawn(move || one(task))).collect();
+            let threads: Vec<_> =
+                tasks.iter().map(|task| spawn(scope, move || one(task))).collect();
             threads.into_iter().map(joined).collect()
         })
     }
@@ -135,7 +137,7 @@ impl<'a> Prepared<'a> {
             (faulted, run(clean, StreamKeeping::Hash))
         } else {
             std::thread::scope(|scope| {
-                let twin = scope.spawn(|| run(clean, StreamKeeping::Hash));
+                let twin = spawn(scope, || run(clean, StreamKeeping::Hash));
                 (run(this, recording), joined(twin))
             })
         };

@@ -9,6 +9,7 @@ use super::host::RunHost;
 use super::in_time::{CONTROL_EPOCHS, InTime};
 use super::method::{self, MethodError, MethodRun, SetupError, StreamKeeping, recorder_options};
 use super::watch::Watcher;
+use octant_base::pool::spawn;
 use octant_endpoint::{InProcess, Tells};
 use octant_recorder::{RecorderError, RecorderOptions, RecorderTrouble};
 use octant_scenario::resolve::DrawnValues;
@@ -35,6 +36,8 @@ pub(super) fn run_with_twin(
     Some(both((faulted, twin), recording, (begun, draws)))
 }
 
+// Apart from its caller, whose frame would have room for two runs in any case.
+#[inline(never)]
 fn both(
     (plan, twin): (BranchPlan<'_>, BranchPlan<'_>),
     recording: StreamKeeping<'_>,
@@ -69,7 +72,7 @@ fn both(
         Err(_) => None,
     };
     let (driven, twin) = std::thread::scope(|scope| {
-        let other = scope.spawn(|| match branch {
+        let other = spawn(scope, || match branch {
             Some(branch) => branch.finish(&twin),
             None => {
                 let BranchPlan { scenario, method, seed, control } = twin;
