@@ -221,6 +221,8 @@ impl<'a> Case<'a> {
         is_sampled: bool,
         options: &SuiteOptions<'_>,
     ) -> Result<Option<SuiteResult>, NightError> {
+        // A run alone that was killed leaves a part of its folder, and needn't be repeated.
+        remove_left(&options.folder.join(self.name))?;
         let among = shared.map(|summary| self.judged(Some(summary), String::new()));
         let result = match &among {
             Some(among) if among.problem.is_none() && !is_sampled => among.clone(),
