@@ -24,6 +24,7 @@ mod core_faults;
 mod core_hardened;
 mod core_spikes;
 mod covariance_golden;
+mod crate_targets;
 #[cfg(feature = "dashboard")]
 mod dashboard;
 #[cfg(feature = "dashboard")]
