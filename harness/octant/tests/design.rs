@@ -140,7 +140,7 @@ fn attempts(report: &Value) -> &Vec<Value> {
 #[test]
 fn a_confirmation_runs_the_design_and_goes_on_until_one_is_confirmed() {
     let here = folder(SCENARIO);
-    let options = ["--confirm", "4", "--confirm-rate", "20 Hz", "--confirm-attempts", "3"];
+    let options = ["--confirm", "4", "--confirm-rate", "10 Hz", "--confirm-attempts", "3"];
     let all = [
         &["design", "s.toml", "--effort", "quick", "--stops", "12", "--json"][..],
         &["--rotation", "tetrahedral", "--out", "d.toml", "--state", "state.json"],
@@ -172,10 +172,10 @@ fn a_confirmation_runs_the_design_and_goes_on_until_one_is_confirmed() {
     // The runs are those of the scenario that is written, and of eight positions.
     let other = SCENARIO.replace("[baseline]\npositions = \"six\"\n", "rotation = \"sixteen\"\n");
     let rates = "[record]\nrate = \"0.1 Hz\"\n";
-    let other = other.replace("[imu]", "[imu]\nrate = \"20 Hz\"") + rates;
+    let other = other.replace("[imu]", "[imu]\nrate = \"10 Hz\"") + rates;
     std::fs::write(here.path().join("eight.toml"), other).unwrap();
     let compared = ["compare", "d.toml", "--against", "eight.toml", "--seeds", "4", "--json"];
-    let sets = ["--set", "imu.rate=20 Hz", "--set", "record.rate=0.1 Hz"];
+    let sets = ["--set", "imu.rate=10 Hz", "--set", "record.rate=0.1 Hz"];
     let (compared, _) = ended(octant_in(here.path(), &[&compared[..], &sets].concat()), 0);
     let compared: Value = serde_json::from_str(&compared).unwrap();
     let shown = if *last { tried.len() - 1 } else { 0 };
@@ -204,12 +204,12 @@ fn a_confirmation_runs_the_design_and_goes_on_until_one_is_confirmed() {
 fn a_confirmation_as_text_has_the_reasons() {
     let here = folder(SCENARIO);
     let all = ["design", "s.toml", "--effort", "quick", "--stops", "12", "--confirm", "2"];
-    let more = ["--confirm-rate", "20", "--confirm-attempts", "1", "--continuous"];
+    let more = ["--confirm-rate", "10", "--confirm-attempts", "1", "--continuous"];
     let output = octant_in(here.path(), &[&all[..], &more].concat());
     let status = output.status.code();
     let text = String::from_utf8(output.stdout).unwrap();
     let parts = [
-        "simulation: 2 seeds from 1 on at 20 Hz, against eight positions, sixteen moves",
+        "simulation: 2 seeds from 1 on at 10 Hz, against eight positions, sixteen moves",
         "attempt 1: best design",
         "longitude to 24 h",
         "normalized squared errors of G, designed",

@@ -146,7 +146,7 @@ impl Default for RecorderOptions {
             policy: Policy::default(),
             scenario: String::new(),
             metadata: BTreeMap::new(),
-            epochs_per_block: 256,
+            epochs_per_block: 1024,
             blocks: 4,
             trouble: RecorderTrouble::default(),
             publishing: None,
