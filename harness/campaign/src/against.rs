@@ -10,8 +10,9 @@ mod words;
 
 pub use comparison::{Detects, EnsembleComparison, ErrorRow, RUNS_MIN};
 
-use crate::case::{self, CaseResult, ResultError};
+use crate::case::ResultError;
 use crate::plan::{Case, Plan, PlanError};
+use crate::store::CampaignResults;
 use octant_base::display::DisplayUnits;
 use octant_observe::ensemble::{Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::parameters::NAMES;
@@ -20,7 +21,7 @@ use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
 use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use words::conclude;
 
@@ -86,6 +87,7 @@ pub fn against(
     selection: &Selection<'_>,
 ) -> Result<Against, AgainstError> {
     let mut groups: Vec<Vec<&Case>> = Vec::new();
+    let mut place = HashMap::new();
     for case in &plan.cases {
         let planned = plan.planned(case)?;
         let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
@@ -93,14 +95,8 @@ pub fn against(
         if !chosen {
             continue;
         }
-        let same = |group: &&mut Vec<&Case>| {
-            group.first().is_some_and(|first| {
-                first.scenario == case.scenario
-                    && first.set == case.set
-                    && first.faults == case.faults
-            })
-        };
-        match groups.iter_mut().find(same) {
+        let at = *place.entry((&case.scenario, &case.set, &case.faults)).or_insert(groups.len());
+        match groups.get_mut(at) {
             Some(group) => group.push(case),
             None => groups.push(vec![case]),
         }
@@ -108,6 +104,7 @@ pub fn against(
     if groups.is_empty() {
         return Err(AgainstError::NoCase);
     }
+    let results = CampaignResults::open(folder)?;
     let mut found = Against::default();
     let mut single = 0;
     for group in groups {
@@ -128,7 +125,7 @@ pub fn against(
             ));
             continue;
         }
-        let sample = Sample::read(folder, &group)?;
+        let sample = Sample::read(&results, &group)?;
         let methods = std::iter::once(Method::Primary)
             .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
         for method in methods {
@@ -172,16 +169,15 @@ struct Sample {
 }
 
 impl Sample {
-    fn read(folder: &Path, cases: &[&Case]) -> Result<Self, ResultError> {
+    fn read(results: &CampaignResults, cases: &[&Case]) -> Result<Self, ResultError> {
         let mut sample = Self::default();
         let mut streams = HashSet::new();
         for case in cases {
-            let path = case::file(folder, &case.id);
-            if !path.exists() {
+            let Some((result, _)) = results.result(&case.id)? else {
                 sample.open += 1;
                 continue;
-            }
-            match CaseResult::read(&path)?.summary {
+            };
+            match result.summary {
                 Some(summary) if !streams.insert(summary.stream_hash.clone()) => {
                     sample.repeated += 1;
                 }

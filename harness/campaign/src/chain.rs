@@ -4,15 +4,15 @@
 //! is compared; if they aren't, as for a part made on another machine, the rows are checked for
 //! consistency: the verdict of a check with its value and limit, that of a case with its checks.
 
-use super::case;
 use super::factors::FactorColumns;
 use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
+use super::store::CampaignResults;
 use super::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
 use std::collections::{BTreeMap, HashMap};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Table with the rows of each case.
 struct Read {
@@ -70,17 +70,21 @@ impl Read {
     }
 }
 
-/// Checks the tables at `paths`, named as by a merge, against the results in a folder, or for
-/// consistency if it has none.
+/// Checks the tables at `paths`, named as by a merge, against the results of their folder, or for
+/// consistency where there is none.
 ///
 /// # Errors
 /// If one can't be read, or contradicts a result or itself.
-pub fn check(plan: &Plan, folder: &Path, path: impl Fn(&str) -> PathBuf) -> Result<(), TableError> {
+pub fn check(
+    plan: &Plan,
+    stored: &CampaignResults,
+    path: impl Fn(&str) -> PathBuf,
+) -> Result<(), TableError> {
     let place: HashMap<&str, usize> =
         plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
     let [cases, checks, drift] = TABLES.map(|(name, _)| Read::of(path(name), &place));
     let tables = [cases?, checks?, drift?];
-    let there = |index: &usize| case::file(folder, &plan.cases[*index].id).exists();
+    let there = |index: &usize| stored.has(&plan.cases[*index].id);
     let (compared, alone): (Vec<usize>, Vec<usize>) =
         tables[0].cases.keys().copied().partition(there);
     for index in alone {
@@ -98,9 +102,9 @@ pub fn check(plan: &Plan, folder: &Path, path: impl Fn(&str) -> PathBuf) -> Resu
     };
     let factors = FactorColumns::of(plan).without_units(is_text, plan);
     for index in compared {
-        let expected = results::rows(plan, folder, std::iter::once(index), &factors)?;
+        let expected = results::rows(plan, stored, std::iter::once(index), &factors)?;
         for (table, rows) in tables.iter().zip(&expected) {
-            same(plan, folder, index, table, rows)?;
+            same(plan, stored, index, table, rows)?;
         }
     }
     Ok(())
@@ -109,19 +113,19 @@ pub fn check(plan: &Plan, folder: &Path, path: impl Fn(&str) -> PathBuf) -> Resu
 /// Checks that the rows of a case are those of its result.
 fn same(
     plan: &Plan,
-    folder: &Path,
+    stored: &CampaignResults,
     index: usize,
     table: &Read,
     expected: &Rows,
 ) -> Result<(), TableError> {
     let id = &plan.cases[index].id;
-    let file = case::file(folder, id);
+    let place = || stored.place(id).map_or_else(String::new, |place| place.to_string());
     let found = table.rows(index);
     if found.len() != expected.rows {
         return Err(table.wrong(format!(
             "case {id} has {} rows, its result {} gives {}",
             found.len(),
-            file.display(),
+            place(),
             expected.rows
         )));
     }
@@ -145,7 +149,7 @@ fn same(
             return Err(table.wrong(format!(
                 "case {id} has {} in column {name}, its result {} has {}: it isn't what this result gives",
                 text(&said),
-                file.display(),
+                place(),
                 text(&cell.at(0))
             )));
         }

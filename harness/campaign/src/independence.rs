@@ -4,11 +4,9 @@
 //! same stream of samples are one draw too, whatever their seeds; they are the same run, repeated
 //! under the label of a factor without effect or of a value in another spelling.
 
-use super::besides::besides;
-use super::case::CaseResult;
+use super::facts::CaseFacts;
 use super::plan::{Case, FactorValue, Plan};
 use super::report::combination::of_grid;
-use octant_requirements::Verdict;
 use octant_statistics::cluster;
 use std::collections::{BTreeMap, HashMap};
 
@@ -25,17 +23,10 @@ impl Shown {
     /// Extracts a result's evidence for a requirement. Everything except a pass counts as not
     /// passed: a check that failed or was inconclusive, a refused calibration, an error.
     #[must_use]
-    pub fn of(result: &CaseResult, requirement: &str) -> Self {
-        Self {
-            passed: passes(result, requirement),
-            stream: result.summary.as_ref().map(|summary| summary.stream_hash.clone()),
-        }
+    pub fn of(facts: &CaseFacts, requirement: &str) -> Self {
+        let stream = facts.stream().map(str::to_owned);
+        Self { passed: facts.passes(requirement), stream }
     }
-}
-
-/// Returns whether a result counts as passed for a requirement.
-pub(super) fn passes(result: &CaseResult, requirement: &str) -> bool {
-    result.check(requirement) == Verdict::Pass && besides(result) == Verdict::Pass
 }
 
 /// Returns the independent draw of each case, numbered from 0, from its seed and its stream.

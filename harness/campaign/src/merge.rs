@@ -3,7 +3,7 @@
 use super::chain;
 use super::independence::Shown;
 use super::plan::{Plan, short};
-use super::results::{Columns, NUMERICS, TABLES, ordered};
+use super::results::{self, Columns, NUMERICS, TABLES, ordered};
 use super::shard::Shard;
 use super::stop;
 use super::table::{ColumnKind, ColumnValues, ExistingTable, TableError, write_with_units};
@@ -277,6 +277,7 @@ pub fn merge(
 fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
     let end = format!(".{}.parquet", TABLES[0].0);
     for folder in folders {
+        let stored = results::open(folder)?;
         for path in parts(std::slice::from_ref(folder), TABLES[0].0) {
             // A part of another plan is reported as such elsewhere.
             if ExistingTable::open(&path)?.plan != plan.id {
@@ -284,7 +285,7 @@ fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
             }
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let stem = name.strip_suffix(&end).unwrap_or(&name);
-            chain::check(plan, folder, |table| {
+            chain::check(plan, &stored, |table| {
                 path.with_file_name(format!("{stem}.{table}.parquet"))
             })?;
         }

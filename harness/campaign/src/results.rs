@@ -1,9 +1,10 @@
 //! Results of cases as tables: one row per case, per checked requirement, and per point of a drift.
 
 use super::besides::besides;
-use super::case::{self, CaseResult};
+use super::case::{CaseResult, ResultError};
 use super::factors::FactorColumns;
 use super::plan::{Case, Plan};
+use super::store::CampaignResults;
 use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write_with_units};
 use octant_score::summary::Summary;
 use std::borrow::Cow;
@@ -131,33 +132,44 @@ pub fn tables(
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
     let factors = FactorColumns::of(plan);
-    let all = rows(plan, folder, cases, &factors)?;
+    let all = rows(plan, &open(folder)?, cases, &factors)?;
     for ((name, first), rows) in TABLES.iter().zip(&all) {
         rows.write(first, &path(name), &plan.id, &factors.units())?;
     }
     Ok(())
 }
 
-/// Collects the rows of all tables from the results in a folder.
+/// Opens the results in a folder.
+pub(super) fn open(folder: &Path) -> Result<CampaignResults, TableError> {
+    CampaignResults::open(folder).map_err(|error| unread(folder, &error))
+}
+
+/// Describes why a result, or all of them, can't be read.
+fn unread(path: &Path, error: &ResultError) -> TableError {
+    // The reason begins with action and file, as the error does.
+    let (path, reason) = (path.to_owned(), error.to_string());
+    let start = format!("read {}: ", path.display());
+    let reason = reason.strip_prefix(&start).map(str::to_owned).unwrap_or(reason);
+    TableError::Form { path, reason }
+}
+
+/// Collects the rows of all tables from results.
 pub(super) fn rows(
     plan: &Plan,
-    folder: &Path,
+    results: &CampaignResults,
     cases: impl Iterator<Item = usize>,
     factors: &FactorColumns<'_>,
 ) -> Result<[Rows; 3], TableError> {
     let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
     for index in cases {
         let Some(case) = plan.cases.get(index) else { continue };
-        let file = case::file(folder, &case.id);
-        // The reason begins with action and file, as the error does.
-        let form = |reason: String| {
-            let start = format!("read {}: ", file.display());
-            let reason = reason.strip_prefix(&start).unwrap_or(&reason).to_owned();
-            TableError::Form { path: file.clone(), reason }
-        };
-        let read =
-            CaseResult::of_plan(plan, folder, case).map_err(|error| form(error.to_string()))?;
-        let (result, hash) = read.ok_or_else(|| form("it is gone".to_owned()))?;
+        let place = results.place(&case.id);
+        let path = place.map_or_else(Default::default, |place| place.path().to_owned());
+        let read = results.of_plan(plan, case).map_err(|error| unread(&path, &error))?;
+        let (result, hash) = read.ok_or_else(|| TableError::Form {
+            path: path.clone(),
+            reason: format!("the result of case {} is gone", case.id),
+        })?;
         all_cases.push(case_row(case, &result, &hash, factors));
         if let Some(summary) = &result.summary {
             check_rows(case, summary).for_each(|row| checks.push(row));

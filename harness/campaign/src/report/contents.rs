@@ -14,7 +14,8 @@ use crate::against::{Against, Selection, against};
 use crate::execute::{Shard, refuse_foreign};
 use crate::plan::Plan;
 use crate::status::{self, CampaignStatus, StatusError};
-use crate::trace::trace;
+use crate::store::CampaignResults;
+use crate::trace::trace_by;
 use octant_base::display::UnitChoice;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
@@ -124,20 +125,23 @@ impl<'a> CampaignReport<'a> {
     /// # Errors
     /// If something in the folder can't be read, or isn't of the plan.
     pub fn of(plan: &'a Plan, folder: &Path) -> Result<Self, ReportError> {
-        refuse_foreign(plan, folder)?;
+        let results = CampaignResults::open(folder)?;
+        refuse_foreign(plan, folder, &results)?;
         let dispositions = Dispositions::read(&folder.join(disposition::FILE_NAME))?;
         let result = |StatusError(error)| ReportError::Result(error);
-        let status = status::of(plan, folder, Shard::WHOLE).map_err(result)?;
+        let status = status::of_results(plan, &results, Shard::WHOLE).map_err(result)?;
         let end = match &plan.stop {
-            Some(rule) => status::decide(plan, folder, rule).map_err(result)?.end(plan.cases.len()),
+            Some(rule) => {
+                status::decide_by(plan, &results, rule).map_err(result)?.end(plan.cases.len())
+            }
             None => plan.cases.len(),
         };
-        let (rows, results_blake3) = rows::read(plan, folder, end)?;
+        let (rows, results_blake3) = rows::read(plan, &results, end)?;
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
-        let trace = trace(plan, &about, folder, end)?;
+        let trace = trace_by(plan, &about, &results, end)?;
         let run = rows.iter().filter(|row| row.outcome.is_some()).count();
-        let (tables, mut wrong) = tables::look(plan, folder, run)?;
+        let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
             wrong.push(reason);
             None

@@ -2,15 +2,15 @@
 
 use super::error::ReportError;
 use crate::besides::besides;
-use crate::case::{self, CaseResult, differing};
+use crate::case::CaseResult;
 use crate::independence;
 use crate::plan::{Case, Plan};
+use crate::store::CampaignResults;
 use octant_requirements::Verdict;
 use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
 use octant_statistics::envelope::resampled;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Maximum number of points of a drift.
 const POINTS_MAX: f64 = 500.0;
@@ -91,21 +91,20 @@ pub struct Curve {
 /// If an existing result can't be read.
 pub fn read<'a>(
     plan: &'a Plan,
-    folder: &Path,
+    results: &CampaignResults,
     end: usize,
 ) -> Result<(Vec<ReportRow<'a>>, String), ReportError> {
     let mut hasher = blake3::Hasher::new();
     let mut rows = Vec::with_capacity(end);
     for case in plan.cases.iter().take(end) {
-        let path = case::file(folder, &case.id);
-        let read = CaseResult::of_plan(plan, folder, case)?;
+        let read = results.of_plan(plan, case)?;
         let Some((result, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
             rows.push(ReportRow { case, outcome: None });
             continue;
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-        let differs = differing(&path, &case.id).is_some();
+        let differs = results.differing(&case.id)?.is_some();
         rows.push(ReportRow { case, outcome: Some(RowOutcome::of(result, differs)) });
     }
     Ok((rows, hasher.finalize().to_hex().to_string()))

@@ -5,6 +5,7 @@ use crate::chain;
 use crate::merge::merged;
 use crate::plan::Plan;
 use crate::results::TABLES;
+use crate::store::CampaignResults;
 use crate::table::{ExistingTable, TableError};
 use std::path::Path;
 
@@ -17,6 +18,7 @@ use std::path::Path;
 pub(super) fn look(
     plan: &Plan,
     folder: &Path,
+    results: &CampaignResults,
     run: usize,
 ) -> Result<(Vec<(String, String)>, Vec<String>), ReportError> {
     let (mut found, mut wrong, mut of_this_plan) = (Vec::new(), Vec::new(), 0);
@@ -50,14 +52,16 @@ pub(super) fn look(
     }
     // Unreadable tables, or those of another plan, are reported above.
     if of_this_plan == TABLES.len() {
-        chain::check(plan, folder, |table| merged(folder, table)).map_err(|error| match error {
-            TableError::System { action, path, source } => {
-                ReportError::System { action, path, source }
-            }
-            TableError::Form { path, reason } | TableError::Write { path, reason } => {
-                ReportError::Form { path, reason }
-            }
-        })?;
+        chain::check(plan, results, |table| merged(folder, table)).map_err(
+            |error| match error {
+                TableError::System { action, path, source } => {
+                    ReportError::System { action, path, source }
+                }
+                TableError::Form { path, reason } | TableError::Write { path, reason } => {
+                    ReportError::Form { path, reason }
+                }
+            },
+        )?;
     }
     Ok((found, wrong))
 }

@@ -1,8 +1,8 @@
 //! Numbers of a report, computed independently and compared with its page.
 
 use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
+use crate::common::results;
 use octant_base::number::significant;
-use octant_campaign::case;
 use octant_campaign::plan::FactorValue;
 use serde_json::{Value, json};
 
@@ -199,8 +199,7 @@ fn predictions_stand_beside_the_cases() {
         let mut errors = Vec::new();
         for case in bench.plan().cases.iter().filter(|case| case.faults == Some(Vec::new())) {
             if set.iter().all(|one| case.set.iter().any(|other| one == other.as_str())) {
-                let text = std::fs::read_to_string(case::file(&bench.at("out"), &case.id)).unwrap();
-                let result: Value = serde_json::from_str(&text).unwrap();
+                let result = results::value(&bench.at("out"), &case.id);
                 let parameters = &result["summary"]["calibration"]["parameters"];
                 errors.push(parameters["gyro_bias_z"]["error"].as_f64().unwrap());
             }
