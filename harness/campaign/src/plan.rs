@@ -12,6 +12,7 @@ use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Version of `plan.json`.
@@ -50,6 +51,24 @@ pub struct Plan {
     pub scenarios: Vec<PlannedScenario>,
     /// Cases, in the order in which they are begun.
     pub cases: Vec<Case>,
+}
+
+/// Content of a plan that makes its id: the plan without names of files, in the same form.
+#[derive(Serialize)]
+struct HashedPlan<'a> {
+    schema: u32,
+    id: &'static str,
+    title: &'a str,
+    campaign: &'static str,
+    limits: CaseLimits,
+    stop: &'a Option<StopRule>,
+    factors: &'a [String],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    requirements: &'a [Planned],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    not_by_test: &'a [String],
+    scenarios: Vec<PlannedScenario>,
+    cases: &'a [Case],
 }
 
 /// Limits of a case.
@@ -255,17 +274,29 @@ impl Plan {
 
     /// Computes the id from the contents, independent of the places of files.
     pub(super) fn hash(&self) -> String {
+        let Self { schema, id: _, title, campaign: _, limits, stop, factors, .. } = self;
+        let Self { requirements, not_by_test, scenarios, cases, .. } = self;
         let placeless = |scenario: &PlannedScenario| PlannedScenario {
             file: PathBuf::new(),
             ..scenario.clone()
         };
-        let unnamed = Self {
-            id: String::new(),
-            campaign: PathBuf::new(),
-            scenarios: self.scenarios.iter().map(placeless).collect(),
-            ..self.clone()
+        let content = HashedPlan {
+            schema: *schema,
+            id: "",
+            title,
+            campaign: "",
+            limits: *limits,
+            stop,
+            factors,
+            requirements,
+            not_by_test,
+            scenarios: scenarios.iter().map(placeless).collect(),
+            cases,
         };
-        blake3::hash(unnamed.to_json().as_bytes()).to_hex().to_string()
+        let mut hasher = blake3::Hasher::new();
+        // Values of these types can always be serialised, and a hash takes all bytes.
+        let _ = serde_json::to_writer_pretty(BufWriter::new(&mut hasher), &content);
+        hasher.update(b"\n").finalize().to_hex().to_string()
     }
 
     /// Returns a case by its id.

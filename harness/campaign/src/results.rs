@@ -4,10 +4,10 @@ use super::besides::besides;
 use super::case::{CaseResult, ResultError};
 use super::factors::FactorColumns;
 use super::plan::{Case, Plan};
+use super::spill::SpilledRows;
 use super::store::CampaignResults;
-use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write_with_units};
+use super::table::{ColumnKind, ColumnValue, TableError, write_streamed};
 use octant_score::summary::Summary;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -65,50 +65,13 @@ pub const TABLES: [(&str, Columns); 3] = [
     ),
 ];
 
-/// Rows, with the columns that they need.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rows {
-    pub(super) columns: BTreeMap<String, ColumnValues>,
-    pub(super) rows: usize,
-}
-
-impl Rows {
-    fn new(first: Columns) -> Self {
-        let empty =
-            |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), ColumnValues::new(*kind));
-        Self { columns: first.iter().map(empty).collect(), rows: 0 }
-    }
-
-    fn push(&mut self, row: BTreeMap<String, ColumnValue>) {
-        for (name, value) in row {
-            let column = self.columns.entry(name).or_insert_with(|| {
-                let mut column = ColumnValues::new(value.kind());
-                (0..self.rows).for_each(|_| column.push(None));
-                column
-            });
-            column.push(Some(value));
-        }
-        self.rows += 1;
-        for column in self.columns.values_mut().filter(|column| column.len() < self.rows) {
-            column.push(None);
-        }
-    }
-
-    fn write(
-        &self,
-        first: Columns,
-        path: &Path,
-        plan: &str,
-        units: &BTreeMap<String, String>,
-    ) -> Result<(), TableError> {
-        let mut units = units.clone();
-        units.retain(|name, _| self.columns.contains_key(name));
-        let kinds = self.columns.iter().map(|(name, values)| (name.as_str(), values.kind()));
-        let columns = ordered(first, &kinds.collect());
-        write_with_units(path, plan, &columns, &units, |index| {
-            Ok(Cow::Borrowed(&self.columns[&columns[index].0]))
-        })
-    }
+/// Rows of all tables, and how many of each case.
+#[derive(Debug)]
+pub(super) struct TableRows {
+    /// The tables, in the order of [`TABLES`].
+    pub(super) tables: [SpilledRows; 3],
+    /// Rows of each case in each table, in the order in which the cases were given.
+    pub(super) counts: Vec<[usize; 3]>,
 }
 
 /// Lists columns in the order in which they are written.
@@ -132,9 +95,16 @@ pub fn tables(
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
     let factors = FactorColumns::of(plan);
-    let all = rows(plan, &open(folder)?, cases, &factors)?;
-    for ((name, first), rows) in TABLES.iter().zip(&all) {
-        rows.write(first, &path(name), &plan.id, &factors.units())?;
+    let beside = path(TABLES[0].0);
+    let place = beside.parent().unwrap_or(folder);
+    let all = rows(plan, &open(folder)?, cases, &factors, place)?;
+    for ((name, first), rows) in TABLES.iter().zip(&all.tables) {
+        let columns = ordered(first, &rows.kinds());
+        let mut units = factors.units();
+        units.retain(|name, _| rows.kinds().contains_key(name.as_str()));
+        write_streamed(&path(name), &plan.id, &columns, &units, |index| {
+            Ok(rows.column(&columns[index].0))
+        })?;
     }
     Ok(())
 }
@@ -153,14 +123,17 @@ fn unread(path: &Path, error: &ResultError) -> TableError {
     TableError::Form { path, reason }
 }
 
-/// Collects the rows of all tables from results.
+/// Collects the rows of all tables from results, in temporary files in a folder.
 pub(super) fn rows(
     plan: &Plan,
     results: &CampaignResults,
     cases: impl Iterator<Item = usize>,
     factors: &FactorColumns<'_>,
-) -> Result<[Rows; 3], TableError> {
-    let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
+    place: &Path,
+) -> Result<TableRows, TableError> {
+    let [mut all_cases, mut checks, mut drift] =
+        TABLES.map(|(_, first)| SpilledRows::new(place, first));
+    let mut counts = Vec::new();
     for index in cases {
         let Some(case) = plan.cases.get(index) else { continue };
         let place = results.place(&case.id);
@@ -170,13 +143,15 @@ pub(super) fn rows(
             path: path.clone(),
             reason: format!("the result of case {} is gone", case.id),
         })?;
-        all_cases.push(case_row(case, &result, &hash, factors));
+        let before = [checks.rows(), drift.rows()];
+        all_cases.push(case_row(case, &result, &hash, factors))?;
         if let Some(summary) = &result.summary {
-            check_rows(case, summary).for_each(|row| checks.push(row));
-            drift_rows(case, summary).for_each(|row| drift.push(row));
+            check_rows(case, summary).try_for_each(|row| checks.push(row))?;
+            drift_rows(case, summary).try_for_each(|row| drift.push(row))?;
         }
+        counts.push([1, checks.rows() - before[0], drift.rows() - before[1]]);
     }
-    Ok([all_cases, checks, drift])
+    Ok(TableRows { tables: [all_cases, checks, drift], counts })
 }
 
 fn text(value: impl Into<Arc<str>>) -> ColumnValue {

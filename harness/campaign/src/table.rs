@@ -1,4 +1,4 @@
-//! Tables as Parquet files: written and read one column at a time.
+//! Tables as Parquet files: written and read one column at a time, and a column some rows at a time.
 //!
 //! A file has one row group, every column may be null, and it contains nothing of host or clock:
 //! the same table gives the same bytes.
@@ -68,6 +68,30 @@ pub enum ColumnValue {
     Boolean(bool),
 }
 
+impl ColumnKind {
+    /// Returns a value as a column of this kind holds it: of another kind as text in a text column, and
+    /// null in any other.
+    #[must_use]
+    pub fn converted(self, value: Option<ColumnValue>) -> Option<ColumnValue> {
+        match (self, value?) {
+            (Self::Text, ColumnValue::Text(text)) => Some(ColumnValue::Text(text)),
+            (Self::Text, ColumnValue::Number(number)) => {
+                Some(ColumnValue::Text(number.to_string().into()))
+            }
+            (Self::Text, ColumnValue::Integer(number)) => {
+                Some(ColumnValue::Text(number.to_string().into()))
+            }
+            (Self::Text, ColumnValue::Boolean(value)) => {
+                Some(ColumnValue::Text(value.to_string().into()))
+            }
+            (Self::Number, ColumnValue::Integer(number)) => {
+                Some(ColumnValue::Number(number as f64))
+            }
+            (kind, value) => (kind == value.kind()).then_some(value),
+        }
+    }
+}
+
 impl ColumnValue {
     /// Returns the kind of column that holds it.
     #[must_use]
@@ -124,22 +148,13 @@ impl ColumnValues {
     /// Appends a value, or null; a value of another kind becomes text in a text column, and null in
     /// any other.
     pub fn push(&mut self, value: Option<ColumnValue>) {
+        let value = self.kind().converted(value);
         match (self, value) {
-            (Self::Text(all), value) => push_text(
-                all,
-                value.map(|value| match value {
-                    ColumnValue::Text(text) => text,
-                    ColumnValue::Number(number) => number.to_string().into(),
-                    ColumnValue::Integer(number) => number.to_string().into(),
-                    ColumnValue::Boolean(value) => value.to_string().into(),
-                }),
-            ),
+            (Self::Text(all), Some(ColumnValue::Text(text))) => push_text(all, Some(text)),
             (Self::Number(all), Some(ColumnValue::Number(number))) => all.push(Some(number)),
-            (Self::Number(all), Some(ColumnValue::Integer(number))) => {
-                all.push(Some(number as f64))
-            }
             (Self::Integer(all), Some(ColumnValue::Integer(number))) => all.push(Some(number)),
             (Self::Boolean(all), Some(ColumnValue::Boolean(value))) => all.push(Some(value)),
+            (Self::Text(all), _) => all.push(None),
             (Self::Number(all), _) => all.push(None),
             (Self::Integer(all), _) => all.push(None),
             (Self::Boolean(all), _) => all.push(None),
@@ -222,6 +237,27 @@ pub fn write_with_units<'a>(
     units: &BTreeMap<String, String>,
     mut values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, ColumnValues>, TableError>,
 ) -> Result<(), TableError> {
+    write_streamed(path, plan, columns, units, |index| {
+        let values = values(index)?;
+        Ok((0..values.len()).map(move |row| Ok(values.at(row))))
+    })
+}
+
+/// Writes a table as [`write_with_units`] does, from the values of each column one after another. No more
+/// than some thousands of them are in memory.
+///
+/// # Errors
+/// As [`write()`], or those of the values.
+pub(super) fn write_streamed<V>(
+    path: &Path,
+    plan: &str,
+    columns: &[(String, ColumnKind)],
+    units: &BTreeMap<String, String>,
+    mut values: impl FnMut(usize) -> Result<V, TableError>,
+) -> Result<(), TableError>
+where
+    V: Iterator<Item = Result<Option<ColumnValue>, TableError>>,
+{
     let folder = path.parent().unwrap_or(Path::new("."));
     let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
     std::fs::create_dir_all(folder).map_err(system)?;
@@ -253,17 +289,33 @@ pub fn write_with_units<'a>(
     let mut group = writer.next_row_group().map_err(wrong)?;
     let mut index = 0;
     while let Some(mut column) = group.next_column().map_err(wrong)? {
-        let values = values(index)?;
-        match &*values {
-            ColumnValues::Text(all) => {
-                let bytes = |text: &Arc<str>| ByteArray::from(&**text);
-                put(&mut column, all, bytes, |c| c.typed::<ByteArrayType>())
+        let mut all = values(index)?;
+        let kind = columns.get(index).map_or(ColumnKind::Text, |(_, kind)| *kind);
+        loop {
+            let mut some = ColumnValues::new(kind);
+            for value in all.by_ref().take(ROWS_AT_A_TIME) {
+                some.push(value?);
             }
-            ColumnValues::Number(all) => put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>()),
-            ColumnValues::Integer(all) => put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>()),
-            ColumnValues::Boolean(all) => put(&mut column, all, |v| *v, |c| c.typed::<BoolType>()),
+            if some.is_empty() {
+                break;
+            }
+            match &some {
+                ColumnValues::Text(all) => {
+                    let bytes = |text: &Arc<str>| ByteArray::from(&**text);
+                    put(&mut column, all, bytes, |c| c.typed::<ByteArrayType>())
+                }
+                ColumnValues::Number(all) => {
+                    put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>())
+                }
+                ColumnValues::Integer(all) => {
+                    put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>())
+                }
+                ColumnValues::Boolean(all) => {
+                    put(&mut column, all, |v| *v, |c| c.typed::<BoolType>())
+                }
+            }
+            .map_err(wrong)?;
         }
-        .map_err(wrong)?;
         column.close().map_err(wrong)?;
         index += 1;
     }
@@ -308,11 +360,9 @@ fn put<T, D: DataType>(
         &'a mut parquet::file::writer::SerializedColumnWriter<'b>,
     ) -> &'a mut parquet::column::writer::ColumnWriterImpl<'b, D>,
 ) -> Result<(), ParquetError> {
-    for values in values.chunks(ROWS_AT_A_TIME) {
-        let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-        let there: Vec<D::T> = values.iter().flatten().map(&to).collect();
-        typed(column).write_batch(&there, Some(&levels), None)?;
-    }
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let there: Vec<D::T> = values.iter().flatten().map(to).collect();
+    typed(column).write_batch(&there, Some(&levels), None)?;
     Ok(())
 }
 
@@ -412,73 +462,134 @@ impl ExistingTable {
     /// # Errors
     /// If the file is damaged.
     pub fn column(&self, name: &str) -> Result<Option<ColumnValues>, TableError> {
+        let Some(mut cursor) = self.cursor(name)? else { return Ok(None) };
+        let mut all = ColumnValues::new(cursor.kind);
+        while cursor.left > 0 || cursor.at < cursor.some.len() {
+            all.push(cursor.next()?);
+        }
+        Ok(Some(all))
+    }
+
+    /// Returns a cursor on the first row of a column; `None` if there is no such column.
+    ///
+    /// # Errors
+    /// If the file is damaged.
+    pub(super) fn cursor(&self, name: &str) -> Result<Option<ColumnCursor>, TableError> {
         let Some(index) = self.columns.iter().position(|(other, _)| other == name) else {
             return Ok(None);
         };
-        let (_, kind) = &self.columns[index];
+        let kind = self.columns[index].1;
         let form = |error: ParquetError| TableError::Form {
             path: self.path.clone(),
             reason: error.to_string(),
         };
-        if self.rows == 0 {
-            return Ok(Some(ColumnValues::new(*kind)));
-        }
-        let group = self.reader.get_row_group(0).map_err(form)?;
-        let values = match group.get_column_reader(index).map_err(form)? {
-            ColumnReader::DoubleColumnReader(reader) => {
-                self.all(reader, |v| v).map(ColumnValues::Number)
-            }
-            ColumnReader::Int64ColumnReader(reader) => {
-                self.all(reader, |v| v).map(ColumnValues::Integer)
-            }
-            ColumnReader::BoolColumnReader(reader) => {
-                self.all(reader, |v| v).map(ColumnValues::Boolean)
-            }
-            ColumnReader::ByteArrayColumnReader(reader) => {
-                let mut all = Vec::with_capacity(self.rows);
-                self.each(reader, |bytes: Option<ByteArray>| {
-                    push_text(&mut all, bytes.map(|b| String::from_utf8_lossy(b.data()).into()));
-                })
-                .map(|()| ColumnValues::Text(all))
-            }
-            _ => Err(ParquetError::General(format!("column {name} has another type"))),
+        let reader = if self.rows == 0 {
+            None
+        } else {
+            let group = self.reader.get_row_group(0).map_err(form)?;
+            Some(group.get_column_reader(index).map_err(form)?)
         };
-        values.map_err(form).map(Some)
+        let (path, some) = (self.path.clone(), ColumnValues::new(kind));
+        Ok(Some(ColumnCursor { path, kind, reader, left: self.rows, some, at: 0 }))
+    }
+}
+
+/// Values of a column, read some rows at a time.
+pub(super) struct ColumnCursor {
+    path: PathBuf,
+    kind: ColumnKind,
+    reader: Option<ColumnReader>,
+    /// Rows that weren't read yet.
+    left: usize,
+    /// Rows that were read, and the one that comes next.
+    some: ColumnValues,
+    at: usize,
+}
+
+impl ColumnCursor {
+    /// Returns the value of the next row; null after the last one.
+    pub(super) fn next(&mut self) -> Result<Option<ColumnValue>, TableError> {
+        if self.at == self.some.len() && self.left > 0 {
+            self.read()?;
+        }
+        self.at += 1;
+        Ok(self.some.at(self.at - 1))
     }
 
-    fn all<D: DataType, T>(
-        &self,
-        reader: ColumnReaderImpl<D>,
-        from: impl Fn(D::T) -> T,
-    ) -> Result<Vec<Option<T>>, ParquetError> {
-        let mut all = Vec::with_capacity(self.rows);
-        self.each(reader, |value| all.push(value.map(&from)))?;
-        Ok(all)
-    }
-
-    /// Passes on every value of a column.
-    fn each<D: DataType>(
-        &self,
-        mut reader: ColumnReaderImpl<D>,
-        mut take: impl FnMut(Option<D::T>),
-    ) -> Result<(), ParquetError> {
-        let mut left = self.rows;
-        while left > 0 {
-            let (mut levels, mut there) = (Vec::new(), Vec::new());
-            let wanted = left.min(ROWS_AT_A_TIME);
-            let (records, _, _) =
-                reader.read_records(wanted, Some(&mut levels), None, &mut there)?;
-            if records == 0 {
-                return Err(ParquetError::General(format!("{left} rows are missing")));
-            }
-            left -= records;
-            let mut there = there.into_iter();
-            for level in levels {
-                take(if level > 0 { there.next() } else { None });
+    /// Passes over rows.
+    pub(super) fn skip(&mut self, mut rows: usize) -> Result<(), TableError> {
+        while rows > 0 {
+            let here = self.some.len().saturating_sub(self.at).min(rows);
+            self.at += here;
+            rows -= here;
+            if rows > 0 {
+                if self.left == 0 {
+                    return Ok(());
+                }
+                self.read()?;
             }
         }
         Ok(())
     }
+
+    fn read(&mut self) -> Result<(), TableError> {
+        let wanted = self.left.min(ROWS_AT_A_TIME);
+        // A text of one batch is shared with the first of the next one, if they are equal.
+        let before = match &self.some {
+            ColumnValues::Text(texts) => texts.last().cloned().flatten(),
+            _ => None,
+        };
+        let read = match &mut self.reader {
+            Some(ColumnReader::DoubleColumnReader(reader)) => {
+                batch(reader, wanted, |v| v).map(ColumnValues::Number)
+            }
+            Some(ColumnReader::Int64ColumnReader(reader)) => {
+                batch(reader, wanted, |v| v).map(ColumnValues::Integer)
+            }
+            Some(ColumnReader::BoolColumnReader(reader)) => {
+                batch(reader, wanted, |v| v).map(ColumnValues::Boolean)
+            }
+            Some(ColumnReader::ByteArrayColumnReader(reader)) => {
+                let mut last = before;
+                let shared = |bytes: ByteArray| {
+                    let text = String::from_utf8_lossy(bytes.data());
+                    match &last {
+                        Some(last) if **last == *text => Arc::clone(last),
+                        _ => Arc::clone(last.insert(text.into())),
+                    }
+                };
+                batch(reader, wanted, shared).map(ColumnValues::Text)
+            }
+            _ => Err(ParquetError::General("a column has another type".to_owned())),
+        };
+        let form = |error: ParquetError| TableError::Form {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        };
+        let some = read.map_err(form)?;
+        if some.is_empty() {
+            let reason = format!("{} rows are missing", self.left);
+            return Err(TableError::Form { path: self.path.clone(), reason });
+        }
+        self.left -= some.len();
+        (self.some, self.at) = (some, 0);
+        Ok(())
+    }
+}
+
+/// Reads the next rows of a column, at most so many.
+fn batch<D: DataType, T>(
+    reader: &mut ColumnReaderImpl<D>,
+    wanted: usize,
+    mut from: impl FnMut(D::T) -> T,
+) -> Result<Vec<Option<T>>, ParquetError> {
+    let (mut levels, mut there) = (Vec::new(), Vec::new());
+    reader.read_records(wanted, Some(&mut levels), None, &mut there)?;
+    let mut there = there.into_iter();
+    Ok(levels
+        .into_iter()
+        .map(|level| if level > 0 { there.next().map(&mut from) } else { None })
+        .collect())
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod allan;
 mod architecture;
 mod campaign;
 mod campaign_report;
+mod campaign_scale;
 mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;

@@ -2,11 +2,12 @@
 //! results.
 
 use super::combination::Combination;
+use super::curves::CurveFile;
 use super::envelope::ShownEnvelope;
 use super::error::ReportError;
 use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use super::requirement::RequirementFigures;
-use super::rows::ReportRow;
+use super::rows::{ReportRow, ReportRows};
 use super::selftest::SelfTest;
 use super::units::CampaignUnits;
 use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
@@ -26,6 +27,7 @@ use octant_requirements::trace::CampaignTrace;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Version of `statistics.json`.
 pub const SCHEMA: u32 = 1;
@@ -117,6 +119,16 @@ pub struct CampaignReport<'a> {
     pub tables: Vec<(String, String)>,
     /// Units of errors on the page.
     pub units: CampaignUnits,
+    /// The file of the drifts.
+    curves: Arc<CurveFile>,
+}
+
+/// Checks that the drifts could be read.
+fn check(curves: &CurveFile) -> Result<(), ReportError> {
+    let path = std::env::temp_dir();
+    let wrong =
+        |source| ReportError::System { action: "read the drifts of cases from", path, source };
+    curves.error().map_or(Ok(()), |source| Err(wrong(source)))
 }
 
 impl<'a> CampaignReport<'a> {
@@ -136,7 +148,7 @@ impl<'a> CampaignReport<'a> {
             }
             None => plan.cases.len(),
         };
-        let (rows, results_blake3) = rows::read(plan, &results, end)?;
+        let ReportRows { rows, results_blake3, curves } = rows::read(plan, &results, end)?;
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
         let trace = trace_by(plan, &about, &results, end)?;
@@ -155,6 +167,7 @@ impl<'a> CampaignReport<'a> {
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
             .collect();
         figures::mark(&mut of_combinations);
+        check(&curves)?;
         let statistics = Statistics {
             schema: SCHEMA,
             title: plan.title.clone(),
@@ -193,7 +206,16 @@ impl<'a> CampaignReport<'a> {
             notes,
             tables,
             units: CampaignUnits::of(plan, folder),
+            curves,
         })
+    }
+
+    /// Checks that the drifts of all cases could be read as often as they were needed.
+    ///
+    /// # Errors
+    /// If the temporary file that holds them could not be read.
+    pub fn check(&self) -> Result<(), ReportError> {
+        check(&self.curves)
     }
 
     /// Chooses units of errors on the page, in place of the scenarios'. Files for machines keep theirs.

@@ -51,6 +51,7 @@ pub fn write(
         .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
     let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
     let html = crate::page::render(report, true);
+    report.check()?;
     if !report.dispositions.text.is_empty() {
         keep(&path, report.dispositions.text.as_bytes())?;
     }

@@ -14,12 +14,22 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+/// Largest number of parts that stay open.
+const OPEN_MAX: usize = 64;
+
 /// The results in the folder of a campaign, as they were when it was opened.
 #[derive(Debug)]
 pub struct CampaignResults {
-    parts: Vec<PathBuf>,
+    parts: Vec<Part>,
     /// Results of each case, the first one first.
     cases: BTreeMap<Box<str>, Vec<Stored>>,
+}
+
+/// A part file, open if there are few of them.
+#[derive(Debug)]
+struct Part {
+    path: PathBuf,
+    file: Option<File>,
 }
 
 /// A stored result.
@@ -69,12 +79,14 @@ impl CampaignResults {
             let path = place.path().to_owned();
             cases.entry(case.into()).or_default().push(Stored::File { path, is_second });
         }
-        let parts = parts(&folder.join(FOLDER))?;
+        let paths = parts(&folder.join(FOLDER))?;
+        let mut parts = Vec::with_capacity(paths.len());
+        let stay_open = paths.len() <= OPEN_MAX;
         let mut records: BTreeMap<Box<str>, Vec<StoredRecord>> = BTreeMap::new();
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
-        for (part, path) in (0..).zip(&parts) {
-            let mut file = File::open(path).map_err(PartError::system("read", path))?;
-            scan(path, &mut file, |Found { head, offset, own }| {
+        for (part, path) in (0..).zip(paths) {
+            let file = File::open(&path).map_err(PartError::system("read", &path))?;
+            scan(&path, &file, |Found { head, offset, own }| {
                 let case = head.case.as_str().into();
                 if head.kind == RecordKind::Forgotten {
                     forgotten.entry(case).or_default().insert(first(&head.blake3));
@@ -89,6 +101,7 @@ impl CampaignResults {
                     own,
                 });
             })?;
+            parts.push(Part { path, file: stay_open.then_some(file) });
         }
         for (case, mut of_case) in records {
             of_case.sort_unstable();
@@ -237,8 +250,8 @@ impl CampaignResults {
         else {
             return Ok(self.of_plan(plan, case)?.map(|(result, _)| CaseFacts::of(&result)));
         };
-        let (path, place) = (self.part(record), self.place_of(&Stored::Record(*record), &case.id));
-        let head = read_head(path, record.offset)?;
+        let place = self.place_of(&Stored::Record(*record), &case.id);
+        let head = self.at(record, read_head)?;
         let form = |source| ResultError::Form { place: place.clone(), source };
         let facts: CaseFacts = serde_json::from_slice(&head.facts).map_err(form)?;
         facts.belongs(&place, plan.planned(case).ok(), case)?;
@@ -259,7 +272,7 @@ impl CampaignResults {
         };
         if let Stored::Record(record) = stored
             && record.has_facts
-            && let Ok(head) = read_head(self.part(record), record.offset)
+            && let Ok(head) = self.at(record, read_head)
             && let Ok(facts) = serde_json::from_slice::<CaseFacts>(&head.facts)
         {
             return facts.error.is_some();
@@ -272,15 +285,31 @@ impl CampaignResults {
         self.cases.get(case)?.iter().find(|stored| !stored.is_beside())
     }
 
-    fn part(&self, record: &StoredRecord) -> &Path {
-        self.parts.get(record.part as usize).map_or(Path::new(""), PathBuf::as_path)
+    fn path(&self, record: &StoredRecord) -> &Path {
+        self.parts.get(record.part as usize).map_or(Path::new(""), |part| part.path.as_path())
+    }
+
+    /// Reads something of a record.
+    fn at<T>(
+        &self,
+        record: &StoredRecord,
+        read: impl Fn(&Path, &File, u64) -> Result<T, PartError>,
+    ) -> Result<T, PartError> {
+        let path = self.path(record);
+        match self.parts.get(record.part as usize).and_then(|part| part.file.as_ref()) {
+            Some(file) => read(path, file, record.offset),
+            None => {
+                let file = File::open(path).map_err(PartError::system("read", path))?;
+                read(path, &file, record.offset)
+            }
+        }
     }
 
     fn place_of(&self, stored: &Stored, case: &str) -> ResultPlace {
         match stored {
             Stored::File { path, .. } => ResultPlace::File(path.clone()),
             Stored::Record(record) => ResultPlace::Record {
-                part: self.part(record).to_owned(),
+                part: self.path(record).to_owned(),
                 offset: record.offset,
                 case: case.to_owned(),
             },
@@ -297,7 +326,7 @@ impl CampaignResults {
         let (bytes, facts) = match stored {
             Stored::File { path, .. } => (read_file(path)?, None),
             Stored::Record(record) => {
-                let (head, bytes) = read_whole(self.part(record), record.offset)?;
+                let (head, bytes) = self.at(record, read_whole)?;
                 (bytes, Some(head.facts).filter(|facts| !facts.is_empty()))
             }
         };

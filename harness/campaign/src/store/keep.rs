@@ -74,9 +74,9 @@ pub fn forget_errors<'a>(
 /// # Errors
 /// If it can't be read, or is damaged.
 pub fn part_has(part: &Path, case: &str) -> Result<bool, PartError> {
-    let mut file = File::open(part).map_err(PartError::system("read", part))?;
+    let file = File::open(part).map_err(PartError::system("read", part))?;
     let mut has = false;
-    scan(part, &mut file, |found| {
+    scan(part, &file, |found| {
         has |= found.head.kind == RecordKind::Result && found.head.case == case;
     })?;
     Ok(has)

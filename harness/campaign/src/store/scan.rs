@@ -11,11 +11,13 @@ use super::frame::{
     read_file_head,
 };
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::path::Path;
 
 /// Number of bytes that are searched for a record at a time.
 const SEARCHED: usize = 1 << 20;
+/// Number of bytes that are read at a time where few are needed.
+const WINDOW: usize = 4096;
 
 /// A record in a file.
 #[derive(Clone, Debug)]
@@ -40,12 +42,12 @@ pub(super) struct Scanned {
 /// alone.
 pub(super) fn scan(
     path: &Path,
-    file: &mut File,
+    file: &File,
     mut each: impl FnMut(Found),
 ) -> Result<Scanned, PartError> {
     let system = |source| PartError::System { action: "read", path: path.to_owned(), source };
     let bytes = file.metadata().map_err(system)?.len();
-    let mut reader = Source { file, bytes };
+    let mut reader = Source::of(file, bytes);
     let mut first = vec![0; FILE_HEAD.min(usize::try_from(bytes).unwrap_or(FILE_HEAD))];
     reader.exact(0, &mut first).map_err(system)?;
     match read_file_head(&first) {
@@ -73,19 +75,21 @@ pub(super) fn scan(
     Ok(Scanned { end, bytes })
 }
 
-/// Reads the head of the record at a byte.
-pub(super) fn read_head(path: &Path, offset: u64) -> Result<RecordHead, PartError> {
-    let mut file = File::open(path).map_err(PartError::system("read", path))?;
+/// Reads the head of the record at a byte of a file.
+pub(super) fn read_head(path: &Path, file: &File, offset: u64) -> Result<RecordHead, PartError> {
     let bytes = file.metadata().map_err(PartError::system("read", path))?.len();
-    let head = Source { file: &mut file, bytes }.head(offset);
+    let head = Source::of(file, bytes).head(offset);
     head.map_err(PartError::system("read", path))?.ok_or_else(|| no_head(path, offset))
 }
 
 /// Reads the record at a byte, and returns its head and its result.
-pub(super) fn read_whole(path: &Path, offset: u64) -> Result<(RecordHead, Vec<u8>), PartError> {
-    let mut file = File::open(path).map_err(PartError::system("read", path))?;
+pub(super) fn read_whole(
+    path: &Path,
+    file: &File,
+    offset: u64,
+) -> Result<(RecordHead, Vec<u8>), PartError> {
     let bytes = file.metadata().map_err(PartError::system("read", path))?.len();
-    let whole = Source { file: &mut file, bytes }.whole(offset);
+    let whole = Source::of(file, bytes).whole(offset);
     let whole = whole.map_err(PartError::system("read", path))?;
     let (head, body, own) = whole.ok_or_else(|| no_head(path, offset))?;
     let damaged = |found: String, expected: String| PartError::Damaged {
@@ -135,16 +139,56 @@ pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
+/// Reads bytes at a place of a file.
+#[cfg(unix)]
+fn read_at(file: &File, at: u64, buffer: &mut [u8]) -> io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, buffer, at)
+}
+
+#[cfg(not(unix))]
+fn read_at(mut file: &File, at: u64, buffer: &mut [u8]) -> io::Result<()> {
+    use std::io::{Read, Seek, SeekFrom};
+    file.seek(SeekFrom::Start(at))?;
+    file.read_exact(buffer)
+}
+
 /// A file that is read at given bytes.
 struct Source<'a> {
-    file: &'a mut File,
+    file: &'a File,
+    /// Length of the file.
     bytes: u64,
+    /// Bytes that were read last, and where they begin.
+    window: Vec<u8>,
+    start: u64,
 }
 
 impl Source<'_> {
+    fn of(file: &File, bytes: u64) -> Source<'_> {
+        Source { file, bytes, window: Vec::new(), start: 0 }
+    }
+
+    /// Reads bytes at a place. Small reads are served from a window, which holds the end of a record with
+    /// the head of the next one.
     fn exact(&mut self, at: u64, buffer: &mut [u8]) -> io::Result<()> {
-        self.file.seek(SeekFrom::Start(at))?;
-        self.file.read_exact(buffer)
+        if buffer.len() > WINDOW {
+            return read_at(self.file, at, buffer);
+        }
+        let end = at + buffer.len() as u64;
+        if at < self.start || end > self.start + self.window.len() as u64 {
+            if end > self.bytes {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            let length = (self.bytes - at).min(WINDOW as u64);
+            self.window.resize(usize::try_from(length).unwrap_or(WINDOW), 0);
+            self.start = at;
+            if let Err(error) = read_at(self.file, at, &mut self.window) {
+                self.window.clear();
+                return Err(error);
+            }
+        }
+        let from = usize::try_from(at - self.start).unwrap_or(0);
+        buffer.copy_from_slice(&self.window[from..from + buffer.len()]);
+        Ok(())
     }
 
     /// Reads the content of a record that begins at a byte: its head, its body and its checksum.
@@ -156,7 +200,7 @@ impl Source<'_> {
         }
         let (mut content, mut own) = (vec![0; head.body_bytes as usize], [0; CHECK]);
         self.exact(body, &mut content)?;
-        self.file.read_exact(&mut own)?;
+        self.exact(body + u64::from(head.body_bytes), &mut own)?;
         Ok(Some((head, content, own)))
     }
 
@@ -174,7 +218,7 @@ impl Source<'_> {
         if rest - (FIXED as u64) < named.len() as u64 {
             return Ok(None);
         }
-        self.file.read_exact(&mut named)?;
+        self.exact(at + FIXED as u64, &mut named)?;
         Ok(frame::head(&fixed, lengths, &named))
     }
 

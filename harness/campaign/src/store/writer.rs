@@ -158,7 +158,7 @@ impl PartWriter {
 
 /// Cuts off a torn end, and goes to the end.
 fn open_at_end(path: PathBuf, mut file: File) -> Result<OpenPart, PartError> {
-    let mut found = scan(&path, &mut file, |_| {})?;
+    let mut found = scan(&path, &file, |_| {})?;
     let write = |path: &Path| PartError::system("write", path);
     if found.end == 0 {
         file.set_len(0).map_err(write(&path))?;
