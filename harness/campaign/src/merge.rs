@@ -238,7 +238,8 @@ pub fn merge(
         units.retain(|name, _| columns.contains(&(name.clone(), ColumnKind::Number)));
         write_streamed(&merged(out, name), &plan.id, &columns, &units, |index| {
             let mut of_parts = of_parts(&tables, &columns[index].0)?;
-            let rows = kept.iter().flat_map(|kept| kept.rows.each().map(|row| (kept.part, row)));
+            let rows =
+                kept.iter().flat_map(|kept| kept.rows.each().map(move |row| (kept.part, row)));
             Ok(rows.map(move |(part, row)| of_parts[part].at(row)))
         })?;
     }
