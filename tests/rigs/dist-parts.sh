@@ -1,6 +1,8 @@
 # What users install, put together from a program and the library of the FMUs that are built already: archive, .deb, image.
 # Times are $SOURCE_DATE_EPOCH, owners root, names sorted: the same inputs give the same bytes.
 
+# What a rig makes to throw away is packed with little work: COMPRESSION is the level of gzip and xz then, from 0 to 9.
+
 # packed FOLDER NAME: a tar archive of FOLDER/NAME on standard output.
 packed() {
   tar -C "$1" --sort=name --format=gnu --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX \
@@ -35,7 +37,7 @@ archive() {
   cp -r "$source/fixtures/scenarios" "$tree/share/octant/"
   cp "$source"/{README.md,CHANGELOG.md,LICENSE-MIT,LICENSE-APACHE} "$tree/share/doc/octant/"
   third_parties "$source" >"$tree/share/doc/octant/THIRD-PARTY.txt"
-  packed "$folder" "$name" | gzip -9n >"$folder/$name.tar.gz"
+  packed "$folder" "$name" | gzip "-${COMPRESSION:-9}n" >"$folder/$name.tar.gz"
 }
 
 # strip_copy FILE COPY: without symbols. A profile that leaves none is copied as it is, whatever its machine.
@@ -75,7 +77,7 @@ Description: test harness for the self-calibration of inertial navigation system
 END
   (cd "$stage" && find usr -type f -print0 | LC_ALL=C sort -z | xargs -0 md5sum >DEBIAN/md5sums)
   chmod -R u=rwX,go=rX "$stage"
-  dpkg-deb --root-owner-group -Zxz --build "$stage" "$folder/octant_${version}_$architecture.deb" >/dev/null
+  dpkg-deb --root-owner-group -Zxz ${COMPRESSION:+-z$COMPRESSION} --build "$stage" "$folder/octant_${version}_$architecture.deb" >/dev/null
   rm -rf "$stage"
 }
 

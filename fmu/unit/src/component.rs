@@ -6,7 +6,7 @@ use crate::values::CellValues;
 /// A model in an instance, from the end of initialization on.
 ///
 /// A clone continues exactly as the original: FMU states are stored as clones.
-pub trait ModelComponent: Clone + Send + Sized + 'static {
+pub trait ModelComponent: Clone + Send + Sync + Sized + 'static {
     /// Table of the model's variables.
     const MODEL: &'static Model;
 

@@ -3,13 +3,13 @@
 
 use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::table::MODEL;
-use octant_fmu::calibrator_can;
+use octant_fmu::{calibrator_can, plant};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const SOURCES: [&str; 9] =
-    ["main", "handles", "order", "values", "time", "states", "random", "threads", "bus"];
+const SOURCES: [&str; 10] =
+    ["main", "handles", "order", "values", "time", "states", "random", "threads", "bus", "stack"];
 
 /// Value references that the program uses.
 const NAMES: [(&str, &str); 24] = [
@@ -72,6 +72,10 @@ fn header() -> String {
     let _ = writeln!(text, "#define TOKEN_BUS \"{bus}\"");
     let of_fmi2 = token(&calibrator_can::table::MODEL, ServedStandard::Fmi2);
     let _ = writeln!(text, "#define TOKEN_BUS2 \"{of_fmi2}\"");
+    for (constant, standard) in [("2", ServedStandard::Fmi2), ("3", ServedStandard::Fmi3)] {
+        let plant = token(&plant::table::MODEL, standard);
+        let _ = writeln!(text, "#define TOKEN_PLANT{constant} \"{plant}\"");
+    }
     let _ = writeln!(text, "#define SLOTS {}u", MODEL.slots());
     let _ = writeln!(text, "#define TOKEN2 \"{}\"", token(&MODEL, ServedStandard::Fmi2));
     let _ = writeln!(text, "#define TOKEN3 \"{}\"", token(&MODEL, ServedStandard::Fmi3));
@@ -114,6 +118,7 @@ fn run(mut command: Command) {
     let output = command.output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     let complained = String::from_utf8_lossy(&output.stderr);
+    print!("{said}");
     assert!(output.status.success(), "{}\n{said}{complained}", output.status);
 }
 

@@ -1,5 +1,5 @@
 //! The FMUs as their importers get them, in one program.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod abuse;
 mod calibrator_config;

@@ -1,7 +1,9 @@
 //! Tasks on several threads, their results in order.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 /// Does tasks 0 to `count`, at most `jobs` at a time. Each result stands in its task's place: `None` for a
 /// task that gave none, or was not begun because `is_cancelled`.
@@ -36,7 +38,7 @@ pub fn in_order_with<S, T: Send, E: Send>(
         Mutex::new((0..count).map(|_| Ok(None)).collect());
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, count.max(1)) {
-            scope.spawn(|| {
+            spawn(scope, || {
                 let mut own = of_thread();
                 while !is_cancelled() {
                     let task = next.fetch_add(1, Ordering::Relaxed);
@@ -53,6 +55,109 @@ pub fn in_order_with<S, T: Send, E: Send>(
         }
     });
     results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect()
+}
+
+/// Tasks that are still to be done; a task can add others.
+#[derive(Debug)]
+pub struct Waiting<T> {
+    state: Mutex<WaitingState<T>>,
+    changed: Condvar,
+    most: usize,
+}
+
+#[derive(Debug)]
+struct WaitingState<T> {
+    tasks: VecDeque<T>,
+    /// Tasks that were added by others, to be done before `tasks`.
+    added: VecDeque<T>,
+    /// Tasks being done, which can add others.
+    doing: usize,
+}
+
+impl<T> Waiting<T> {
+    fn lock(&self) -> MutexGuard<'_, WaitingState<T>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a task. It comes back where enough are waiting, so that a few at a time take memory: the
+    /// caller then does it.
+    pub fn add(&self, task: T) -> Option<T> {
+        let mut state = self.lock();
+        if state.added.len() >= self.most {
+            return Some(task);
+        }
+        state.added.push_back(task);
+        self.changed.notify_one();
+        None
+    }
+
+    fn next(&self) -> Option<T> {
+        let mut state = self.lock();
+        loop {
+            let task = state.added.pop_front().or_else(|| state.tasks.pop_front());
+            if task.is_some() {
+                state.doing += 1;
+                return task;
+            }
+            if state.doing == 0 {
+                return None;
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn done(&self) {
+        self.lock().doing -= 1;
+        self.changed.notify_all();
+    }
+}
+
+/// Does tasks and those that they add, at most `jobs` at a time, in no order that counts.
+pub fn with_added<T: Send>(
+    jobs: usize,
+    tasks: impl IntoIterator<Item = T>,
+    work: impl Fn(T, &Waiting<T>) + Sync,
+) {
+    let jobs = jobs.max(1);
+    let state =
+        WaitingState { tasks: tasks.into_iter().collect(), added: VecDeque::new(), doing: 0 };
+    // With one job, whoever adds a task does it at once.
+    let waiting = Waiting { state: Mutex::new(state), changed: Condvar::new(), most: jobs - 1 };
+    std::thread::scope(|scope| {
+        for _ in 0..jobs {
+            spawn(scope, || {
+                while let Some(task) = waiting.next() {
+                    let _done = Done(&waiting);
+                    work(task, &waiting);
+                }
+            });
+        }
+    });
+}
+
+/// Counts a task as done when it is dropped: after a panic too, or the others would wait for ever.
+struct Done<'a, T>(&'a Waiting<T>);
+
+impl<T> Drop for Done<'_, T> {
+    fn drop(&mut self) {
+        self.0.done();
+    }
+}
+
+/// Stack of a thread that runs cores, bytes: that of a main thread. A core is some 100 KiB, and passes by
+/// value where it is made, copied and ended.
+const STACK: usize = 8 << 20;
+
+/// Starts a thread of a scope, with a stack on which cores can be made and copied.
+///
+/// # Panics
+/// If the system has no thread, as [`Scope::spawn`].
+pub fn spawn<'scope, T: Send + 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    work: impl FnOnce() -> T + Send + 'scope,
+) -> ScopedJoinHandle<'scope, T> {
+    let started = Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+    started.unwrap_or_else(|error| panic!("failed to start a thread: {error}"))
 }
 
 /// Processors that this process may use, at least 1.
@@ -104,5 +209,25 @@ mod tests {
         let done = in_order(1, 1000, is_full, work).unwrap();
         assert_eq!(done.iter().flatten().count(), 4);
         assert_eq!(done[..5], [Some(0), Some(1), Some(2), Some(3), None]);
+    }
+
+    #[test]
+    fn added_tasks_are_done_once_and_by_whoever_has_time() {
+        for jobs in [1, 2, 5] {
+            let done = Mutex::new(Vec::new());
+            with_added(jobs, [1_usize, 2, 3], |task, waiting| {
+                let mut own = vec![task];
+                while let Some(task) = own.pop() {
+                    done.lock().unwrap().push(task);
+                    if task < 100 {
+                        own.extend((0..10).filter_map(|k| waiting.add(10 * task + k)));
+                    }
+                }
+            });
+            let mut done = done.into_inner().unwrap();
+            done.sort_unstable();
+            let all = (1..4).chain(10..40).chain(100..400);
+            assert_eq!(done, all.collect::<Vec<_>>(), "{jobs}");
+        }
     }
 }

@@ -1,13 +1,16 @@
 //! Sweeps a grid of one fault, to find the variants that are undetected and yet harmful.
 
 use octant_base::control::Control;
-use octant_base::pool::{in_order, processors};
+use octant_base::pool::processors;
+use octant_run::branches::{BranchPlan, run_branches};
 use octant_run::drive::Ended;
 use octant_run::method::{MethodError, MethodRun, StreamKeeping, run_method};
 use octant_run::twin::between;
 use octant_scenario::{Method, Scenario};
 use octant_score::counterfactual::HARMFUL_SHIFT_SIGMA;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// Version of `sweep.json`.
 pub const SCHEMA: u32 = 1;
@@ -98,8 +101,8 @@ pub fn indices(axes: &[SweepAxis], mut cell: usize) -> Vec<usize> {
     at
 }
 
-/// Runs the scenario of every cell, and their common twin, on all processors. The order of the runs
-/// has no effect on the result. `jobs` run at a time, by default as many as there are processors.
+/// Runs the scenario of every cell, and their common twin, on all processors. What the cells have in common
+/// at their beginning runs once. The order of the runs has no effect on the result. `jobs` run at a time, by default as many as there are processors.
 /// `controls` has one entry for the twin and one for each cell.
 ///
 /// # Errors
@@ -114,28 +117,29 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let Some(first) = scenarios.first() else { return Err(SweepError::Cancelled) };
     let clean = first.without_faults();
-    let run = |scenario: &Scenario, recording: StreamKeeping<'_>, task: usize| {
-        let control = controls.get(task).ok_or(SweepError::Cancelled)?;
-        let run = run_method(scenario, Method::Primary, seed, recording, control)?;
-        if run.ended == Ended::Cancelled { Err(SweepError::Cancelled) } else { Ok(run) }
-    };
     // The twin comes first: a cell is compared with it as soon as it has run, and only the result
     // is kept.
-    let twin = run(&clean, StreamKeeping::Hash, 0)?;
+    let control = controls.first().ok_or(SweepError::Cancelled)?;
+    let twin = run_method(&clean, Method::Primary, seed, StreamKeeping::Hash, control)?;
+    let twin = uncancelled(twin)?;
     if let Some(reason) = twin.calibration.as_ref().and_then(|c| c.refused.as_ref()) {
         return Err(SweepError::TwinRefused(reason.clone()));
     }
-    let jobs = jobs.unwrap_or_else(processors);
-    let cells = in_order(
-        jobs,
-        scenarios.len(),
-        || false,
-        |i| {
-            let scenario = scenarios.get(i).ok_or(SweepError::Cancelled)?;
-            let faulted = run(scenario, StreamKeeping::None, i + 1)?;
-            Ok::<_, SweepError>(Some(cell(scenario, &faulted, &twin, fault, indices(axes, i))))
-        },
-    )?;
+    let plans: Vec<BranchPlan<'_>> = (scenarios.iter().zip(controls.iter().skip(1)))
+        .map(|(scenario, control)| BranchPlan { scenario, method: Method::Primary, seed, control })
+        .collect();
+    let cells: Mutex<BTreeMap<usize, Result<SweepCell, SweepError>>> = Mutex::default();
+    run_branches(&plans, StreamKeeping::None, jobs.unwrap_or_else(processors), &|index, run| {
+        let ended = run.map_err(SweepError::from).and_then(uncancelled);
+        let cell =
+            ended.map(|run| cell(&scenarios[index], &run, &twin, fault, indices(axes, index)));
+        cells.lock().unwrap_or_else(PoisonError::into_inner).insert(index, cell);
+    });
+    let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let cells = cells.into_values().collect::<Result<Vec<_>, _>>()?;
+    if cells.len() != scenarios.len() {
+        return Err(SweepError::Cancelled);
+    }
     let kind = first.faults.iter().find(|f| f.spec.id == fault).map_or("", |f| f.spec.kind.name);
     Ok(Sweep {
         schema: SCHEMA,
@@ -146,8 +150,12 @@ pub fn sweep(
         kind: kind.to_owned(),
         harmful_shift_sigma: HARMFUL_SHIFT_SIGMA,
         axes: axes.to_vec(),
-        cells: cells.into_iter().flatten().collect(),
+        cells,
     })
+}
+
+fn uncancelled(run: MethodRun) -> Result<MethodRun, SweepError> {
+    if run.ended == Ended::Cancelled { Err(SweepError::Cancelled) } else { Ok(run) }
 }
 
 fn cell(

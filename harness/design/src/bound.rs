@@ -9,31 +9,39 @@
 //! attitude, in the calibration or in navigation, and the measure that they leave holds for every sequence,
 //! dwelling or continuous, with every rotation.
 //!
-//! The certificate is those seven numbers' covariance and weights: the bound is the root of their product's
-//! trace plus the noise of navigation.
+//! The certificate is the covariance of the six errors that are left, and their weights: the bound is the
+//! root of their product's trace plus the noise of navigation.
+//!
+//! The largest error of a navigation has the same bound, by draws from that covariance. More covariance, in
+//! the sense that the difference is positive semidefinite, makes a Gaussian process leave every symmetric
+//! convex set more often (T. W. Anderson, *The integral of a symmetric unimodal function over a symmetric
+//! convex set*, Proceedings of the American Mathematical Society 6, 1955), and "no error above x" is one.
 
-use super::platform::KNOWN_AT_START;
-use super::setup::{Judge, level};
-use octant_calibration::covariance::{Covariance, DV, PARAMETERS, STATE_COUNT};
+use crate::isotropic::DIAGONAL;
+use crate::judge::Judge;
+use crate::largest::Sampled;
+use crate::platform::KNOWN_AT_START;
+use crate::setup::level;
+use octant_calibration::covariance::DV;
 use octant_calibration::schedule::DoesNotFit;
 use serde::Serialize;
 
-/// First state of G, by rows.
-const G: usize = PARAMETERS + 12;
-/// Diagonal of G.
-const DIAGONAL: [usize; 3] = [G, G + 4, G + 8];
+pub use crate::isotropic::known_but_isotropic;
 
 /// A bound with its certificate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DriftBound {
     /// No sequence has a smaller measure.
     pub value: f64,
+    /// Standard error of the value by the draws of a largest error; 0 for all other measures.
+    pub sampling: f64,
     /// Names of the errors that are left: attitude north, east, down, rad; velocity north, east, m/s; the
     /// isotropic part of G, rad/s per m/s².
     pub errors: [&'static str; LEFT],
     /// Covariance of these errors after the calibration, with all other parameters known.
     pub covariance: [[f64; LEFT]; LEFT],
-    /// Weights of their products in the square of the measure.
+    /// Weights of their products in the square of the measure; for a largest error, of the form that stands
+    /// for it in the search.
     pub weights: [[f64; LEFT]; LEFT],
     /// Square of the part by white noise of navigation.
     pub noise: f64,
@@ -45,38 +53,6 @@ const NAMES: [&str; LEFT] =
     ["phi_north", "phi_east", "phi_down", "velocity_north", "velocity_east", "g_isotropic"];
 /// States that the errors stand for; the isotropic part stands for the diagonal of G.
 const STATES: [&[usize]; LEFT] = [&[0], &[1], &[2], &[DV], &[DV + 1], &DIAGONAL];
-
-/// Makes the covariance of the same errors with all parameters known but the isotropic part of G.
-#[must_use]
-pub fn known_but_isotropic(initial: &Covariance) -> Covariance {
-    let mut covariance = initial.clone();
-    for state in (PARAMETERS..STATE_COUNT).filter(|state| !DIAGONAL.contains(state)) {
-        learn(&mut covariance, &[(state, 1.0)]);
-    }
-    for pair in DIAGONAL.windows(2) {
-        learn(&mut covariance, &[(pair[0], 1.0), (pair[1], -1.0)]);
-    }
-    covariance
-}
-
-/// Makes a combination of errors exactly known.
-fn learn(covariance: &mut Covariance, combination: &[(usize, f64)]) {
-    let row: [f64; STATE_COUNT] = core::array::from_fn(|j| {
-        combination.iter().map(|(state, factor)| factor * covariance.at(*state, j)).sum()
-    });
-    let variance: f64 = combination.iter().map(|(state, factor)| factor * row[*state]).sum();
-    if variance > 0.0 {
-        for i in 0..STATE_COUNT {
-            for j in i..STATE_COUNT {
-                covariance.add(i, j, -row[i] * row[j] / variance);
-            }
-        }
-    }
-    // Remainder of the rounding.
-    if let [(state, _)] = combination {
-        covariance.reopen(*state, 0.0);
-    }
-}
 
 /// Computes the bound of a judge's measure for calibrations of `duration_s`, among all attitude histories.
 ///
@@ -98,6 +74,7 @@ pub fn bound(judge: &Judge, duration_s: f64) -> Result<DriftBound, DoesNotFit> {
     let weights = square(&weight);
     let products = covariance.as_flattened().iter().zip(weights.as_flattened());
     let trace: f64 = products.map(|(variance, weight)| variance * weight).sum();
-    let value = libm::sqrt((trace + form.constant).max(0.0));
-    Ok(DriftBound { value, errors: NAMES, covariance, weights, noise: form.constant })
+    let of_form = Sampled { value: libm::sqrt((trace + form.constant).max(0.0)), error: 0.0 };
+    let Sampled { value, error: sampling } = judge.drawn(&left).unwrap_or(of_form);
+    Ok(DriftBound { value, sampling, errors: NAMES, covariance, weights, noise: form.constant })
 }

@@ -3,9 +3,7 @@
 //! A candidate is exactly the sequence that is written into a scenario: what is judged is what will run.
 
 use crate::setup::DesignError;
-use octant_calibration::config::TurntableRates;
 use octant_calibration::positions::Degrees;
-use octant_calibration::schedule::{dwell_s, moves_s};
 use octant_calibration::sequence::{STOPS_MAX, Sequence, Stop};
 use octant_earth::units::DEG;
 use serde::{Deserialize, Serialize};
@@ -24,6 +22,18 @@ pub struct GridStop {
     pub roll_deg: i32,
     /// Dwell relative to the others.
     pub share: u32,
+}
+
+impl GridStop {
+    /// Makes a stop of a published sequence, whose angles are whole degrees.
+    #[must_use]
+    pub fn of_published((azimuth, roll, weight): &Degrees) -> Self {
+        Self {
+            azimuth_deg: *azimuth as i32,
+            roll_deg: *roll as i32,
+            share: (*weight * SHARE_OF_ONE) as u32,
+        }
+    }
 }
 
 /// Gimbals that may turn in one move.
@@ -57,6 +67,8 @@ pub struct Limits {
     pub dwell_min_s: f64,
     /// Time at rest at zero with which every sequence starts, s: the level alignment.
     pub lead_in_s: f64,
+    /// Duration of a quick round of the eight positions after it, with its moves, s; 0: no round.
+    pub round_s: f64,
 }
 
 impl Default for Limits {
@@ -69,6 +81,7 @@ impl Default for Limits {
             stops_max: 40,
             dwell_min_s: 30.0,
             lead_in_s: 300.0,
+            round_s: 0.0,
         }
     }
 }
@@ -122,13 +135,8 @@ impl Limits {
     /// limits.
     #[must_use]
     pub fn of_published(&self, stops: &[Degrees]) -> Option<Vec<GridStop>> {
-        let on_grid = |(azimuth, roll, weight): &Degrees| GridStop {
-            azimuth_deg: *azimuth as i32,
-            roll_deg: *roll as i32,
-            share: (*weight * SHARE_OF_ONE) as u32,
-        };
         let mut all = vec![GridStop { azimuth_deg: 0, roll_deg: 0, share: 1 }];
-        let mut stops: Vec<GridStop> = stops.iter().map(on_grid).collect();
+        let mut stops: Vec<GridStop> = stops.iter().map(GridStop::of_published).collect();
         if let [GridStop { azimuth_deg: 0, roll_deg: 0, .. }, ..] = stops[..] {
             all.clear();
         }
@@ -157,29 +165,6 @@ impl Limits {
                     && (1..=SHARE_MAX * 4).contains(&stop.share)
             })
             && stops.windows(2).all(moves)
-    }
-
-    /// Makes a sequence of a candidate, with its lead-in as long as it has to be; `None` if its dwells would
-    /// be too short.
-    #[must_use]
-    pub fn sequence(
-        &self,
-        stops: &mut [GridStop],
-        duration_s: f64,
-        rates: &TurntableRates,
-    ) -> Option<Sequence> {
-        let made = sequence_of(stops)?;
-        let free_s = duration_s - moves_s(&made, rates);
-        let others: u32 = stops[1..].iter().map(|stop| stop.share).sum();
-        let least = self.lead_in_s * f64::from(others) / (free_s - self.lead_in_s);
-        if !(free_s > self.lead_in_s) || least > f64::from(SHARE_MAX * 4) {
-            return None;
-        }
-        stops[0].share = stops[0].share.max(libm::ceil(least - 1e-9) as u32);
-        let made = sequence_of(stops)?;
-        let unit_s = dwell_s(&made, duration_s, rates).ok()?;
-        let shortest = stops.iter().map(|stop| stop.share).min()?;
-        (unit_s * f64::from(shortest) >= self.dwell_min_s).then_some(made)
     }
 }
 

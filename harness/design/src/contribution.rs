@@ -1,7 +1,7 @@
 //! Contribution of each stop of a sequence.
 
+use crate::judge::Judge;
 use crate::search::SearchProblem;
-use crate::setup::Judge;
 use octant_calibration::schedule::DoesNotFit;
 use octant_calibration::sequence::Sequence;
 use serde::Serialize;

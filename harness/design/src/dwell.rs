@@ -19,7 +19,7 @@
 use super::platform::{CALIBRATING_S, INPUTS, InputRows, PARAMETER_COUNT, Platform};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use octant_calibration::covariance::{
-    Covariance, CovarianceRow, DV, MOVING, PARAMETERS, STATE_COUNT, Transition,
+    Covariance, CovarianceRow, MOVING, PARAMETERS, STATE_COUNT, Transition,
 };
 use octant_calibration::filter::add_process_noise;
 use octant_calibration::sequence::Stop;
@@ -57,8 +57,9 @@ struct Map {
 }
 
 impl Map {
-    /// Makes the map of one period with a measurement of the velocity, of this variance, at its end.
-    fn one(platform: &Platform, period_s: f64, variance: f64) -> Self {
+    /// Makes the map of one period with a measurement at its end, of three states from `first` on with this
+    /// variance.
+    fn one(platform: &Platform, period_s: f64, (first, variance): (usize, f64)) -> Self {
         let level = Platform {
             c_nc: nalgebra::Matrix3::identity(),
             non_orthogonality_rad: 0.0,
@@ -70,16 +71,16 @@ impl Map {
             for j in 0..MOVING {
                 f[(i, j)] = over.rows[i][j];
             }
-            for (k, first) in BIASES.into_iter().enumerate() {
+            for (k, bias) in BIASES.into_iter().enumerate() {
                 for axis in 0..3 {
-                    f[(i, MOVING + 3 * k + axis)] = over.rows[i][first + axis];
+                    f[(i, MOVING + 3 * k + axis)] = over.rows[i][bias + axis];
                 }
             }
         }
         let mut noise = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
         add_process_noise(&mut noise, platform.noise, period_s, &(platform.force() * period_s));
         let q = Square::from_fn(|i, j| if i < MOVING && j < MOVING { noise.at(i, j) } else { 0.0 });
-        let h = SMatrix::<f64, 3, SIZE>::from_fn(|i, j| if j == DV + i { 1.0 } else { 0.0 });
+        let h = SMatrix::<f64, 3, SIZE>::from_fn(|i, j| if j == first + i { 1.0 } else { 0.0 });
         let innovation = h * q * h.transpose() + SMatrix::<f64, 3, 3>::identity() * variance;
         // A sum of a positive semidefinite matrix and a multiple of the identity has an inverse.
         let inverse = innovation.try_inverse().unwrap_or_else(SMatrix::zeros);
@@ -252,9 +253,9 @@ pub(crate) struct Dwells {
 }
 
 impl Dwells {
-    /// Prepares dwells with a measurement of this variance each period.
-    pub(crate) fn new(platform: &Platform, period_s: f64, variance: f64) -> Self {
-        Self { powers: vec![Map::one(platform, period_s, variance)], made: BTreeMap::new() }
+    /// Prepares dwells with a measurement each period, of three states from `first` on with this variance.
+    pub(crate) fn new(platform: &Platform, period_s: f64, measured: (usize, f64)) -> Self {
+        Self { powers: vec![Map::one(platform, period_s, measured)], made: BTreeMap::new() }
     }
 
     /// Returns the dwell of a number of periods, at least one.

@@ -8,7 +8,7 @@
 use super::dwell::Dwells;
 use super::platform::{CALIBRATING_S, InputRows, KNOWN_AT_START, Platform, hold_vertical};
 use octant_calibration::config::ErrorModel;
-use octant_calibration::covariance::{Covariance, DV, STATE_COUNT, Transition};
+use octant_calibration::covariance::{Covariance, STATE_COUNT, Transition};
 use octant_calibration::schedule::{DoesNotFit, dwell_s, move_between_s};
 use octant_calibration::sequence::{Sequence, Stop};
 use std::collections::HashMap;
@@ -25,6 +25,15 @@ const ANGLE_STEP_RAD: f64 = 1e-9;
 /// Shortest time that counts, s.
 const TIME_MIN_S: f64 = 1e-6;
 
+/// Measurement of the filter, on three axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AidingReference {
+    /// First of the three states that are measured: those of the velocity or of the position.
+    pub first: usize,
+    /// Standard deviation on each axis, m/s or m.
+    pub sigma: f64,
+}
+
 /// Conditions of a calibration, the same for all candidates.
 #[derive(Clone, Debug)]
 pub struct Conditions {
@@ -34,8 +43,8 @@ pub struct Conditions {
     pub initial: Covariance,
     /// Start of the filter, s: the time of the alignment before it, at the first stop.
     pub start_s: f64,
-    /// Standard deviation of the zero-velocity measurement on each axis, m/s.
-    pub reference_sigma_mps: f64,
+    /// Measurement.
+    pub reference: AidingReference,
     /// Time between two measurements, s.
     pub period_s: f64,
     /// Longest part of a move between two measurements, s: [`PART_S`], or a period to be exact.
@@ -62,8 +71,8 @@ impl Evaluator {
     /// Creates a judge under these conditions.
     #[must_use]
     pub fn new(conditions: Conditions) -> Self {
-        let variance = conditions.reference_sigma_mps * conditions.reference_sigma_mps;
-        let dwells = Dwells::new(&conditions.platform, conditions.period_s, variance);
+        let AidingReference { first, sigma } = conditions.reference;
+        let dwells = Dwells::new(&conditions.platform, conditions.period_s, (first, sigma * sigma));
         let (inputs, moves, last_moves) = Default::default();
         Self { conditions, dwells, inputs, moves, last_moves }
     }
@@ -141,7 +150,7 @@ impl Evaluator {
     }
 
     /// Carries the covariance through a move.
-    fn turn(&mut self, covariance: &mut Covariance, from: &Stop, to: &Stop) {
+    pub(crate) fn turn(&mut self, covariance: &mut Covariance, from: &Stop, to: &Stop) {
         let platform = &self.conditions.platform;
         let made = kept(&mut self.moves, from, to, |from, to| {
             platform.moving(from, to, self.conditions.part_s, platform.error_model)
@@ -153,7 +162,7 @@ impl Evaluator {
     }
 
     /// Carries the covariance through a dwell.
-    fn stand(&mut self, covariance: &mut Covariance, at: &Stop, length_s: f64) {
+    pub(crate) fn stand(&mut self, covariance: &mut Covariance, at: &Stop, length_s: f64) {
         let period_s = self.conditions.period_s;
         let periods = libm::floor(length_s / period_s + TIME_MIN_S);
         if periods >= 1.0 {
@@ -171,10 +180,10 @@ impl Evaluator {
 
     /// Takes in the measurements of a part: one with the variance of their mean.
     fn measure(&self, covariance: &mut Covariance, length_s: f64) {
-        let sigma = self.conditions.reference_sigma_mps;
+        let AidingReference { first, sigma } = self.conditions.reference;
         let variance = sigma * sigma * self.conditions.period_s / length_s;
         for axis in 0..3 {
-            covariance.update(DV + axis, variance, 0.0, &mut [0.0; STATE_COUNT]);
+            covariance.update(first + axis, variance, 0.0, &mut [0.0; STATE_COUNT]);
         }
     }
 

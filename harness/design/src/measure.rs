@@ -1,5 +1,5 @@
-//! Measures that a design can minimise, each the root of a quadratic form of the errors at the start of
-//! navigation.
+//! Measures that a design can minimise. Each is the root of a quadratic form of the errors at the start of
+//! navigation, but for the largest error, which is predicted by draws; a form stands for it in the search.
 
 use super::navigation::{Drift, Quadratic};
 use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
@@ -37,12 +37,18 @@ pub enum Window {
     Whole,
     /// At the end.
     End,
+    /// Largest error over the whole navigation, as its root mean square over the draws.
+    Largest,
 }
 
 const PARTS: [(Part, &str); 3] =
     [(Part::Longitude, "longitude"), (Part::Latitude, "latitude"), (Part::Radial, "radial")];
-const WINDOWS: [(Window, &str); 3] =
-    [(Window::Last, ""), (Window::Whole, ".time-rms"), (Window::End, ".final")];
+const WINDOWS: [(Window, &str); 4] = [
+    (Window::Last, ""),
+    (Window::Whole, ".time-rms"),
+    (Window::End, ".final"),
+    (Window::Largest, ".largest"),
+];
 
 impl DesignMeasure {
     /// All measures.
@@ -88,6 +94,9 @@ impl DesignMeasure {
             Window::Last => format!("rms of the {part} error in the last 3 h of navigation"),
             Window::Whole => format!("rms of the {part} error over the whole navigation"),
             Window::End => format!("σ of the {part} error at the end of navigation"),
+            Window::Largest => {
+                format!("rms over the draws of the largest {part} error in navigation")
+            }
         }
     }
 
@@ -101,7 +110,22 @@ impl DesignMeasure {
         }
     }
 
-    /// Returns the form whose root is the measure, in its unit.
+    /// Part of the position error whose largest value is the measure; `None` for all other measures.
+    #[must_use]
+    pub fn largest(&self) -> Option<Part> {
+        match self {
+            Self::Drift(part, Window::Largest) => Some(*part),
+            _ => None,
+        }
+    }
+
+    /// Returns whether it is of navigation, and the root of a quadratic form.
+    pub(crate) fn is_quadratic_of_navigation(&self) -> bool {
+        matches!(self, Self::Drift(..)) && self.largest().is_none()
+    }
+
+    /// Returns the form whose root is the measure, in its unit. For a largest error it is the mean square
+    /// over the whole navigation.
     #[must_use]
     pub fn form(&self, drift: &Drift, earth: &Ellipsoid) -> Quadratic {
         let (part, window) = match self {
@@ -113,7 +137,7 @@ impl DesignMeasure {
         };
         let [north, east] = match window {
             Window::Last => &drift.last,
-            Window::Whole => &drift.whole,
+            Window::Whole | Window::Largest => &drift.whole,
             Window::End => &drift.end,
         };
         let square = |unit_m: f64| 1.0 / (unit_m * unit_m);

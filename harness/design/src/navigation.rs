@@ -49,7 +49,7 @@ impl Quadratic {
     }
 
     /// Adds the square of the error with these weights of the errors at the start, and its noise.
-    fn add(&mut self, weights: &CovarianceRow, noise: f64, factor: f64) {
+    pub(crate) fn add(&mut self, weights: &CovarianceRow, noise: f64, factor: f64) {
         for (row, left) in self.weight.iter_mut().zip(weights) {
             let scaled = factor * left;
             for (out, right) in row.iter_mut().zip(weights) {
@@ -112,10 +112,10 @@ pub struct Drift {
 }
 
 /// A part of the rotation: its transition, the noise that comes in, and its length, s.
-struct Block {
-    transition: Transition,
-    noise: Covariance,
-    length_s: f64,
+pub(crate) struct Block {
+    pub(crate) transition: Transition,
+    pub(crate) noise: Covariance,
+    pub(crate) length_s: f64,
 }
 
 impl Block {
@@ -138,6 +138,16 @@ impl Block {
         Self { transition, noise, length_s: f64::from(times) * h }
     }
 
+    /// Carries the covariance of the noise through the part.
+    pub(crate) fn come_into(&self, noise: &mut Covariance) {
+        noise.propagate(&self.transition);
+        for i in 0..MOVING {
+            for j in i..MOVING {
+                noise.add(i, j, self.noise.at(i, j));
+            }
+        }
+    }
+
     fn moving(platform: &Platform, from: &Stop, to: &Stop) -> Vec<Self> {
         let (parts, h) = platform.moving(from, to, STEP_S, ErrorModel::Phi);
         let held = parts.into_iter().map(|mut part| {
@@ -149,7 +159,7 @@ impl Block {
 }
 
 /// Returns the transition of `first` and `next` after it.
-fn after(first: &Transition, next: &Transition) -> Transition {
+pub(crate) fn after(first: &Transition, next: &Transition) -> Transition {
     let mut rows = next.rows;
     for (row, step) in rows.iter_mut().zip(&next.rows) {
         row[..MOVING].fill(0.0);
@@ -163,7 +173,7 @@ fn after(first: &Transition, next: &Transition) -> Transition {
 }
 
 /// Makes the parts of one round of a rotation.
-fn round(platform: &Platform, plan: &NavigationPlan) -> Vec<Block> {
+pub(crate) fn round(platform: &Platform, plan: &NavigationPlan) -> Vec<Block> {
     let stops = plan.rotation.stops();
     let mut blocks = Vec::new();
     for (index, stop) in stops.iter().enumerate() {
@@ -195,12 +205,7 @@ pub fn drift(platform: &Platform, plan: &NavigationPlan, duration_s: f64) -> Dri
             break;
         }
         weights = after(&weights, &block.transition);
-        noise.propagate(&block.transition);
-        for i in 0..MOVING {
-            for j in i..MOVING {
-                noise.add(i, j, block.noise.at(i, j));
-            }
-        }
+        block.come_into(&mut noise);
         whole.add(&weights, &noise, block.length_s);
         if t > last_from_s {
             last.add(&weights, &noise, block.length_s);

@@ -21,7 +21,7 @@ pub(crate) const CALIBRATING_S: f64 = 1.0;
 /// larger by (ω h)² / 4: with 1 s by 10 % in 72 h, with this by 0.2 %.
 pub(crate) const NAVIGATING_S: f64 = 0.02;
 /// Longest sub-step while a gimbal turns, s: a degree at 10 deg/s, up to which the model's own step is accurate.
-const TURNING_S: f64 = 0.1;
+pub(crate) const TURNING_S: f64 = 0.1;
 /// Largest angle of a sub-step, rad.
 const TURNED_RAD: f64 = 0.018;
 
@@ -50,6 +50,8 @@ pub struct Platform {
     pub error_model: ErrorModel,
     /// White noise per s: of the gyros, rad²/s, and of the accelerometers, (m/s)²/s.
     pub noise: (f64, f64),
+    /// Longest sub-step while a gimbal turns, s.
+    pub turning_s: f64,
 }
 
 impl Platform {
@@ -112,7 +114,7 @@ impl Platform {
         length_s: f64,
         model: ErrorModel,
     ) -> Transition {
-        let sub_step_s = TURNING_S.min(TURNED_RAD / self.rates.rate_radps);
+        let sub_step_s = self.turning_s.min(TURNED_RAD / self.rates.rate_radps);
         let steps = libm::ceil(length_s / sub_step_s - 1e-9).max(1.0);
         let h = length_s / steps;
         let start = [from.azimuth_rad, from.roll_rad];

@@ -2,6 +2,7 @@
 //! stop adds.
 
 use crate::bound::{DriftBound, bound};
+use crate::continuous::ContinuousRotation;
 use crate::contribution::Contribution;
 use crate::search::{Found, SearchError, SearchProblem};
 use crate::setup::DesignError;
@@ -26,6 +27,8 @@ pub struct SequenceDesign {
     pub bound: DriftBound,
     /// Published sequences of the same duration.
     pub published: Vec<Published>,
+    /// Continuous rotation under the same conditions, where it was asked for.
+    pub continuous: Option<ContinuousRotation>,
     /// Stops of the designed sequence, and what each adds.
     pub stops: Vec<Contribution>,
 }
@@ -67,6 +70,7 @@ impl SequenceDesign {
             observed: judge.score_of(full.achieved, &stops[stops.len() - 1]),
             bound: bound(&judge, problem.duration_s).map_err(DesignError::from)?,
             published,
+            continuous: None,
             stops: problem.contributions(&mut judge, &found.sequence).map_err(DesignError::from)?,
         })
     }

@@ -5,15 +5,17 @@
 //! that goes on from a stored state gives the same sequence as one that was never interrupted.
 
 use crate::candidate::{GridStop, Limits, sequence_of};
+use crate::judge::{Judge, MeasureWeights};
 use crate::measure::DesignMeasure;
 use crate::mutate::{Draws, changed, random};
-use crate::navigation::Drift;
-use crate::setup::{DesignError, DesignSetup, Judge};
+use crate::ranked::rank;
+use crate::setup::{DesignError, DesignSetup};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
-use octant_calibration::sequence::Sequence;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, PoisonError};
+
+pub use crate::ranked::Found;
 
 /// Version of the form of a stored search.
 pub const STATE_VERSION: u32 = 1;
@@ -32,8 +34,8 @@ pub struct SearchProblem {
     pub setup: DesignSetup,
     /// Measure to minimise.
     pub measure: DesignMeasure,
-    /// Weights of navigation.
-    pub drift: Drift,
+    /// The same, prepared.
+    pub weights: MeasureWeights,
     /// Limits of gimbals and sequence.
     pub limits: Limits,
     /// Duration of the calibration, s.
@@ -84,17 +86,6 @@ pub struct SearchState {
     pub chains: Vec<Chain>,
 }
 
-/// Result of a search.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The best candidate.
-    pub stops: Vec<GridStop>,
-    /// The same as a sequence.
-    pub sequence: Sequence,
-    /// Its measure.
-    pub score: f64,
-}
-
 /// Reasons why a search gave no sequence.
 #[derive(Debug, thiserror::Error)]
 pub enum SearchError {
@@ -138,28 +129,29 @@ impl SearchProblem {
         seed: u64,
     ) -> Result<Self, DesignError> {
         limits.check()?;
-        let drift = setup.drift();
+        limits.check_lead_in(&setup.conditions.platform.rates)?;
+        let weights = MeasureWeights::new(&setup, measure)?;
         let duration_s = setup.duration_s;
-        Ok(Self { setup, measure, drift, limits, duration_s, seed })
+        Ok(Self { setup, measure, weights, limits, duration_s, seed })
     }
 
     /// Creates a judge of candidates.
     #[must_use]
     pub fn judge(&self) -> Judge {
-        Judge::new(&self.setup, self.measure, &self.drift)
+        Judge::new(&self.setup, &self.weights)
     }
 
     /// Returns the hash of everything that the result depends on.
     #[must_use]
     pub fn hash(&self, effort: SearchEffort) -> String {
         let mut hasher = blake3::Hasher::new();
-        let Self { setup, measure, drift, limits, duration_s, seed } = self;
+        let Self { setup, measure, weights, limits, duration_s, seed } = self;
         let conditions = &setup.conditions;
         let mut number = |value: f64| {
             hasher.update(&value.to_le_bytes());
         };
         conditions.initial.rows().iter().flatten().for_each(|value| number(*value));
-        let form = measure.form(drift, &conditions.platform.earth);
+        let form = &weights.form;
         (0..39).for_each(|i| (0..39).for_each(|j| number(form.at(i, j))));
         let platform = &conditions.platform;
         platform.c_nc.iter().for_each(|value| number(*value));
@@ -173,7 +165,8 @@ impl SearchProblem {
             platform.noise.0,
             platform.noise.1,
             conditions.start_s,
-            conditions.reference_sigma_mps,
+            conditions.reference.first as f64,
+            conditions.reference.sigma,
             conditions.period_s,
             *duration_s,
         ]
@@ -183,7 +176,7 @@ impl SearchProblem {
             "{STATE_VERSION} {} {:?} {limits:?} {seed} {effort:?} {:?}",
             measure.name(),
             platform.error_model,
-            drift.first
+            weights.first
         );
         hasher.update(rest.as_bytes());
         hasher.finalize().to_hex().to_string()
@@ -191,8 +184,9 @@ impl SearchProblem {
 
     fn score(&self, judge: &mut Judge, stops: &mut [GridStop]) -> f64 {
         let rates = self.setup.conditions.platform.rates;
-        let sequence = self.limits.sequence(stops, self.duration_s, &rates);
-        let score = sequence.and_then(|sequence| judge.score(&sequence, self.duration_s).ok());
+        let led_in = self.limits.led_in(stops, self.duration_s, &rates);
+        let sequence = led_in.and_then(|all| sequence_of(&all));
+        let score = sequence.and_then(|sequence| judge.fast(&sequence, self.duration_s).ok());
         score.filter(|score| score.is_finite()).unwrap_or(f64::INFINITY)
     }
 
@@ -350,18 +344,16 @@ impl SearchProblem {
 
     fn best(&self, state: &SearchState, judges: &Mutex<Vec<Judge>>) -> Result<Found, SearchError> {
         let mut judge = take(judges).unwrap_or_else(|| self.judge());
-        let mut best: Option<(Vec<GridStop>, f64)> = None;
+        let mut all: Vec<(Vec<GridStop>, f64)> = Vec::new();
         for chain in &state.chains {
             let mut stops = chain.best.clone();
             let score = self.score(&mut judge, &mut stops);
-            if score.is_finite() && best.as_ref().is_none_or(|(_, least)| score < *least) {
-                best = Some((stops, score));
-            }
+            all.push((stops, score));
         }
+        let rates = self.setup.conditions.platform.rates;
+        let ranked = rank(all, &mut judge, &self.limits, (self.duration_s, &rates));
         let nothing = SearchError::NothingFits { duration_s: self.duration_s };
-        let Some((stops, score)) = best else { return Err(nothing) };
-        let Some(sequence) = sequence_of(&stops) else { return Err(nothing) };
-        Ok(Found { stops, sequence, score })
+        ranked.map_err(DesignError::from)?.ok_or(nothing)
     }
 }
 

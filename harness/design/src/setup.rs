@@ -1,12 +1,11 @@
 //! Inputs of a design from a scenario, and the scenarios that are refused.
 
-use super::evaluate::{Conditions, Evaluator, PART_S};
-use super::navigation::{Drift, Quadratic, drift};
-use super::platform::Platform;
-use crate::measure::DesignMeasure;
+use super::evaluate::{AidingReference, Conditions, PART_S};
+use super::navigation::{Drift, drift};
+use super::platform::{Platform, TURNING_S};
 use nalgebra::Matrix3;
-use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan};
-use octant_calibration::covariance::{Covariance, STATE_COUNT};
+use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan, SwayNoise};
+use octant_calibration::covariance::{Covariance, DR, DV, STATE_COUNT};
 use octant_calibration::positions;
 use octant_calibration::schedule::DoesNotFit;
 use octant_calibration::sequence::{Sequence, Stop};
@@ -14,7 +13,7 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_nc;
 use octant_observe::covariance::{AnalysisError, reach};
 use octant_observe::ensemble::{EnsembleError, truth};
-use octant_observe::truth::EnsembleTruth;
+use octant_observe::truth::{EnsembleTruth, Swing};
 use octant_scenario::{Method, MotionSpec, Scenario};
 use octant_source::configure::{ConfigurationError, configurations};
 
@@ -104,7 +103,7 @@ pub struct DesignSetup {
     pub navigation_s: f64,
     /// Duration of the calibration, s.
     pub duration_s: f64,
-    truth: EnsembleTruth,
+    pub(crate) truth: EnsembleTruth,
 }
 
 impl DesignSetup {
@@ -116,8 +115,9 @@ impl DesignSetup {
         if !scenario.source.is_plant_alone() {
             return not_built("source.uri", "another source", "\"plant\"");
         }
-        let MotionSpec::Static(mean) = &scenario.motion else {
-            return not_built("motion.kind", "\"dockside\"", "\"static\"");
+        let mean = match &scenario.motion {
+            MotionSpec::Static(mean) => mean,
+            MotionSpec::Dockside(ship) => &ship.mean,
         };
         let (_, config, _) = configurations(scenario, Method::Primary, scenario.seed)?;
         let Some(calibration) = &config.calibration else {
@@ -134,10 +134,9 @@ impl DesignSetup {
                 "that all groups are estimated",
             );
         }
-        let AidingMode::Velocity { sigma_mps } = kalman.aiding else {
-            let key = "procedure.calibration.aiding.mode";
-            return not_built(key, "position", "velocity, the aiding of an instrument at rest");
-        };
+        if kalman.sway != SwayNoise::White {
+            return not_built("procedure.calibration.aiding.sway", "\"coloured\"", "\"white\"");
+        }
         let Some((plan, navigation_s)) =
             config.navigation.as_ref().and_then(|plan| Some((plan, plan.duration_s?)))
         else {
@@ -154,14 +153,16 @@ impl DesignSetup {
             non_orthogonality_rad: truth.non_orthogonality_rad,
             error_model: kalman.error_model,
             noise: truth.noise,
+            turning_s: TURNING_S,
         };
         let mut initial = truth.covariance.clone();
         add_means(&mut initial, &truth.mean);
+        add_displacement(&mut initial, &truth);
         let conditions = Conditions {
             platform,
             initial,
             start_s: truth.start_s,
-            reference_sigma_mps: truth.reference_sigma.unwrap_or(sigma_mps),
+            reference: reference(scenario, kalman.aiding, &truth)?,
             period_s: kalman.aiding_period_ns as f64 * 1e-9,
             part_s: PART_S,
         };
@@ -213,6 +214,40 @@ fn add_means(covariance: &mut Covariance, mean: &[f64; STATE_COUNT]) {
     }
 }
 
+/// Counts the displacement of a ship at the start as an error of the position, with which the filter starts.
+fn add_displacement(covariance: &mut Covariance, truth: &EnsembleTruth) {
+    let squares = |swing: &Swing| swing.amplitude_m.component_mul(&swing.amplitude_m);
+    for axis in 0..3 {
+        let same: f64 = truth.mooring.iter().map(|swing| squares(swing)[axis]).sum();
+        let drawn: f64 = truth.sway.iter().map(|swing| 0.5 * squares(swing)[axis]).sum();
+        covariance.add(DR + axis, DR + axis, same + drawn);
+    }
+}
+
+/// Returns what the filter measures. A velocity has the noise of the scenario's reference. A position on a
+/// ship has the σ that the filter is tuned to: sway, white noise to the filter, is in it.
+fn reference(
+    scenario: &Scenario,
+    aiding: AidingMode,
+    truth: &EnsembleTruth,
+) -> Result<AidingReference, DesignError> {
+    let key = "procedure.calibration.aiding.reference";
+    match (&scenario.motion, aiding) {
+        (MotionSpec::Static(_), AidingMode::Velocity { sigma_mps }) => {
+            Ok(AidingReference { first: DV, sigma: truth.reference_sigma.unwrap_or(sigma_mps) })
+        }
+        (MotionSpec::Dockside(_), AidingMode::Position { sigma_m }) => {
+            Ok(AidingReference { first: DR, sigma: sigma_m })
+        }
+        (MotionSpec::Static(_), AidingMode::Position { .. }) => {
+            not_built(key, "\"dock-position\" at rest", "\"zero-velocity\"")
+        }
+        (MotionSpec::Dockside(_), AidingMode::Velocity { .. }) => {
+            not_built(key, "a velocity on a moored ship", "\"dock-position\"")
+        }
+    }
+}
+
 /// Refuses what changes the prediction and isn't carried along here.
 fn check(truth: &EnsembleTruth) -> Result<(), DesignError> {
     if !truth.wanders.is_empty() {
@@ -223,53 +258,6 @@ fn check(truth: &EnsembleTruth) -> Result<(), DesignError> {
         return not_built("imu.temperature", "a temperature effect", "none");
     }
     Ok(())
-}
-
-/// What a candidate is judged by: the covariance of its calibration, and a measure of navigation.
-#[derive(Debug)]
-pub struct Judge {
-    /// The covariance recursion.
-    pub evaluator: Evaluator,
-    form: Quadratic,
-    first: Stop,
-}
-
-impl Judge {
-    /// Creates the judge of a measure; `drift` is made once by [`DesignSetup::drift`].
-    #[must_use]
-    pub fn new(setup: &DesignSetup, measure: DesignMeasure, drift: &Drift) -> Self {
-        let form = measure.form(drift, &setup.conditions.platform.earth);
-        Self { evaluator: Evaluator::new(setup.conditions.clone()), form, first: drift.first }
-    }
-
-    /// Creates a judge of the same measure from another covariance at the start of the filter.
-    #[must_use]
-    pub fn from_initial(&self, initial: Covariance) -> Self {
-        let conditions = Conditions { initial, ..self.evaluator.conditions().clone() };
-        Self { evaluator: Evaluator::new(conditions), form: self.form.clone(), first: self.first }
-    }
-
-    /// The form of the measure.
-    #[must_use]
-    pub fn form(&self) -> &Quadratic {
-        &self.form
-    }
-
-    /// Returns the measure after a calibration by this sequence.
-    ///
-    /// # Errors
-    /// If the sequence doesn't fit.
-    pub fn score(&mut self, sequence: &Sequence, duration_s: f64) -> Result<f64, DoesNotFit> {
-        let covariance = self.evaluator.calibrate(sequence, duration_s)?;
-        let stops = sequence.stops();
-        Ok(self.score_of(covariance, &stops[stops.len() - 1]))
-    }
-
-    /// Returns the measure for a covariance at the end of a calibration, with the gimbals at `from`.
-    pub fn score_of(&mut self, mut covariance: Covariance, from: &Stop) -> f64 {
-        self.evaluator.start_navigation(&mut covariance, from, &self.first);
-        libm::sqrt(self.form.of(&covariance).max(0.0))
-    }
 }
 
 impl DesignSetup {

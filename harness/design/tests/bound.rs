@@ -4,14 +4,16 @@ use crate::cells::CELLS;
 use octant_calibration::positions::{SEQUENCES, from_degrees};
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_design::bound::{LEFT, bound, known_but_isotropic};
+use octant_design::judge::{Judge, MeasureWeights};
 use octant_design::measure::DesignMeasure;
-use octant_design::setup::{DesignSetup, Judge, Rotation};
+use octant_design::setup::{DesignSetup, Rotation};
 use octant_earth::units::DEG;
 use octant_random::normal::words;
 use octant_random::stream::{Phase, key};
 
 fn longitude(setup: &DesignSetup) -> Judge {
-    Judge::new(setup, DesignMeasure::named("longitude").unwrap(), &setup.drift())
+    let measure = DesignMeasure::named("longitude").unwrap();
+    Judge::new(setup, &MeasureWeights::new(setup, measure).unwrap())
 }
 
 /// Draws a sequence of up to forty stops anywhere within a turn, with shares from 1 to 50.

@@ -7,8 +7,9 @@ use octant_calibration::filter::prior_sigmas;
 use octant_calibration::positions::{SEQUENCES, from_degrees, named};
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_design::evaluate::Evaluator;
+use octant_design::judge::{Judge, MeasureWeights};
 use octant_design::measure::DesignMeasure;
-use octant_design::setup::{DesignSetup, Judge, Rotation};
+use octant_design::setup::{DesignSetup, Rotation};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::DEG;
 use octant_observe::covariance::arcmin_m;
@@ -17,7 +18,7 @@ use octant_observe::covariance::arcmin_m;
 const PART: f64 = 0.01;
 
 fn judge(setup: &DesignSetup, name: &str) -> Judge {
-    Judge::new(setup, DesignMeasure::named(name).unwrap(), &setup.drift())
+    Judge::new(setup, &MeasureWeights::new(setup, DesignMeasure::named(name).unwrap()).unwrap())
 }
 
 /// Root mean square of the longitude error over hours 69 to 72 by the full recursion, arcmin.
@@ -95,5 +96,34 @@ fn eight_positions_are_as_another_program_says() {
             let found = judge.score(&sequence, cell.duration_s()).unwrap();
             assert!((found / expected - 1.0).abs() < 0.025, "{cell:?} {name} {found}");
         }
+    }
+}
+
+/// A moored ship: what the filter takes for white noise of the dock's position is the ship's sway.
+const DOCKSIDE: &str = "[motion]\nkind = \"dockside\"\n[motion.ship]\npreset = \"default\"\n\
+    [procedure.calibration.aiding]\nreference = \"dock-position\"\n";
+
+#[test]
+fn dockside_the_covariance_is_that_of_the_full_recursion() {
+    let cell: &Cell = &CELLS[1];
+    let setup = DesignSetup::of(&cell.scenario(DOCKSIDE)).unwrap();
+    let mut judge = judge(&setup, "longitude");
+    let mut exact = setup.clone();
+    (exact.conditions.initial, exact.conditions.part_s) = (prior(&setup), 1.0);
+    let mut filter = Evaluator::new(exact.conditions);
+    for name in ["six", "eight", "eight-level", "nineteen"] {
+        let sequence = from_degrees(named(name).unwrap(), 1).unwrap();
+        let full = setup.observe(&sequence, cell.duration_s()).unwrap();
+        let fast = filter.calibrate(&sequence, cell.duration_s()).unwrap();
+        for state in (0..3).chain(PARAMETERS..STATE_COUNT) {
+            let (expected, found) = (full.believed.sigma(state), fast.sigma(state));
+            println!("{name} {state} {:+.2} %", 100.0 * (found / expected - 1.0));
+            assert!((found / expected - 1.0).abs() < PART, "{state}: {found} {expected}");
+        }
+        // The drift of the true errors, with the sway as it is.
+        let expected = observed_rms72(&setup, &sequence, cell.duration_s());
+        let found = judge.score(&sequence, cell.duration_s()).unwrap();
+        println!("{name} {found:.4} {expected:.4}");
+        assert!((found / expected - 1.0).abs() < PART, "{found} {expected}");
     }
 }

@@ -4,5 +4,8 @@
 
 mod bound;
 mod cells;
+mod confirm;
+mod continuous;
 mod evaluation;
+mod largest;
 mod search;

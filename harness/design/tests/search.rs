@@ -1,8 +1,13 @@
 //! The search: how close it comes to the bound, and that nothing but problem and seed decides it.
 
 use crate::cells::CELLS;
+use octant_calibration::config::TurntableRates;
+use octant_calibration::positions::{EIGHT, from_degrees};
+use octant_calibration::schedule::moves_s;
 use octant_design::bound::bound;
 use octant_design::candidate::{Gimbals, Limits};
+use octant_design::contribution::Contribution;
+use octant_design::lead_in::quick_round_s;
 use octant_design::measure::DesignMeasure;
 use octant_design::search::{Found, SearchEffort, SearchError, SearchProblem, SearchState};
 use octant_design::setup::Rotation;
@@ -16,6 +21,11 @@ fn search(problem: &SearchProblem, effort: SearchEffort) -> Found {
     problem.search(effort, 2, None, &mut |_, _, _| true).unwrap()
 }
 
+/// Rates of a turntable by default.
+const RATES: TurntableRates = TurntableRates {
+    rate_radps: 10.0 * octant_earth::units::DEG,
+    acceleration_radps2: 10.0 * octant_earth::units::DEG,
+};
 const SHORT: SearchEffort = SearchEffort { chains: 4, rounds: 3, steps: 10 };
 
 #[test]
@@ -98,6 +108,42 @@ fn designs_keep_the_limits() {
         assert!((last.measure_so_far / found.score - 1.0).abs() < 1e-12);
         assert!((last.until_s - problem.duration_s).abs() < 1e-6);
     }
+}
+
+#[test]
+fn a_quick_round_of_the_eight_positions_leads_in() {
+    let limits = Limits { round_s: 900.0, ..Limits::default() };
+    let problem = problem(1, Rotation::Tetrahedral, limits);
+    let found = search(&problem, SHORT);
+    let contributions = problem.contributions(&mut problem.judge(), &found.sequence).unwrap();
+    let angles = |stop: &Contribution| (stop.azimuth_deg.round(), stop.roll_deg.round());
+    let round: Vec<(f64, f64)> = EIGHT.iter().map(|(azimuth, roll, _)| (*azimuth, *roll)).collect();
+    assert_eq!(contributions[..EIGHT.len()].iter().map(angles).collect::<Vec<_>>(), round);
+    // Alignment and round take as long as asked for; shares of the time are whole numbers.
+    assert!(contributions[0].dwell_s >= limits.lead_in_s);
+    // Shares are whole numbers: each dwell is longer by less than a share and a part in hundred.
+    let share_s = contributions[1].dwell_s / f64::from(found.stops[1].share);
+    let moves_s = moves_s(&from_degrees(EIGHT, 1).unwrap(), &RATES);
+    for (stop, (.., weight)) in contributions[1..EIGHT.len() - 1].iter().zip(&EIGHT[1..]) {
+        let least_s = (900.0 - moves_s) / 20.0 * weight;
+        let longer_s = stop.dwell_s - least_s;
+        assert!((-1e-3..1.1 * share_s).contains(&longer_s), "{longer_s} {share_s}");
+    }
+    // The dwell that ends the round is part of the next one.
+    let ended_s = contributions[EIGHT.len() - 2].until_s;
+    let asked_s = 300.0 + 900.0 - (900.0 - moves_s) / 20.0;
+    assert!((0.0..21.0 * share_s).contains(&(ended_s - asked_s)), "{ended_s} {asked_s} {share_s}");
+    let narrow = Limits { azimuth_deg: (0, 90), ..limits };
+    let short = Limits { round_s: 300.0, ..limits };
+    let many = Limits { stops_max: 60, ..limits };
+    for refused in [narrow, short, many] {
+        let made = SearchProblem::new(problem.setup.clone(), problem.measure, refused, 1);
+        assert!(made.is_err(), "{refused:?}");
+    }
+    let rates = &problem.setup.conditions.platform.rates;
+    assert_eq!(quick_round_s(&Limits::default(), 4.0 * 3600.0, rates), Some(1200.0));
+    assert_eq!(quick_round_s(&limits, 4.0 * 3600.0, rates), None);
+    assert_eq!(quick_round_s(&Limits { round_s: 0.0, ..narrow }, 4.0 * 3600.0, rates), None);
 }
 
 #[test]

@@ -214,8 +214,10 @@ impl<P: Framing> FrameDecoder<P> {
                 }
             }
             let skipped = bytes.iter().position(|byte| P::begins(*byte)).unwrap_or(bytes.len());
-            self.take(bytes, skipped);
-            self.counters.bytes_lost += skipped as u64;
+            if skipped > 0 {
+                self.take(bytes, skipped);
+                self.counters.bytes_lost += skipped as u64;
+            }
             if bytes.is_empty() {
                 return None;
             }

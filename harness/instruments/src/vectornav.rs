@@ -120,17 +120,17 @@ fn header(bytes: &[u8]) -> Result<Header, Extent> {
         return Err(Extent::Open(header_bytes - bytes.len()));
     }
     let mut masks = [0; 7];
-    let mut at = 2;
-    for (group, mask) in masks.iter_mut().enumerate() {
-        if groups & (1 << group) == 0 {
-            continue;
-        }
+    let (mut at, mut rest) = (2, groups);
+    while rest != 0 {
+        let group = rest.trailing_zeros() as usize;
+        rest &= rest - 1;
         let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<2>()).ok_or(Extent::None)?;
-        *mask = u16::from_le_bytes(*found);
+        let mask = u16::from_le_bytes(*found);
         // The group has no field, or a second word of fields.
-        if *mask == 0 || *mask & 0x8000 != 0 {
+        if mask == 0 || mask & 0x8000 != 0 {
             return Err(Extent::None);
         }
+        masks[group] = mask;
         at += 2;
     }
     Ok(Header { masks, bytes: at })

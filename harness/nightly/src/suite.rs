@@ -1,4 +1,8 @@
 //! Runs the fault suite: every scenario with its twin, compared with the expected end.
+//!
+//! The cases run in one process, in which those that begin alike share their beginning. A case that doesn't end
+//! as expected, or gave no result there, runs again alone and leaves its evidence. So does a part of the others,
+//! a different one each night: both runs have to be the same.
 
 use super::error::NightError;
 use super::file::write;
@@ -9,12 +13,15 @@ use octant_requirements::Verdict;
 use octant_scenario::suite::{Suite, SuiteCase};
 use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Time limit of a case; a longer one is an error.
+/// Number of nights in which every case has run alone once.
+const NIGHTS_FOR_ALL: u64 = 16;
+/// Time limit of a case that runs alone, and of all cases together; a longer case is an error.
 const LIMIT: Duration = Duration::from_secs(1800);
 
 /// Result of a case of the suite.
@@ -81,91 +88,214 @@ fn scenario(path: &Path) -> Result<Vec<u8>, NightError> {
     std::fs::read(path).map_err(NightError::of("read", path))
 }
 
+/// Settings of a suite's run.
+#[derive(Debug)]
+pub struct SuiteOptions<'a> {
+    /// Folder of the results.
+    pub folder: &'a Path,
+    /// Program that runs the cases.
+    pub program: &'a Path,
+    /// Number of runs at a time.
+    pub jobs: usize,
+    /// Number of the night; it selects the cases that also run alone.
+    pub night: u64,
+    /// Set to end it.
+    pub cancel: &'a AtomicBool,
+}
+
+/// Input of the process that runs cases together, on its standard input.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SharedCases {
+    /// Files of the scenarios.
+    pub scenarios: Vec<PathBuf>,
+    /// Number of runs at a time.
+    pub jobs: usize,
+}
+
+/// A line of the output of that process.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SharedCase {
+    /// Place of the scenario in the input.
+    pub index: usize,
+    /// Its summary.
+    pub summary: Summary,
+}
+
 /// Runs the cases of a suite that have no result yet in a folder; `None` if the end was requested.
 ///
 /// # Errors
 /// If the operating system refuses: stored results stay.
 pub fn run(
     suite: &Suite,
-    folder: &Path,
-    program: &Path,
-    jobs: usize,
-    cancel: &AtomicBool,
+    options: &SuiteOptions<'_>,
     tell: &(dyn Fn(&SuiteResult) + Sync),
 ) -> Result<Option<Vec<SuiteResult>>, NightError> {
+    let SuiteOptions { folder, jobs, cancel, .. } = *options;
     std::fs::create_dir_all(folder).map_err(NightError::of("create", folder))?;
     let names = names(suite);
+    let cases = suite.cases.iter().zip(&names).map(|(case, name)| Case::of(case, name, folder));
+    let cases = cases.collect::<Result<Vec<_>, _>>()?;
+    let Some(shared) = shared(&cases, options)? else { return Ok(None) };
+    let period = NIGHTS_FOR_ALL.min(cases.len().max(1) as u64);
     let work = |index: usize| {
-        let result = one(&suite.cases[index], &names[index], folder, program, cancel)?;
+        let case = &cases[index];
+        let result = match &case.stored {
+            Some(stored) => Some(stored.clone()),
+            None => {
+                let is_sampled = (index as u64 + options.night).is_multiple_of(period);
+                case.run(shared.get(&index), is_sampled, options)?
+            }
+        };
         if let Some(result) = &result {
             tell(result);
         }
         Ok::<_, NightError>(result)
     };
-    let done = in_order(jobs, names.len(), || cancel.load(Ordering::Relaxed), work)?;
+    let done = in_order(jobs, cases.len(), || cancel.load(Ordering::Relaxed), work)?;
     // Incomplete where the end was requested.
     Ok(done.into_iter().collect())
 }
 
-/// Returns the result of a case, stored or new; `None` if it was aborted.
-fn one(
-    case: &SuiteCase,
-    name: &str,
-    folder: &Path,
-    program: &Path,
-    cancel: &AtomicBool,
-) -> Result<Option<SuiteResult>, NightError> {
-    let scenario_blake3 = blake3::hash(&scenario(&case.scenario)?).to_hex().to_string();
-    let file = folder.join(format!("{name}.json"));
-    if file.exists() {
-        let text = std::fs::read_to_string(&file).map_err(NightError::of("read", &file))?;
-        let result: SuiteResult = serde_json::from_str(&text).map_err(|source| {
-            NightError::Form { path: file.clone(), expected: "a result of the suite", source }
-        })?;
-        if result.scenario_blake3 == scenario_blake3 && result.expected == case.expect {
-            return Ok(Some(result));
-        }
+/// Runs the cases without a result together; returns the summaries by their places. A case that it misses has
+/// to run alone. `None` if the end was requested.
+fn shared(
+    cases: &[Case<'_>],
+    options: &SuiteOptions<'_>,
+) -> Result<Option<BTreeMap<usize, Summary>>, NightError> {
+    let open: Vec<usize> = (0..cases.len()).filter(|i| cases[*i].stored.is_none()).collect();
+    if open.len() < 2 {
+        return Ok(Some(BTreeMap::new()));
     }
-    let out = folder.join(name);
-    let Some((status, summary, said)) = whole(program, &case.scenario, &out, cancel)? else {
+    let scenarios = open.iter().map(|index| cases[*index].case.scenario.clone()).collect();
+    let job = serde_json::to_vec(&SharedCases { scenarios, jobs: options.jobs })
+        .map_err(|source| NightError::Json { what: "the cases of a suite".to_owned(), source })?;
+    let system = NightError::of("start", options.program);
+    let child = process::command(options.program)
+        .args(["nightly", "cases"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(&system)?;
+    let outcome = finish(child, &job, u64::MAX, LIMIT, options.cancel).map_err(&system)?;
+    if matches!(outcome.ended, ChildEnded::Cancelled) {
         return Ok(None);
-    };
-    let (verdict, reasons) = match &summary {
-        Some(summary) => (Some(summary.verdict), summary.reasons.clone()),
-        None => (None, vec![first_line(&said, status)]),
-    };
-    let unfired = summary.iter().flat_map(|summary| &summary.faults).find(|fault| !fault.fired);
-    let held = match verdict {
-        None => Err(format!("it came to no verdict: {}", reasons.join("; "))),
-        Some(verdict) => case.hold(verdict, &reasons).map_err(|found| found.to_string()),
-    };
-    let unfired = match unfired {
-        Some(fault) if case.expect != Verdict::Inconclusive => {
-            Err(format!("fault {} never fired", fault.id))
-        }
-        _ => Ok(()),
-    };
-    let problem = held.and(unfired).err();
-    if problem.is_none() {
-        // The scenario and the program can reproduce the rest.
-        let _ = std::fs::remove_dir_all(&out);
     }
-    let evidence = problem.as_ref().map(|_| format!("suite/{name}"));
-    let result = SuiteResult {
-        name: name.to_owned(),
-        scenario: case.scenario.clone(),
-        scenario_blake3,
-        expected: case.expect,
-        verdict,
-        reasons,
-        problem,
-        stream_hash: summary.map(|summary| summary.stream_hash),
-        evidence,
-    };
-    let text = serde_json::to_string_pretty(&result)
-        .map_err(|source| NightError::Json { what: file.display().to_string(), source })?;
-    write(&file, &(text + "\n"))?;
-    Ok(Some(result))
+    // A process that ends early has told the cases up to there; an incomplete line is none.
+    let lines = outcome.out.lines().filter_map(|line| serde_json::from_str(line).ok());
+    let found =
+        lines.filter_map(|SharedCase { index, summary }| Some((*open.get(index)?, summary)));
+    Ok(Some(found.collect()))
+}
+
+/// A case, with its result where it is stored.
+struct Case<'a> {
+    case: &'a SuiteCase,
+    name: &'a str,
+    scenario_blake3: String,
+    file: PathBuf,
+    stored: Option<SuiteResult>,
+}
+
+impl<'a> Case<'a> {
+    fn of(case: &'a SuiteCase, name: &'a str, folder: &Path) -> Result<Self, NightError> {
+        let scenario_blake3 = blake3::hash(&scenario(&case.scenario)?).to_hex().to_string();
+        let file = folder.join(format!("{name}.json"));
+        let mut stored = None;
+        if file.exists() {
+            let text = std::fs::read_to_string(&file).map_err(NightError::of("read", &file))?;
+            let result: SuiteResult = serde_json::from_str(&text).map_err(|source| {
+                NightError::Form { path: file.clone(), expected: "a result of the suite", source }
+            })?;
+            stored = (result.scenario_blake3 == scenario_blake3 && result.expected == case.expect)
+                .then_some(result);
+        }
+        Ok(Self { case, name, scenario_blake3, file, stored })
+    }
+
+    /// Judges what the case came to among the others, runs it alone where that has to be, and stores the
+    /// result; `None` if it was aborted.
+    fn run(
+        &self,
+        shared: Option<&Summary>,
+        is_sampled: bool,
+        options: &SuiteOptions<'_>,
+    ) -> Result<Option<SuiteResult>, NightError> {
+        // A run alone that was killed leaves a part of its folder, and needn't be repeated.
+        remove_left(&options.folder.join(self.name))?;
+        let among = shared.map(|summary| self.judged(Some(summary), String::new()));
+        let result = match &among {
+            Some(among) if among.problem.is_none() && !is_sampled => among.clone(),
+            _ => {
+                let Some(alone) = self.alone(among.as_ref(), options)? else { return Ok(None) };
+                alone
+            }
+        };
+        let text = serde_json::to_string_pretty(&result)
+            .map_err(|source| NightError::Json { what: self.file.display().to_string(), source })?;
+        write(&self.file, &(text + "\n"))?;
+        Ok(Some(result))
+    }
+
+    /// Runs the case alone; `among`: its result with a shared beginning.
+    fn alone(
+        &self,
+        among: Option<&SuiteResult>,
+        options: &SuiteOptions<'_>,
+    ) -> Result<Option<SuiteResult>, NightError> {
+        let out = options.folder.join(self.name);
+        let done = whole(options.program, &self.case.scenario, &out, options.cancel)?;
+        let Some((status, summary, said)) = done else { return Ok(None) };
+        let mut result = self.judged(summary.as_ref(), first_line(&said, status));
+        if let Some(among) = among.filter(|among| !among.is_same(&result)) {
+            let told = |result: &SuiteResult| {
+                let verdict = result.verdict.map_or("no verdict", Verdict::name);
+                format!("{verdict}, stream {}", result.stream_hash.as_deref().unwrap_or("none"))
+            };
+            result.problem = Some(format!(
+                "with a beginning that it shares with other cases it came to another result ({}) than alone \
+                 ({}): an error of this program",
+                told(among),
+                told(&result)
+            ));
+        }
+        if result.problem.is_none() {
+            // The scenario and the program can reproduce the rest.
+            let _ = std::fs::remove_dir_all(&out);
+        } else {
+            result.evidence = Some(format!("suite/{}", self.name));
+        }
+        Ok(Some(result))
+    }
+
+    fn judged(&self, summary: Option<&Summary>, said: String) -> SuiteResult {
+        let (verdict, reasons) = match summary {
+            Some(summary) => (Some(summary.verdict), summary.reasons.clone()),
+            None => (None, vec![said]),
+        };
+        let unfired = summary.iter().flat_map(|s| &s.faults).find(|fault| !fault.fired);
+        let held = match verdict {
+            None => Err(format!("it came to no verdict: {}", reasons.join("; "))),
+            Some(verdict) => self.case.hold(verdict, &reasons).map_err(|found| found.to_string()),
+        };
+        let unfired = match unfired {
+            Some(fault) if self.case.expect != Verdict::Inconclusive => {
+                Err(format!("fault {} never fired", fault.id))
+            }
+            _ => Ok(()),
+        };
+        SuiteResult {
+            name: self.name.to_owned(),
+            scenario: self.case.scenario.clone(),
+            scenario_blake3: self.scenario_blake3.clone(),
+            expected: self.case.expect,
+            verdict,
+            reasons,
+            problem: held.and(unfired).err(),
+            stream_hash: summary.map(|summary| summary.stream_hash.clone()),
+            evidence: None,
+        }
+    }
 }
 
 fn first_line(said: &str, status: Option<i32>) -> String {

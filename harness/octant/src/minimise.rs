@@ -6,8 +6,10 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
+use octant_run::branches::BranchPlan;
 use octant_run::drive::Ended;
 use octant_run::minimise::{SearchStep, SetOutcome, minimise};
+use octant_run::stem::Stem;
 use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
@@ -97,7 +99,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let (minimal, trail) = with_progress(std::slice::from_ref(&control), None, sample_s, || {
         let twins = twins(&scenario, seed, &control)?;
-        minimise(ids.len(), |set| outcome(&scenario, seed, set, &twins, &broken, &control))
+        let stems = stems(&scenario, seed, &control)?;
+        let known = Known { twins, stems, broken: &broken };
+        minimise(ids.len(), |set| outcome(&scenario, seed, set, &known, &control))
     })?;
     let Some(minimal) = minimal else {
         let whole = trail.first().is_some_and(|step| step.outcome == SetOutcome::Breaks);
@@ -151,6 +155,19 @@ fn twins(
         .collect()
 }
 
+/// Runs up to the first fault, which all sets have in common; `None` where a run can't be divided.
+fn stems(scenario: &Scenario, seed: u64, control: &Control) -> Result<Vec<Option<Stem>>, Failure> {
+    let plan = |method| BranchPlan { scenario, method, seed, control };
+    methods(scenario).map(|method| Ok(Stem::of(&plan(method))?)).collect()
+}
+
+/// Results that the runs of all sets need.
+struct Known<'a> {
+    twins: Vec<Arc<MethodRun>>,
+    stems: Vec<Option<Stem>>,
+    broken: &'a Broken,
+}
+
 fn run(
     scenario: &Scenario,
     method: Method,
@@ -158,7 +175,10 @@ fn run(
     recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, Failure> {
-    let run = run_method(scenario, method, seed, recording, control)?;
+    uncancelled(run_method(scenario, method, seed, recording, control)?)
+}
+
+fn uncancelled(run: MethodRun) -> Result<MethodRun, Failure> {
     if run.ended == Ended::Cancelled {
         return Err(Failure {
             status: Verdict::Inconclusive.exit_code(),
@@ -173,17 +193,20 @@ fn outcome(
     scenario: &Scenario,
     seed: u64,
     set: &[usize],
-    twins: &[Arc<MethodRun>],
-    broken: &Broken,
+    known: &Known<'_>,
     control: &Control,
 ) -> Result<SetOutcome, Failure> {
     let some = scenario.with_faults(|i| set.contains(&i));
     if some.station(seed).is_err() {
         return Ok(SetOutcome::Impossible);
     }
-    let mut runs = Vec::with_capacity(twins.len());
-    for (method, twin) in methods(scenario).zip(twins) {
-        let mut run = run(&some, method, seed, StreamKeeping::None, control)?;
+    let mut runs = Vec::with_capacity(known.twins.len());
+    for ((method, twin), stem) in methods(scenario).zip(&known.twins).zip(&known.stems) {
+        let plan = BranchPlan { scenario: &some, method, seed, control };
+        let mut run = match stem {
+            Some(stem) if !set.is_empty() => uncancelled(stem.run(&plan, |i| set.contains(&i))?)?,
+            _ => run(&some, method, seed, StreamKeeping::None, control)?,
+        };
         run.twin = (!set.is_empty()).then(|| Arc::clone(twin));
         runs.push(run);
     }
@@ -191,7 +214,7 @@ fn outcome(
     let Some(primary) = runs.next() else { return Ok(SetOutcome::Impossible) };
     let run = assemble(&some, seed, primary, runs.next())
         .map_err(|error| Failure::bench(format!("failed to judge a set of faults: {error}")))?;
-    Ok(if broken.holds(&run.summary) { SetOutcome::Breaks } else { SetOutcome::Holds })
+    Ok(if known.broken.holds(&run.summary) { SetOutcome::Breaks } else { SetOutcome::Holds })
 }
 
 fn summary_of(run: &Path) -> Result<Summary, Failure> {

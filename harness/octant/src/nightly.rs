@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
+use octant_base::control::Control;
 use octant_base::display::UnitChoice;
 use octant_base::interrupt;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, Shard, execute};
@@ -21,14 +22,17 @@ use octant_nightly::compare::{ChangeThresholds, NightSide, compare};
 use octant_nightly::history::History;
 use octant_nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_name};
 use octant_nightly::render::NightReport;
-use octant_nightly::suite::{self, SuiteResult};
+use octant_nightly::suite::{self, SharedCase, SharedCases, SuiteOptions, SuiteResult};
 use octant_nightly::trend;
 use octant_nightly::units::TrendUnits;
 use octant_requirements::Verdict;
+use octant_run::many::judge_many;
+use octant_scenario::Scenario;
 use octant_scenario::suite::Suite;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::SystemTime;
+use std::sync::{Mutex, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -74,6 +78,9 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Run cases of a suite that share their beginning; octant nightly starts this.
+    #[command(hide = true)]
+    Cases,
     /// Make a finished night the baseline.
     Accept {
         /// Id of the night; by default the last finished one.
@@ -103,8 +110,12 @@ struct Inputs {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if let Some(Command::Accept { night, history, units }) = &arguments.command {
-        return accepted(history, night.as_deref(), chosen(*units)?);
+    match &arguments.command {
+        Some(Command::Accept { night, history, units }) => {
+            return accepted(history, night.as_deref(), chosen(*units)?);
+        }
+        Some(Command::Cases) => return cases(),
+        None => {}
     }
     let Some(history) = &arguments.history else {
         return Err(Failure::input("--history is missing"));
@@ -322,6 +333,39 @@ fn remove_begun(history: &Path) -> Result<(), Failure> {
         .try_for_each(|(_, path)| remove(&path))
 }
 
+/// Number of the day of a time in RFC 3339; 0 for one that isn't.
+fn day_of(time: &str) -> u64 {
+    let since = humantime::parse_rfc3339(time).ok().and_then(|t| t.duration_since(UNIX_EPOCH).ok());
+    since.map_or(0, |since| since.as_secs() / 86_400)
+}
+
+/// Runs cases of a suite together, for the process that began this one.
+fn cases() -> Result<Verdict, Failure> {
+    let job: SharedCases = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
+        Failure::input(format!(
+            "failed to read cases on standard input: {error} (octant nightly starts this)"
+        ))
+    })?;
+    // A case that can't be read has its own words when it runs alone.
+    let (places, scenarios): (Vec<usize>, Vec<Scenario>) = (job.scenarios.iter().enumerate())
+        .filter_map(|(index, path)| Some((index, Scenario::load(path, &[]).ok()?)))
+        .unzip();
+    let wrong = Mutex::new(None);
+    judge_many(&scenarios, job.jobs, &Control::default(), &|place, run| {
+        let Ok(run) = run else { return };
+        let line = SharedCase { index: places[place], summary: run.summary };
+        if let Err(failure) = print_line(&line) {
+            wrong.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+        }
+    });
+    wrong.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(Verdict::Pass), Err)
+}
+
+fn print_line(case: &SharedCase) -> Result<(), Failure> {
+    let text = serde_json::to_string(case).map_err(Failure::bench)?;
+    print(&(text + "\n"))
+}
+
 /// Runs everything without a result; returns whether all have one now.
 fn run_all(
     inputs: &Inputs,
@@ -339,7 +383,14 @@ fn run_all(
         };
         let into = folder.join("suite");
         let found = bar.during(&|_| String::new(), || {
-            suite::run(suite, &into, &inputs.program, inputs.jobs, cancel, &tell)
+            let options = SuiteOptions {
+                folder: &into,
+                program: &inputs.program,
+                jobs: inputs.jobs,
+                night: day_of(&night.started),
+                cancel,
+            };
+            suite::run(suite, &options, &tell)
         });
         let Some(found) = found.map_err(Failure::bench)? else { return Ok(false) };
         night.suite = found;

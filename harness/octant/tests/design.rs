@@ -72,7 +72,35 @@ fn what_is_not_built_is_refused() {
         }
     };
     refused(&["--minimise", "longitud"], &["unknown measure", "longitude"]);
-    refused(&["--set", "motion.kind=dockside"], &["motion.kind", "expected \"static\""]);
+    refused(
+        &[
+            "--set",
+            "motion.kind=dockside",
+            "--set",
+            "procedure.calibration.aiding.reference=zero-velocity",
+        ],
+        &["procedure.calibration.aiding.reference", "expected \"dock-position\""],
+    );
+    refused(
+        &["--set", "procedure.calibration.aiding.reference=dock-position"],
+        &["procedure.calibration.aiding.reference", "expected \"zero-velocity\""],
+    );
+    refused(
+        &["--set", "motion.kind=dockside", "--set", "procedure.calibration.aiding.sway=coloured"],
+        &["procedure.calibration.aiding.sway", "found \"coloured\", expected \"white\""],
+    );
+    refused(
+        &["--lead-in-round", "20 min", "--gimbals", "azimuth"],
+        &["lead-in round", "expected both gimbals"],
+    );
+    refused(&["--lead-in-round", "20 min", "--stops", "60"], &["stops: found 60", "at most 46"]);
+    refused(&["--lead-in-round", "2 min"], &["lead-in round: found 120 s", "expected at least"]);
+    refused(
+        &["--confirm", "4", "--set", "procedure.navigation.duration=12 h"],
+        &["--confirm", "found a navigation of 12 h", "at least 24 h"],
+    );
+    refused(&["--confirm", "4", "--confirm-rate", "20 m"], &["imu.rate", "20 m"]);
+    refused(&["--confirm", "1"], &["--confirm"]);
     refused(&["--set", "procedure.calibration.g_states=false"], &["not_estimated", "all groups"]);
     refused(
         &["--set", "imu.extensions.gyro_bias_instability=0.001 deg/h"],
@@ -86,4 +114,115 @@ fn what_is_not_built_is_refused() {
     refused(&["--out", "s.toml"], &["--out", "s.toml exists already", "--force"]);
     refused(&["--state", "s.toml"], &["--state", "s.toml exists already"]);
     assert_eq!(std::fs::read_to_string(here.path().join("s.toml")).unwrap(), SCENARIO);
+}
+
+#[test]
+fn a_design_on_a_moored_ship_is_predicted_as_by_observe() {
+    let ship = "[motion]\nkind = \"dockside\"\n[motion.ship]\npreset = \"default\"\n";
+    let scenario = SCENARIO.replace(
+        "[procedure.navigation]",
+        "[procedure.calibration.aiding]\nreference = \"dock-position\"\n[procedure.navigation]",
+    );
+    let here = folder(&(scenario + ship));
+    let (said, _) = design(here.path(), &["--json"]);
+    let report: Value = serde_json::from_str(&said).unwrap();
+    let best = &report["designs"][0];
+    let [score, observed] = ["score", "observed"].map(|key| best[key].as_f64().unwrap());
+    assert!((observed / score - 1.0).abs() < 0.01, "{observed} {score}");
+    assert!(score > best["bound"]["value"].as_f64().unwrap());
+}
+
+/// Figures of the attempts of a report with a confirmation.
+fn attempts(report: &Value) -> &Vec<Value> {
+    report["confirmation"]["attempts"].as_array().unwrap()
+}
+
+#[test]
+fn a_confirmation_runs_the_design_and_goes_on_until_one_is_confirmed() {
+    let here = folder(SCENARIO);
+    let options = ["--confirm", "4", "--confirm-rate", "20 Hz", "--confirm-attempts", "3"];
+    let all = [
+        &["design", "s.toml", "--effort", "quick", "--stops", "12", "--json"][..],
+        &["--rotation", "tetrahedral", "--out", "d.toml", "--state", "state.json"],
+        &options,
+    ]
+    .concat();
+    let output = octant_in(here.path(), &all);
+    let status = output.status.code();
+    let said = String::from_utf8(output.stdout).unwrap();
+    let report: Value = serde_json::from_str(&said).unwrap();
+    let confirmation = &report["confirmation"];
+    let tried = attempts(&report);
+    let confirmed: Vec<bool> =
+        tried.iter().map(|one| one["result"]["confirmed"].as_bool().unwrap()).collect();
+    // Every attempt before the last one failed; the exit status tells of the last one.
+    let (last, before) = confirmed.split_last().unwrap();
+    assert!(before.iter().all(|confirmed| !confirmed), "{confirmed:?}");
+    assert_eq!(status, Some(if *last { 0 } else { 3 }), "{confirmed:?}");
+    assert!(*last || tried.len() == 3, "{confirmed:?}");
+    let number = last.then_some(tried.len() as u64);
+    assert_eq!(confirmation["confirmed"].as_u64(), number);
+    // The second attempt starts with the round.
+    if let Some(second) = tried.get(1) {
+        assert!(second["round_s"].as_f64().unwrap() > 0.0, "{}", second["about"]);
+    }
+    let written = std::fs::read_to_string(here.path().join("d.toml")).unwrap();
+    let words = if *last { "It was confirmed by simulation" } else { "It was not confirmed" };
+    assert!(written.contains(words), "{written}");
+    // The runs are those of the scenario that is written, and of eight positions.
+    let other = SCENARIO.replace("[baseline]\npositions = \"six\"\n", "rotation = \"sixteen\"\n");
+    let rates = "[record]\nrate = \"0.1 Hz\"\n";
+    let other = other.replace("[imu]", "[imu]\nrate = \"20 Hz\"") + rates;
+    std::fs::write(here.path().join("eight.toml"), other).unwrap();
+    let compared = ["compare", "d.toml", "--against", "eight.toml", "--seeds", "4", "--json"];
+    let sets = ["--set", "imu.rate=20 Hz", "--set", "record.rate=0.1 Hz"];
+    let (compared, _) = ended(octant_in(here.path(), &[&compared[..], &sets].concat()), 0);
+    let compared: Value = serde_json::from_str(&compared).unwrap();
+    let shown = if *last { tried.len() - 1 } else { 0 };
+    let runs = tried[shown]["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 4);
+    for (run, expected) in runs.iter().zip(compared["runs"].as_array().unwrap()) {
+        assert_eq!(run["seed"], expected["seed"]);
+        for (side, key) in [("reference", "first"), ("designed", "second")] {
+            let of = |maxima: &Value| maxima["longitude_24h"].as_f64().unwrap();
+            let (found, expected) = (of(&run[side]["maxima"]), of(&expected[key]));
+            assert!((found / expected - 1.0).abs() < 1e-6, "{side} {found} {expected}");
+        }
+        assert_eq!(run["designed"]["g_normalized"].as_array().unwrap().len(), 9);
+    }
+    // From the stored state on nothing is run again, and the result is the same; on one thread too.
+    let state: Value =
+        serde_json::from_slice(&std::fs::read(here.path().join("state.json")).unwrap()).unwrap();
+    assert_eq!(state["runs"].as_object().unwrap().len(), tried.len());
+    let resumed = [&all[..], &["--resume", "--force", "--jobs", "1"]].concat();
+    let resumed = octant_in(here.path(), &resumed);
+    assert_eq!(resumed.status.code(), status);
+    assert_eq!(String::from_utf8(resumed.stdout).unwrap(), said);
+}
+
+#[test]
+fn a_confirmation_as_text_has_the_reasons() {
+    let here = folder(SCENARIO);
+    let all = ["design", "s.toml", "--effort", "quick", "--stops", "12", "--confirm", "2"];
+    let more = ["--confirm-rate", "20", "--confirm-attempts", "1", "--continuous"];
+    let output = octant_in(here.path(), &[&all[..], &more].concat());
+    let status = output.status.code();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let parts = [
+        "simulation: 2 seeds from 1 on at 20 Hz, against eight positions, sixteen moves",
+        "attempt 1: best design",
+        "longitude to 24 h",
+        "normalized squared errors of G, designed",
+        "continuous calibration",
+        "continuous navigation",
+        if status == Some(0) {
+            "  confirmed by simulation"
+        } else {
+            "  not confirmed by simulation"
+        },
+    ];
+    for part in parts {
+        assert!(text.contains(part), "{part:?} is not in\n{text}");
+    }
+    assert!(status == Some(0) || text.contains("not confirmed: "), "{text}");
 }

@@ -26,10 +26,19 @@ const RATE: &str = "20 Hz";
 /// Half a second after a measurement: at the last sample before it the calibration still has
 /// position and vertical velocity, which navigation resets.
 const CALIBRATION: &str = "duration = \"14400.55 s\"\n";
+/// Rate of the ensemble of Table 1, whose three days are most of the work: what slow samples change
+/// grows with their interval, and at 10 Hz would be more than a tenth of σ.
+const TABLE_1_RATE: &str = "16 Hz";
+/// The same time after a measurement at this rate.
+const TABLE_1_CALIBRATION: &str = "duration = \"14400.5625 s\"\n";
 
 fn scenario(text: &str) -> Scenario {
+    scenario_at(RATE, text)
+}
+
+fn scenario_at(rate: &str, text: &str) -> Scenario {
     let text = format!("schema = 1\n{text}");
-    let rate = format!("imu.rate={RATE}");
+    let rate = format!("imu.rate={rate}");
     Scenario::parse(&text, "test.toml", Path::new(""), &[rate]).unwrap()
 }
 
@@ -252,32 +261,43 @@ fn a_sway_with_given_phases_comes_out_as_the_mean() {
 
 #[test]
 fn slow_samples_make_the_same_run() {
-    // The ensembles below are run at 20 Hz, which is valid as long as 200 Hz gives the same errors.
-    let text = format!(
-        "{UNSCREENED}{GIVEN}[procedure.calibration]\n{CALIBRATION}[procedure.navigation]\nduration = \"12 h\"\n"
-    );
-    let slow = scenario(&text);
-    let fast = ["imu.rate=200 Hz".to_owned()];
-    let text = format!("schema = 1\n{text}");
-    let fast = Scenario::parse(&text, "test.toml", Path::new(""), &fast).unwrap();
-    let predicted = ensemble(&slow, Method::Primary).unwrap();
-    let [slow, fast] = [&slow, &fast].map(|scenario| run(scenario, 1, silent));
+    // The ensembles below are run at these rates, which is valid as long as 200 Hz gives the same errors.
+    let at = |rate: &str, calibration: &str| {
+        let text = format!(
+            "{UNSCREENED}{GIVEN}[procedure.calibration]\n{calibration}[procedure.navigation]\nduration = \"12 h\"\n"
+        );
+        scenario_at(rate, &text)
+    };
+    let predicted = ensemble(&at(RATE, CALIBRATION), Method::Primary).unwrap();
+    let fast = run(&at("200 Hz", CALIBRATION), 1, silent);
+    for (rate, calibration) in [(RATE, CALIBRATION), (TABLE_1_RATE, TABLE_1_CALIBRATION)] {
+        assert_slow(rate, &predicted, &run(&at(rate, calibration), 1, silent), &fast);
+    }
+}
+
+/// Compares a run at a low rate with one at 200 Hz.
+fn assert_slow(rate: &str, predicted: &Ensemble, slow: &Run, fast: &Run) {
     for (state, (slow, fast)) in predicted.states.iter().zip(slow.errors.iter().zip(&fast.errors)) {
         let difference = (slow - fast).abs();
-        assert!(difference < 0.05 * state.believed.unwrap(), "{}: {difference}", state.name);
+        assert!(
+            difference < 0.05 * state.believed.unwrap(),
+            "{rate}, {}: {difference}",
+            state.name
+        );
     }
     let motion = slow.motion.iter().zip(&fast.motion);
     let apart: [f64; 5] = std::array::from_fn(|axis| {
         motion.clone().map(|(slow, fast)| (slow[axis] - fast[axis]).abs()).fold(0.0, f64::max)
     });
-    println!("heading, pitch, roll (arcmin), velocity (m/s) differ by {apart:.6?}");
+    println!("{rate}: heading, pitch, roll (arcmin), velocity (m/s) differ by {apart:.6?}");
     // A tenth of the σ of the attitude after this calibration, 0.15 and 0.012 arcmin, and what that tilt
     // swings the velocity by, 0.027 m/s.
     let limits = [0.015, 0.0012, 0.0012, 0.0027, 0.0027];
-    assert!(apart.iter().zip(limits).all(|(apart, limit)| *apart < limit), "{apart:?}");
+    assert!(apart.iter().zip(limits).all(|(apart, limit)| *apart < limit), "{rate}: {apart:?}");
     for (slow, fast) in slow.drift.iter().zip(&fast.drift) {
         // The drift over the following day is some tenths of an arc minute.
-        assert!((0..2).all(|axis| (slow[axis] - fast[axis]).abs() < 2e-3), "{slow:?} {fast:?}");
+        let is_same = (0..2).all(|axis| (slow[axis] - fast[axis]).abs() < 2e-3);
+        assert!(is_same, "{rate}: {slow:?} {fast:?}");
     }
 }
 
@@ -406,10 +426,10 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
 #[ignore = "minutes: run by tests/run"]
 fn two_hundred_runs_of_table_1() {
     let text = format!(
-        "[procedure.calibration]\npositions = \"eight\"\n{CALIBRATION}\
+        "[procedure.calibration]\npositions = \"eight\"\n{TABLE_1_CALIBRATION}\
          [procedure.navigation]\nduration = \"72 h\"\n"
     );
-    assert_ensemble(&scenario(&text), 200, 1..=72);
+    assert_ensemble(&scenario_at(TABLE_1_RATE, &text), 200, 1..=72);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! with the recording.
 
 #[path = "../../../models/faults/tests/any_fault/draw.rs"]
-mod draw;
+pub(super) mod draw;
 
 use octant_base::control::Control;
 use octant_faults::catalogue::Acts;
@@ -15,8 +15,8 @@ use proptest::prelude::*;
 use std::path::Path;
 
 /// Twelve seconds of calibration with one move, and three of navigation.
-const EPOCHS: u64 = 3000;
-const SCENARIO: &str = "schema = 1\n\
+pub(super) const EPOCHS: u64 = 3000;
+pub(super) const SCENARIO: &str = "schema = 1\n\
     [procedure.calibration]\nduration = \"12 s\"\n\
     stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]\n\
     [procedure.navigation]\nduration = \"3 s\"\n[record]\nsamples = \"full\"\n";

@@ -55,13 +55,31 @@ fn recording(run: &Path) -> Kept {
 const LOCKSTEP: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenarios/lockstep.toml");
 
+/// Text of the reference scenario with half of its time: the same stops, moves and modes. The rig
+/// `fmu-bits` has all of it.
+fn five_minutes() -> String {
+    let text = std::fs::read_to_string(LOCKSTEP).unwrap();
+    text.replace("8 min", "4 min").replace("2 min", "1 min")
+}
+
+/// Path of the scenario, which is written once.
+fn lockstep() -> &'static str {
+    static FILE: OnceLock<(tempfile::TempDir, String)> = OnceLock::new();
+    let written = || {
+        let folder = tempfile::tempdir().unwrap();
+        let path = file(folder.path(), "lockstep.toml", &five_minutes());
+        (folder, path)
+    };
+    &FILE.get_or_init(written).1
+}
+
 /// Returns the stream hash of the reference run.
 fn in_process() -> &'static (String, Value) {
     static HASH: OnceLock<(String, Value)> = OnceLock::new();
     HASH.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("run");
-        ends(&["run", LOCKSTEP, "--out", out.to_str().unwrap()], 0);
+        ends(&["run", lockstep(), "--out", out.to_str().unwrap()], 0);
         let summary = json(&out.join("summary.json"));
         (summary["stream_hash"].as_str().unwrap().to_owned(), summary)
     })
@@ -74,10 +92,10 @@ fn our_calibrator_gives_the_same_bits_in_both_standards_and_both_processes() {
         for process in ["own", "shared"] {
             let fmu = own(name);
             let arguments =
-                ["fmu", "run", &fmu, "--source", LOCKSTEP, "--process", process, "--json"];
+                ["fmu", "run", &fmu, "--source", lockstep(), "--process", process, "--json"];
             let (text, _) = ends(&arguments, 0);
             let told: Value = serde_json::from_str(&text).unwrap();
-            assert_eq!(told["samples"], 120_000);
+            assert_eq!(told["samples"], 60_000);
             assert_eq!(told["ended"], "done");
             assert_eq!(told["stream_hash"], expected.as_str(), "{name} {process}");
         }
@@ -97,7 +115,7 @@ fn both_ends_as_fmus_give_the_same_run_and_the_manifest_names_them() {
             (format!("fmu:{source_fmu}"), format!("fmu:{endpoint_fmu}"));
         let shared = ["--set", "source.fmu.process=shared"];
         let arguments =
-            ["run", LOCKSTEP, "--out", run, "--source", &source_uri, "--endpoint", &endpoint_uri];
+            ["run", lockstep(), "--out", run, "--source", &source_uri, "--endpoint", &endpoint_uri];
         ends(&[&arguments[..], &shared].concat(), 0);
         let found = json(&out.join("summary.json"));
         assert_eq!(found["stream_hash"], expected.as_str());
@@ -135,7 +153,7 @@ fn both_ends_as_fmus_give_the_same_run_and_the_manifest_names_them() {
 #[test]
 fn faults_between_fmus_do_what_they_do_in_process() {
     let folder = tempfile::tempdir().unwrap();
-    let text = std::fs::read_to_string(LOCKSTEP).unwrap().replace("8 min", "4 min");
+    let text = five_minutes();
     let faults = "[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\nchannels = \"gyro x\"\n\
         amplitude = \"1000 deg/h\"\ntrigger = { at = \"100 s\" }\nduration = \"20 samples\"\n\
         [[faults]]\nid = \"out-1\"\nkind = \"dropout\"\ntrigger = { at = \"120 s\" }\n\

@@ -7,6 +7,7 @@ mod common;
 
 mod allan;
 mod architecture;
+mod branches;
 mod campaign;
 mod campaign_report;
 mod campaign_scale;
@@ -24,6 +25,7 @@ mod core_faults;
 mod core_hardened;
 mod core_spikes;
 mod covariance_golden;
+mod crate_targets;
 #[cfg(feature = "dashboard")]
 mod dashboard;
 #[cfg(feature = "dashboard")]

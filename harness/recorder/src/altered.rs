@@ -20,7 +20,7 @@ pub struct AlteredStreams {
 }
 
 /// Both hashes so far.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Streams {
     first_sample: u64,
     clean: StreamHash,

@@ -10,7 +10,7 @@ use octant_sample::{Innovation, NavigationCovariance, Truth};
 ///
 /// A position is the number of earlier frames in this block: parts of frame `i` have position `i`
 /// ([`Block::aiding`], [`Block::altered`]), and parts added after it have `i + 1`.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     /// Samples that reached the core; for a lost epoch, the one that the source delivered.
     pub(super) samples: Vec<Sample>,

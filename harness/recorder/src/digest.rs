@@ -7,7 +7,7 @@ use super::stream_hash::StreamHash;
 use super::summary::RecorderSummary;
 
 /// Hashes and counts of the epochs so far.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Digest {
     pub(super) hash: StreamHash,
     /// True if the source's stream is compared with the core's.

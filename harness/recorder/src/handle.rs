@@ -63,9 +63,22 @@ impl Worker {
     }
 }
 
+/// What goes to the recorder's thread.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "almost all are blocks, and a box would be an allocation for each"
+)]
+#[derive(Debug)]
+enum ForThread {
+    /// A full block.
+    Block(Block),
+    /// The wish for the hashes so far.
+    Digest(SyncSender<Digest>),
+}
+
 #[derive(Debug)]
 struct Thread {
-    full: SyncSender<Block>,
+    full: SyncSender<ForThread>,
     empty: Receiver<Block>,
     /// Set by the thread when it asks for the unfinished block.
     wanted: Arc<AtomicBool>,
@@ -132,6 +145,31 @@ impl Recorder {
             parameters_due: false,
             worker: None,
         }
+    }
+
+    /// Makes a second recorder that goes on from here on its own. It writes no file: of a recorder that
+    /// writes one it has the hashes.
+    ///
+    /// # Errors
+    /// If the recorder failed.
+    pub fn branch(&mut self) -> Result<Self, RecorderError> {
+        let digest = match &self.worker {
+            None => None,
+            Some(Worker::Here(digest)) => Some(digest.clone()),
+            Some(Worker::Thread(_)) => Some(Box::new(self.digest()?)),
+        };
+        let worker = digest.map(Worker::Here);
+        Ok(Self { block: self.block.clone(), worker, writes: false, ..*self })
+    }
+
+    /// Asks the recorder's thread for its hashes up to the unfinished block.
+    fn digest(&mut self) -> Result<Digest, RecorderError> {
+        let (back, digest) = sync_channel(1);
+        if let Some(Worker::Thread(thread)) = &self.worker {
+            // A thread that is gone drops the other end.
+            let _ = thread.full.send(ForThread::Digest(back));
+        }
+        digest.recv().map_err(|_| self.failure())
     }
 
     /// Makes a recorder with an empty block, and without a worker for full ones.
@@ -331,7 +369,8 @@ impl Recorder {
                 thread.wanted.store(false, Ordering::Relaxed);
                 block.is_empty()
                     || thread.empty.recv().ok().is_some_and(|empty| {
-                        thread.full.send(std::mem::replace(block, empty)).is_ok()
+                        let full = std::mem::replace(block, empty);
+                        thread.full.send(ForThread::Block(full)).is_ok()
                     })
             }
         };
@@ -385,7 +424,7 @@ impl Drop for Recorder {
 fn work<W: Write>(
     mut writer: RecordingWriter<W>,
     sync: Option<File>,
-    full: &Receiver<Block>,
+    full: &Receiver<ForThread>,
     empty: &SyncSender<Block>,
     wanted: &AtomicBool,
     trouble: &RecorderTrouble,
@@ -396,7 +435,11 @@ fn work<W: Write>(
         let received = full.recv_timeout(FLUSH_INTERVAL);
         trouble.stand_still();
         match received {
-            Ok(mut block) => {
+            Ok(ForThread::Digest(back)) => {
+                // Whoever asked may be gone.
+                let _ = back.send(digest.clone());
+            }
+            Ok(ForThread::Block(mut block)) => {
                 digest.take(&block);
                 writer.block(&block)?;
                 block.clear();

@@ -18,7 +18,7 @@ const PIECE_BYTES: usize = 64 * 1024;
 const GATHER_BYTES: usize = PIECE_BYTES + 1024;
 
 /// Hash of a stream so far.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct StreamHash {
     hasher: blake3::Hasher,
     gathered: Vec<u8>,

@@ -72,7 +72,7 @@ fn channels([[x, y, z], [u, v, w]]: &Increments) -> [f64; 6] {
 }
 
 /// Finds the stretches at rest, and keeps their Allan variance.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct AtRest {
     period_ns: u64,
     base_moves: bool,
@@ -99,7 +99,7 @@ pub struct AtRest {
 }
 
 /// Blocks of samples, one after the other, around a ring.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Ring {
     samples: Vec<Increments>,
     sums: Vec<[f64; 6]>,

@@ -18,7 +18,7 @@ const DWELL_PART: f64 = 0.5;
 const ALIGNMENT_SLACK_S: f64 = 60.0;
 
 /// Planned work of a method of a scenario.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlannedWork {
     /// Planned amounts.
     pub work: Work,
@@ -32,7 +32,7 @@ pub struct PlannedWork {
     tells: Option<Tells>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct PlannedStop {
     target: GimbalAngles,
     dwell_ns: u64,
@@ -267,13 +267,14 @@ impl Done {
         let next = self.plan.stops.get(self.stop + 1);
         if near(target, stop.target) {
             self.held_ns += elapsed_ns;
-            let held = self.held_ns as f64 >= stop.dwell_ns as f64 * DWELL_PART;
-            if held {
-                self.reached = self.reached.max(self.stop as u64 + 1);
+            let reached = self.stop as u64 + 1;
+            if self.reached < reached && self.held_ns as f64 >= stop.dwell_ns as f64 * DWELL_PART {
+                self.reached = reached;
             }
             // The last stop of a pass can be the first of the next one.
-            let again = next.is_some_and(|next| near(next.target, stop.target));
-            if again && self.held_ns >= stop.dwell_ns {
+            if self.held_ns >= stop.dwell_ns
+                && next.is_some_and(|next| near(next.target, stop.target))
+            {
                 (self.stop, self.held_ns) = (self.stop + 1, 0);
             }
         } else if let Some(next) = next

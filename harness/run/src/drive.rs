@@ -1,6 +1,6 @@
 //! The loop: source → faults → endpoint → recorder and watcher, one step of the source at a time.
 //!
-//! `drive` is the only loop over samples. Its type parameters are the choices, so that each
+//! `Steps::step` is the only body of a loop over samples. Its type parameters are the choices, so that each
 //! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
 //! between them (nothing, faults, events of a recording); `Keeps` for the results and the pace: in
 //! time ([`in_time`](super::in_time)), by the clock ([`realtime`](super::realtime)), compared with a recording
@@ -47,16 +47,11 @@ where
     K: Keeps<S, E>,
 {
     let total = source.samples_total().filter(|_| F::INJECTS || K::PACED);
-    let mut steps = Steps::new(total);
-    loop {
-        if let Some(ended) = steps.step(source, faults, endpoint, keeper)? {
-            return Ok(ended);
-        }
-    }
+    Steps::new(total).go_on(source, faults, endpoint, keeper)
 }
 
 /// State of the loop between two steps.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Steps {
     epoch: Epoch,
     output: Output,
@@ -91,6 +86,27 @@ impl Steps {
     /// Number of steps so far.
     pub(super) fn number(&self) -> u64 {
         self.number
+    }
+
+    /// Takes steps until one of them ends the run.
+    pub(super) fn go_on<S, F, E, K>(
+        &mut self,
+        source: &mut S,
+        faults: &mut F,
+        endpoint: &mut E,
+        keeper: &mut K,
+    ) -> Result<Ended, RunError>
+    where
+        S: Source + ?Sized,
+        F: Injects<S, E>,
+        E: Endpoint + ?Sized,
+        K: Keeps<S, E>,
+    {
+        loop {
+            if let Some(ended) = self.step(source, faults, endpoint, keeper)? {
+                return Ok(ended);
+            }
+        }
     }
 
     /// Takes one step of the source; returns the end of the run, where this was the last one.

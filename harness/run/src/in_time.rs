@@ -13,7 +13,7 @@ use octant_sample::Output;
 use octant_source::{Epoch, Source};
 
 /// Epochs between two checks of the control: about a millisecond of wall time.
-const CONTROL_EPOCHS: u64 = 8192;
+pub(super) const CONTROL_EPOCHS: u64 = 8192;
 
 /// Keeps the results of a run in simulated time, which waits for nothing.
 #[derive(Debug)]

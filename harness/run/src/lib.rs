@@ -8,11 +8,14 @@
 //! scores;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
-//! [`stepped`] runs one method a step at a time, with parts that others made.
+//! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
+//! share their beginning, [`many`] judges them; `with_twin` shares that of a
+//! recorded run and its twin, [`stem`] keeps one for runs with some of the faults.
 
 mod aligned;
 pub mod assemble;
 pub mod at_rest;
+pub mod branches;
 pub mod done;
 pub mod drive;
 mod ended;
@@ -24,6 +27,7 @@ pub mod follow;
 pub mod host;
 pub mod in_time;
 mod interfere;
+pub mod many;
 mod measured;
 pub mod method;
 pub mod minimise;
@@ -37,10 +41,12 @@ pub mod replayed;
 mod rotation;
 pub mod scores_text;
 mod solution;
+pub mod stem;
 pub mod stepped;
 pub mod twin;
 pub mod unit;
 pub mod watch;
+mod with_twin;
 
 pub use assemble::{Run, assemble};
 pub use drive::{Ended, Line, RunError};

@@ -105,7 +105,11 @@ pub fn run_method(
     recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
-    let mut run = run_as_far_as_it_goes(scenario, method, seed, recording, control)?;
+    whole(run_as_far_as_it_goes(scenario, method, seed, recording, control)?)
+}
+
+/// Takes a run that broke in the middle for an error.
+pub(super) fn whole(mut run: MethodRun) -> Result<MethodRun, MethodError> {
     match run.broken.take() {
         None => Ok(run),
         Some(error) => Err(error.into()),

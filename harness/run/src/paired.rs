@@ -4,9 +4,12 @@ use super::drive::Ended;
 use super::method::{MethodError, StreamKeeping, run_method};
 use octant_base::control::Control;
 use octant_base::pool::{in_order, processors};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::{Method, MotionSpec, Scenario};
 use octant_score::compare::{Maxima, MethodComparison, PairedRun, compare};
 use octant_score::floor::Floor;
+use octant_score::summary::CalibrationScore;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// Members of the ensemble from which the floor of the random walk is computed.
@@ -40,6 +43,19 @@ pub enum PairedError {
     Cancelled,
 }
 
+/// Result of one side with one seed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SideResult {
+    /// Largest errors; all unknown where the calibration was refused.
+    pub maxima: Maxima,
+    /// Reason of a refused calibration.
+    pub refused: Option<String>,
+    /// Errors of the g-dependent biases divided by their σ, in the order of
+    /// [`octant_sample::parameters::NAMES`]; empty where one isn't estimated, or has no known truth.
+    pub g_normalized: Vec<f64>,
+}
+
 /// Runs every seed with both sides on all processors, and compares. The order of the runs has no
 /// effect on the result.
 ///
@@ -54,23 +70,16 @@ pub fn paired(
     controls: &[Control],
 ) -> Result<MethodComparison, PairedError> {
     let scenario = &second.scenario;
-    if [first, second].iter().any(|s| !s.scenario.source.has_plant()) {
-        return Err(PairedError::NotSimulated);
-    }
-    // Reported before hours of simulation, not after.
-    if [first, second].iter().any(|side| navigated_h(&side.scenario) < MARKS_H[0]) {
-        return Err(PairedError::NoNavigation);
-    }
-    let results = ensemble([first, second], seeds, controls)?;
+    let results = paired_runs([first, second], seeds, processors(), controls)?;
     let runs: Vec<PairedRun> = seeds
         .iter()
-        .zip(results.chunks_exact(2))
-        .map(|(seed, pair)| PairedRun {
+        .zip(results)
+        .map(|(seed, [first, second])| PairedRun {
             seed: *seed,
-            first: pair[0].maxima,
-            second: pair[1].maxima,
-            first_refused: pair[0].refused.clone(),
-            second_refused: pair[1].refused.clone(),
+            first: first.maxima,
+            second: second.maxima,
+            first_refused: first.refused,
+            second_refused: second.refused,
         })
         .collect();
     let (heading_rad, lengths) = (
@@ -106,28 +115,40 @@ fn navigated_h(scenario: &Scenario) -> f64 {
     plan.duration_s.map_or(f64::INFINITY, |duration_s| duration_s / 3600.0)
 }
 
-fn ensemble(
+/// Runs every seed with both sides on `jobs` threads, on the same instruments with the same noise. Neither
+/// the number of threads nor the order of the runs has an effect on the results.
+///
+/// `controls` has one entry for each run: two per seed.
+///
+/// # Errors
+/// If a run gives no result.
+pub fn paired_runs(
     sides: [&MethodSide; 2],
     seeds: &[u64],
+    jobs: usize,
     controls: &[Control],
-) -> Result<Vec<One>, PairedError> {
+) -> Result<Vec<[SideResult; 2]>, PairedError> {
+    if sides.iter().any(|side| !side.scenario.source.has_plant()) {
+        return Err(PairedError::NotSimulated);
+    }
+    // Reported before hours of simulation, not after.
+    if sides.iter().any(|side| navigated_h(&side.scenario) < MARKS_H[0]) {
+        return Err(PairedError::NoNavigation);
+    }
     // Without one of them nothing can be concluded: the first failure ends the others.
     let work = |task: usize| {
         let control = controls.get(task).ok_or(PairedError::Cancelled)?;
         one(sides[task % 2], seeds[task / 2], control).map(Some)
     };
-    let maxima = in_order(processors(), 2 * seeds.len(), || false, work)?;
-    Ok(maxima.into_iter().flatten().collect())
+    let mut results = in_order(jobs, 2 * seeds.len(), || false, work)?.into_iter().flatten();
+    let mut pairs = Vec::with_capacity(seeds.len());
+    while let (Some(first), Some(second)) = (results.next(), results.next()) {
+        pairs.push([first, second]);
+    }
+    Ok(pairs)
 }
 
-/// Result of one method with one seed.
-#[derive(Clone, Debug)]
-struct One {
-    maxima: Maxima,
-    refused: Option<String>,
-}
-
-fn one(side: &MethodSide, seed: u64, control: &Control) -> Result<One, PairedError> {
+fn one(side: &MethodSide, seed: u64, control: &Control) -> Result<SideResult, PairedError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(PairedError::Cancelled);
     }
@@ -136,10 +157,19 @@ fn one(side: &MethodSide, seed: u64, control: &Control) -> Result<One, PairedErr
     if run.ended == Ended::Cancelled {
         return Err(PairedError::Cancelled);
     }
+    let g = ParameterGroup::GDependent.range().map(|i| NAMES[i]);
+    let normalized = |calibration: &CalibrationScore| {
+        g.map(|name| calibration.parameters.get(name)?.normalized).collect::<Option<Vec<f64>>>()
+    };
+    let g_normalized = run.calibration.as_ref().and_then(normalized).unwrap_or_default();
     match (&run.navigation, run.calibration.and_then(|c| c.refused)) {
         // A refused calibration is a result: it has no errors, and counts as refused.
-        (_, Some(reason)) => Ok(One { maxima: Maxima::default(), refused: Some(reason) }),
-        (Some(navigation), None) => Ok(One { maxima: Maxima::of(navigation), refused: None }),
+        (_, Some(reason)) => {
+            Ok(SideResult { maxima: Maxima::default(), refused: Some(reason), g_normalized })
+        }
+        (Some(navigation), None) => {
+            Ok(SideResult { maxima: Maxima::of(navigation), refused: None, g_normalized })
+        }
         (None, None) => Err(PairedError::NoNavigation),
     }
 }

@@ -1,11 +1,15 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
+use super::branches::BranchPlan;
 use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
+use super::with_twin::run_with_twin;
 use octant_base::control::Control;
+use octant_base::pool::spawn;
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
 use std::sync::Arc;
+use std::thread::ScopedJoinHandle;
 
 /// Name of the recording of a method in the folder of its run.
 fn recording(method: Method) -> &'static str {
@@ -22,8 +26,8 @@ pub struct Prepared<'a> {
     /// Scenario of the twins.
     clean: Option<Scenario>,
     seed: u64,
-    /// Methods, each followed by its twin where there are twins.
-    tasks: Vec<(Method, bool)>,
+    methods: Vec<Method>,
+    /// Of each method, followed by that of its twin where there are twins.
     controls: Vec<Control>,
 }
 
@@ -59,14 +63,9 @@ impl<'a> Prepared<'a> {
             clean.realtime.by_clock = false;
             clean
         });
-        let tasks: Vec<(Method, bool)> = (methods.into_iter())
-            .flat_map(|method| {
-                let twin = clean.as_ref().map(|_| (method, true));
-                std::iter::once((method, false)).chain(twin)
-            })
-            .collect();
-        let controls = tasks.iter().map(|_| Control::default()).collect();
-        Ok(Self { scenario, clean, seed, tasks, controls })
+        let tasks = methods.len() * if clean.is_some() { 2 } else { 1 };
+        let controls = (0..tasks).map(|_| Control::default()).collect();
+        Ok(Self { scenario, clean, seed, methods, controls })
     }
 
     /// Progress of each method and twin, and the requests to end them.
@@ -78,55 +77,82 @@ impl<'a> Prepared<'a> {
     /// Epochs of all methods and twins together; `None` where the source doesn't know them.
     #[must_use]
     pub fn epochs(&self) -> Option<u64> {
-        self.scenario.samples().map(|samples| samples * self.tasks.len() as u64)
+        self.scenario.samples().map(|samples| samples * self.controls.len() as u64)
     }
 
-    /// Runs the methods and their twins, each on a thread of its own; by the clock, and with a device,
-    /// one after another. Recordings go to `folder`; a twin is kept with the run it belongs to.
+    /// Runs the methods and their twins at the same time; by the clock, and with a device, one after another.
+    /// A twin shares the beginning of its run where it can. Recordings go to `folder`; a twin is kept with
+    /// the run it belongs to.
     ///
     /// # Errors
     /// If a method gave no result; recordings stay.
     pub fn run(&self, folder: &Path) -> Result<Vec<MethodRun>, PreparedError> {
-        let one = |(method, is_twin): (Method, bool), control: &Control| {
-            let path = folder.join(recording(method));
-            let (scenario, recording) = match &self.clean {
-                Some(clean) if is_twin => (clean, StreamKeeping::Hash),
-                _ => (self.scenario, StreamKeeping::File(&path)),
-            };
-            run_as_far_as_it_goes(scenario, method, self.seed, recording, control)
-        };
         // By the clock, one method would delay another. A device can only do one run at a time.
         let alone = self.scenario.realtime.by_clock || self.scenario.endpoint.device().is_some();
-        let at_once = if alone { 1 } else { self.tasks.len() };
-        let mut results = Vec::with_capacity(self.tasks.len());
-        for (tasks, controls) in self.tasks.chunks(at_once).zip(self.controls.chunks(at_once)) {
+        let each = self.controls.len() / self.methods.len().max(1);
+        let one = |(method, controls): &(Method, &[Control])| {
+            let path = folder.join(recording(*method));
+            self.one(*method, &path, controls, alone)
+        };
+        let tasks: Vec<(Method, &[Control])> =
+            self.methods.iter().copied().zip(self.controls.chunks(each)).collect();
+        if alone {
+            return tasks.iter().map(one).collect();
+        }
+        std::thread::scope(|scope| {
+            let one = &one;
+            let threads: Vec<_> =
+                tasks.iter().map(|task| spawn(scope, move || one(task))).collect();
+            threads.into_iter().map(joined).collect()
+        })
+    }
+
+    /// Runs a method, and its twin.
+    fn one(
+        &self,
+        method: Method,
+        path: &Path,
+        controls: &[Control],
+        alone: bool,
+    ) -> Result<MethodRun, PreparedError> {
+        let (seed, recording) = (self.seed, StreamKeeping::File(path));
+        let plan = |scenario, control| BranchPlan { scenario, method, seed, control };
+        let run = |plan: BranchPlan<'_>, keeping| {
+            let BranchPlan { scenario, method, seed, control } = plan;
+            Ok(run_as_far_as_it_goes(scenario, method, seed, keeping, control)?)
+        };
+        let (control, clean) = match (controls, &self.clean) {
+            ([control, of_twin], Some(clean)) => (control, Some(plan(clean, of_twin))),
+            ([control, ..], _) => (control, None),
+            // Every method has one.
+            ([], _) => return Err(PreparedError::Panicked),
+        };
+        let this = plan(self.scenario, control);
+        let Some(clean) = clean else { return run(this, recording) };
+        if let Some(both) = run_with_twin(this, clean, recording) {
+            return Ok(both?);
+        }
+        let (faulted, twin) = if alone {
+            let faulted = run(this, recording);
+            (faulted, run(clean, StreamKeeping::Hash))
+        } else {
             std::thread::scope(|scope| {
-                let one = &one;
-                let threads: Vec<_> = (tasks.iter().zip(controls))
-                    .map(|(task, control)| scope.spawn(move || one(*task, control)))
-                    .collect();
-                results.extend(threads.into_iter().map(|thread| match thread.join() {
-                    Ok(result) => result.map_err(PreparedError::from),
-                    Err(_) => Err(PreparedError::Panicked),
-                }));
-            });
-        }
-        let runs = results.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let mut paired: Vec<MethodRun> = Vec::with_capacity(runs.len());
-        for (run, (_, is_twin)) in runs.into_iter().zip(&self.tasks) {
-            match paired.last_mut() {
-                Some(faulted) if *is_twin => faulted.twin = Some(Arc::new(run)),
-                _ => paired.push(run),
-            }
-        }
-        Ok(paired)
+                let twin = spawn(scope, || run(clean, StreamKeeping::Hash));
+                (run(this, recording), joined(twin))
+            })
+        };
+        Ok(MethodRun { twin: Some(Arc::new(twin?)), ..faulted? })
     }
 
     /// Runs that take place: methods and twins.
     #[must_use]
     pub fn tasks(&self) -> usize {
-        self.tasks.len()
+        self.controls.len()
     }
+}
+
+fn joined<T>(thread: ScopedJoinHandle<'_, Result<T, PreparedError>>) -> Result<T, PreparedError> {
+    thread.join().unwrap_or(Err(PreparedError::Panicked))
 }
 
 /// Sets up a method as a run does, and discards it again.

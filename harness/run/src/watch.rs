@@ -41,7 +41,7 @@ pub(crate) const TELLS_VELOCITY: &str = "tells_velocity";
 pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
 
 /// Observes one run.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Watcher {
     next_score_ns: u64,
     convergence_period_ns: u64,

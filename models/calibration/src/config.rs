@@ -6,7 +6,7 @@ use octant_sample::Parameters;
 use octant_sample::parameters::ParameterGroup;
 
 /// Configuration of the core.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct CoreConfig {
     /// Sample period, ns.
@@ -77,7 +77,7 @@ impl Alignment {
 }
 
 /// A calibration through a position sequence.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Calibration {
     /// The stops, their relative dwell times and the passes.
@@ -236,7 +236,7 @@ pub struct ExternalTurntable {
 }
 
 /// Navigation after the calibration: free inertial, height held.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct NavigationPlan {
     /// Duration, s; `None`: until the source ends.

@@ -153,7 +153,7 @@ impl Context<'_> {
 }
 
 /// Acts on samples and aiding in place.
-pub trait SampleRule: Debug + Send + CopySampleRule + State {
+pub trait SampleRule: Debug + Send + Sync + CopySampleRule + State {
     /// Acts on one epoch.
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>);
 
@@ -173,7 +173,7 @@ pub trait SampleRule: Debug + Send + CopySampleRule + State {
 }
 
 /// Acts on the delivery of epochs.
-pub trait DeliveryRule: Debug + Send + CopyDeliveryRule + State {
+pub trait DeliveryRule: Debug + Send + Sync + CopyDeliveryRule + State {
     /// Handles one step of the source: takes the epochs that come in (one, or none or several if
     /// faults before this one have delayed some), and puts those to be delivered now into `out`, in
     /// order. `active` is false in steps after the fault's end, in which a rule is called as long
@@ -194,26 +194,26 @@ pub trait DeliveryRule: Debug + Send + CopyDeliveryRule + State {
 }
 
 /// Acts on the set point that the turntable gets.
-pub trait CommandRule: Debug + Send + CopyCommandRule + State {
+pub trait CommandRule: Debug + Send + Sync + CopyCommandRule + State {
     /// Acts on the set point of one epoch.
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>);
 }
 
 /// Acts inside the plant.
-pub trait PlantRule: Debug + Send + CopyPlantRule + State {
+pub trait PlantRule: Debug + Send + Sync + CopyPlantRule + State {
     /// Returns the disturbance of the plant from now on; `motor` is the present state of the
     /// turntable.
     fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
 }
 
 /// Acts on the wire to the unit under test.
-pub trait WireRule: Debug + Send + CopyWireRule + State {
+pub trait WireRule: Debug + Send + Sync + CopyWireRule + State {
     /// Returns the fault of the wire from now on, until the fault ends.
     fn begin(&mut self, now: &Context<'_>) -> WireFault;
 }
 
 /// Acts on the unit under test.
-pub trait UnitRule: Debug + Send + CopyUnitRule + State {
+pub trait UnitRule: Debug + Send + Sync + CopyUnitRule + State {
     /// Returns the event of the unit at this epoch, to happen before the unit gets the epoch;
     /// `None`: no event. Power is reported by [`Self::cuts_power`] instead.
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;

@@ -15,7 +15,7 @@ use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
 use crate::rule::{FaultRule, SetPoints, UnitEvent};
 use crate::setup::{FaultBuildError, Setup};
-use crate::trigger::{Clock, Scene, Schedule, Trigger};
+use crate::trigger::{Clock, News, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
 use alloc::string::String;
@@ -162,9 +162,6 @@ impl Station {
             let stage = Self::stage(spec, specs, &stages, setup);
             stages.push(stage.map_err(|error| (spec.id.clone(), error))?);
         }
-        let conditions = stages.iter().any(|stage| stage.clock.has_condition());
-        let truth = stages.iter().any(|stage| stage.clock.needs_truth());
-        let commands = stages.iter().any(|stage| matches!(stage.rule, FaultRule::Command(_)));
         let burst = burst(&stages)?;
         let mut station = Self {
             stages,
@@ -175,10 +172,10 @@ impl Station {
             seen: 0,
             scene: None,
             busy: false,
-            conditions,
-            truth,
+            conditions: false,
+            truth: false,
             remember: u64::MAX,
-            commands,
+            commands: false,
             set_points: SetPoints::default(),
             last: Epoch::default(),
             flight: Vec::with_capacity(burst),
@@ -188,8 +185,27 @@ impl Station {
             events: Vec::with_capacity(specs.len() + 1),
             without_power: false,
         };
-        station.plan();
+        station.survey();
         Ok(station)
+    }
+
+    /// Makes the station with some of its faults, selected by their numbers from 0, at the same epoch. No fault has set in
+    /// so far.
+    #[must_use]
+    pub fn with_only(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        let mut numbers = 0..;
+        some.stages.retain(|_| numbers.next().is_some_and(&keep));
+        some.survey();
+        some
+    }
+
+    /// Notes what the faults of the station need.
+    fn survey(&mut self) {
+        self.conditions = self.stages.iter().any(|stage| stage.clock.has_condition());
+        self.truth = self.stages.iter().any(|stage| stage.clock.needs_truth());
+        self.commands = self.stages.iter().any(|stage| matches!(stage.rule, FaultRule::Command(_)));
+        self.plan();
     }
 
     fn stage(
@@ -257,10 +273,28 @@ impl Station {
     /// unit under test.
     #[inline]
     pub fn begin(&mut self, output: &Output, world: &mut dyn World) {
-        self.epoch += 1;
+        // 64 bits of epochs don't overflow, and a state with so many isn't loaded.
+        self.epoch = self.epoch.wrapping_add(1);
         if self.epoch >= self.wake || self.busy || Scene::of(output).packed() != self.seen {
             self.look(output, world);
         }
+    }
+
+    /// Returns whether a fault sets in at the next epoch, after this output of the core. What the station has
+    /// seen so far has to be untouched by faults; a fault that is fired by hand isn't known in advance.
+    ///
+    /// A run with faults is its twin up to the epoch before: the station changes nothing until then.
+    #[inline]
+    #[must_use]
+    pub fn sets_in_next(&self, output: &Output, truth: impl FnOnce() -> Option<Truth>) -> bool {
+        let epoch = self.epoch + 1;
+        if epoch < self.wake && !self.busy && Scene::of(output).packed() == self.seen {
+            return false;
+        }
+        let truth = if self.truth { truth() } else { None };
+        let (before, scene) = (self.scene, Scene::of(output));
+        let news = News { epoch, before, scene, output, truth: truth.as_ref() };
+        self.stages.iter().any(|stage| stage.clock.sets_in(&news))
     }
 
     /// Lets faults act on the set point of the present epoch.

@@ -366,6 +366,19 @@ impl Clock {
         }
     }
 
+    /// Returns whether the fault sets in with this news, and changes nothing.
+    pub(crate) fn sets_in(&self, news: &News<'_>) -> bool {
+        // These two wait for what another fault or a person does.
+        let waits_for_others =
+            matches!(self.schedule.trigger, Trigger::After { .. } | Trigger::Manual);
+        if waits_for_others && self.state == State::Waiting {
+            return false;
+        }
+        let mut next = self.clone();
+        next.look(news);
+        next.tick(news.epoch).began
+    }
+
     /// Takes note whether the condition held that the caller evaluates.
     pub(crate) fn look_outside(&mut self, epoch: u64, holds: bool) {
         let held = core::mem::replace(&mut self.held, holds);

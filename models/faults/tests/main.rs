@@ -14,4 +14,5 @@ mod kinds_ring_laser;
 mod kinds_time;
 mod kinds_turntable_command;
 mod kinds_unit;
+mod kinds_wire;
 mod station;

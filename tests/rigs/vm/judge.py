@@ -42,12 +42,10 @@ for line in said:
     if line.startswith("run "):
         _, name, status, found, start, end = line.split()
         seen.add(name)
-        samples = 120_000 if scenario_of.get(name) else 10_000
-        seconds = float(end) - float(start)
         check(
             f"{name}: status {status}",
             status == "0" and found == expected[scenario_of.get(name, "short")],
-            f"{found[:16]}, {samples / seconds:.0f} samples/s",
+            f"{found[:16]}, {float(end) - float(start):.0f} s",
         )
     elif line.startswith("failed"):
         check(line, False)

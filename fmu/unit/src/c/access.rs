@@ -34,6 +34,12 @@ impl<V> Arrays<V> {
         Ok(())
     }
 
+    /// End of the values of a variable that begin at `first`; `None`: there are fewer.
+    #[inline]
+    fn end(&self, first: usize, length: usize) -> Option<usize> {
+        first.checked_add(length).filter(|end| *end <= self.value_count)
+    }
+
     #[inline]
     fn reference(&self, i: usize) -> usize {
         // SAFETY: `check` has seen that the array is there; the importer vouches for its length.
@@ -41,13 +47,25 @@ impl<V> Arrays<V> {
     }
 }
 
-impl<V: Copy> Arrays<*mut V> {
-    /// Writes an element below the length of the importer's array.
+impl<V: Copy> Arrays<*const V> {
+    /// Reads value `k` of the variable whose values begin at `first`, below the length of the
+    /// importer's array.
     #[inline]
-    fn put(&self, i: usize, value: V) {
+    fn value(&self, first: usize, k: usize) -> V {
         // SAFETY: `check` has seen that the array is there; the importer vouches for its length,
         // and the caller for the place.
-        unsafe { self.values.add(i).write_unaligned(value) };
+        unsafe { self.values.add(first).add(k).read_unaligned() }
+    }
+}
+
+impl<V: Copy> Arrays<*mut V> {
+    /// Writes value `k` of the variable whose values begin at `first`, below the length of the
+    /// importer's array.
+    #[inline]
+    fn put(&self, first: usize, k: usize, value: V) {
+        // SAFETY: `check` has seen that the array is there; the importer vouches for its length,
+        // and the caller for the place.
+        unsafe { self.values.add(first).add(k).write_unaligned(value) };
     }
 }
 
@@ -75,7 +93,7 @@ impl Instance {
                 let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
                     return Err(self.unknown::<T>(reference));
                 };
-                arrays.put(i, T::get(cells[reference], slot.cell));
+                arrays.put(i, 0, T::get(cells[reference], slot.cell));
             }
             return Ok(());
         }
@@ -86,24 +104,24 @@ impl Instance {
                 return Err(self.unknown::<T>(reference));
             };
             let length = usize::from(slot.elements);
-            if length > arrays.value_count - next {
+            let Some(end) = arrays.end(next, length) else {
                 return Err(self.wrong_length(&arrays));
-            }
+            };
             // Most variables have one element or three: these avoid the preparations of a loop.
             match &cells[reference..reference + length] {
-                [bits] => arrays.put(next, T::get(*bits, slot.cell)),
+                [bits] => arrays.put(next, 0, T::get(*bits, slot.cell)),
                 [x, y, z] => {
-                    arrays.put(next, T::get(*x, slot.cell));
-                    arrays.put(next + 1, T::get(*y, slot.cell));
-                    arrays.put(next + 2, T::get(*z, slot.cell));
+                    arrays.put(next, 0, T::get(*x, slot.cell));
+                    arrays.put(next, 1, T::get(*y, slot.cell));
+                    arrays.put(next, 2, T::get(*z, slot.cell));
                 }
-                bits => {
-                    for (k, bits) in bits.iter().enumerate() {
-                        arrays.put(next + k, T::get(*bits, slot.cell));
+                all => {
+                    for (k, bits) in all.iter().enumerate() {
+                        arrays.put(next, k, T::get(*bits, slot.cell));
                     }
                 }
             }
-            next += length;
+            next = end;
         }
         if next == arrays.value_count { Ok(()) } else { Err(self.wrong_length(&arrays)) }
     }
@@ -119,8 +137,6 @@ impl Instance {
     ) -> Result<(), Refusal> {
         self.require(mode::SET)?;
         arrays.check(arrays.values.is_null(), self.slots().len())?;
-        // SAFETY: it is asked for elements below the length of the importer's array.
-        let value = |i: usize| unsafe { arrays.values.add(i).read_unaligned() };
         let before = matches!(self.mode(), Mode::Instantiated | Mode::Initialization);
         let slots = self.slots();
         let mut next = 0;
@@ -129,21 +145,25 @@ impl Instance {
             let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
                 return Err(self.unknown::<T>(reference));
             };
-            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
-            if ARRAYS && length > arrays.value_count - next {
-                return Err(self.wrong_length(&arrays));
+            // Without arrays there is one value for each reference.
+            let (first, length) = if ARRAYS { (next, usize::from(slot.elements)) } else { (i, 1) };
+            if ARRAYS {
+                let Some(end) = arrays.end(first, length) else {
+                    return Err(self.wrong_length(&arrays));
+                };
+                next = end;
             }
             if !(slot.settable == Settable::Always || before && slot.settable == Settable::Fixed) {
                 return Err(self.not_settable(reference));
             }
             for k in 0..length {
-                if !T::fits(value(next), slot) {
-                    return Err(self.out_of_range(reference + k, value(next)));
+                let value = arrays.value(first, k);
+                if !T::fits(value, slot) {
+                    return Err(self.out_of_range(reference + k, value));
                 }
-                next += 1;
             }
         }
-        if next != arrays.value_count {
+        if ARRAYS && next != arrays.value_count {
             return Err(self.wrong_length(&arrays));
         }
         let (slots, cells) = self.slots_and_cells();
@@ -152,15 +172,25 @@ impl Instance {
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
             let slot = &slots[reference];
-            if !ARRAYS || slot.elements == 1 {
-                cells[reference] = T::set(value(next), slot.cell);
-                next += 1;
+            if !ARRAYS {
+                cells[reference] = T::set(arrays.value(i, 0), slot.cell);
                 continue;
             }
-            for bits in &mut cells[reference..reference + usize::from(slot.elements)] {
-                *bits = T::set(value(next), slot.cell);
-                next += 1;
+            let length = usize::from(slot.elements);
+            match &mut cells[reference..reference + length] {
+                [bits] => *bits = T::set(arrays.value(next, 0), slot.cell),
+                [x, y, z] => {
+                    *x = T::set(arrays.value(next, 0), slot.cell);
+                    *y = T::set(arrays.value(next, 1), slot.cell);
+                    *z = T::set(arrays.value(next, 2), slot.cell);
+                }
+                all => {
+                    for (k, bits) in all.iter_mut().enumerate() {
+                        *bits = T::set(arrays.value(next, k), slot.cell);
+                    }
+                }
             }
+            next += length;
         }
         self.values_changed();
         Ok(())

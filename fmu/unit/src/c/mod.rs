@@ -15,6 +15,7 @@
 //! | `step` | communication steps |
 //! | `state`, `snapshots` | FMU states, stored and as bytes |
 //! | `log` | messages to the importer |
+//! | `room` | room on the stack, where an importer's thread has little |
 //! | `models`, `token` | the models, and the link between a description and its model |
 //!
 //! Not supported: model exchange and scheduled execution (their functions are exported, and
@@ -152,6 +153,7 @@ mod log;
 mod mode;
 mod models;
 mod registry;
+mod room;
 mod run;
 mod snapshots;
 mod state;

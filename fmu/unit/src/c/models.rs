@@ -2,6 +2,7 @@
 
 use super::layout::Layout;
 use super::mode::ServedStandard;
+use super::room::with_room;
 use super::token::token;
 use crate::calibrator::Calibrator;
 use crate::calibrator_can::CalibratorCan;
@@ -41,7 +42,7 @@ impl<C: ModelComponent> AnyComponent for Boxed<C> {
     }
 
     fn terminate(&mut self, values: &mut CellValues) {
-        self.0.terminate(values);
+        with_room(|| self.0.terminate(values));
     }
 
     fn remark(&mut self) -> Option<String> {
@@ -57,7 +58,7 @@ impl<C: ModelComponent> AnyComponent for Boxed<C> {
     }
 
     fn boxed_clone(&self) -> Box<dyn AnyComponent> {
-        Box::new(Self(self.0.clone()))
+        with_room(|| Box::new(Self(self.0.clone())))
     }
 }
 
@@ -82,8 +83,8 @@ impl Maker {
     pub(super) const fn of<C: ModelComponent>() -> Self {
         Self {
             model: C::MODEL,
-            initialize: |values| boxed(C::initialize(values)),
-            load: |bytes, values| boxed(C::load(bytes, values)),
+            initialize: |values| with_room(|| boxed(C::initialize(values))),
+            load: |bytes, values| with_room(|| boxed(C::load(bytes, values))),
             layout: OnceLock::new(),
             tokens: OnceLock::new(),
         }

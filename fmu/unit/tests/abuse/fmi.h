@@ -204,5 +204,6 @@ void abuse_states(void);
 void abuse_randomly(unsigned calls);
 void abuse_threads(unsigned steps);
 void abuse_bus(unsigned calls);
+void abuse_stack(void);
 
 #endif

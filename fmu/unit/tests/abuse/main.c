@@ -233,6 +233,7 @@ int main(int count, char **arguments) {
     abuse_randomly(calls);
     abuse_threads(calls / 400);
     abuse_bus(calls);
+    abuse_stack();
     printf("%d answers were wrong\n", failures);
     return failures != 0;
 }

@@ -75,8 +75,7 @@ impl Framing for NovAtel {
         if bytes.first() == Some(&ascii::BEGIN) {
             return ascii::extent(bytes, MAX_BYTES);
         }
-        let known = bytes.len().min(3);
-        if bytes[..known] != SYNC[..known] {
+        if bytes.iter().zip(SYNC).any(|(byte, sync)| *byte != sync) {
             return Extent::None;
         }
         match bytes.get(3) {
@@ -89,7 +88,10 @@ impl Framing for NovAtel {
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
         let raw =
             if frame.first() == Some(&ascii::BEGIN) { ascii::read(frame)? } else { binary(frame)? };
-        raw.map(|raw| self.reading(&raw)).transpose()
+        match raw {
+            Some(raw) => self.reading(&raw).map(Some),
+            None => Ok(None),
+        }
     }
 }
 
@@ -126,6 +128,7 @@ fn xyz([z, minus_y, x]: [i32; 3]) -> [i32; 3] {
 }
 
 impl NovAtel {
+    #[inline]
     fn reading(&self, raw: &RawImu) -> Result<Reading, ReadingDefect> {
         let scale = self
             .scale

@@ -1,5 +1,6 @@
 //! A design as text: scores, the bound, and a table of the stops.
 
+use super::confirm_text;
 use super::outcome::Report;
 use octant_base::number::significant;
 use octant_design::measure::DesignMeasure;
@@ -21,6 +22,9 @@ pub(super) fn of(report: &Report, measure: DesignMeasure) -> String {
     }
     for design in &report.designs {
         out += &one(design, measure);
+    }
+    if let Some(confirmation) = &report.confirmation {
+        out += &confirm_text::of(confirmation, measure);
     }
     out
 }
@@ -58,7 +62,27 @@ fn one(design: &SequenceDesign, measure: DesignMeasure) -> String {
         figure(design.observed),
         ratio(design.observed)
     );
-    let _ = writeln!(out, "    {:24} {:>12}", "bound of all sequences", figure(bound));
+    if let Some(continuous) = &design.continuous {
+        for (what, all) in
+            [("calibration", &continuous.calibration), ("navigation", &continuous.navigation)]
+        {
+            let Some(best) = all.first() else { continue };
+            let _ = writeln!(
+                out,
+                "    {:24} {:>12} {:>14}   {}, {} deg/s",
+                format!("  continuous {what}"),
+                figure(best.score),
+                ratio(best.score),
+                best.scheme,
+                significant(best.rate_deg_per_s, 2)
+            );
+        }
+    }
+    let sampling = match design.bound.sampling > 0.0 {
+        true => format!("   ± {} by the number of draws", significant(design.bound.sampling, 2)),
+        false => String::new(),
+    };
+    let _ = writeln!(out, "    {:24} {:>12}{sampling}", "bound of all sequences", figure(bound));
     let _ = writeln!(
         out,
         "    {:>4} {:>12} {:>10} {:>10} {:>10} {:>14} {:>14}",

@@ -23,18 +23,17 @@ impl CanVersion {
     /// they don't fit, the longest length.
     #[must_use]
     pub const fn length_for(self, bytes: usize) -> usize {
-        const STEPS: [usize; 7] = [12, 16, 20, 24, 32, 48, 64];
-        if bytes <= 8 {
-            return bytes;
+        match (self, bytes) {
+            (_, ..=8) => bytes,
+            (Self::Classic, _) => 8,
+            (Self::Fd, ..=12) => 12,
+            (Self::Fd, ..=16) => 16,
+            (Self::Fd, ..=20) => 20,
+            (Self::Fd, ..=24) => 24,
+            (Self::Fd, ..=32) => 32,
+            (Self::Fd, ..=48) => 48,
+            (Self::Fd, _) => 64,
         }
-        let mut i = 0;
-        while i < STEPS.len() {
-            if bytes <= STEPS[i] && STEPS[i] <= self.room() {
-                return STEPS[i];
-            }
-            i += 1;
-        }
-        self.room()
     }
 }
 

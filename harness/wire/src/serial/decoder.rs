@@ -147,7 +147,9 @@ impl SerialDecoder {
             let (stretch, rest) = bytes.split_at(zero);
             *bytes = &rest[1..];
             self.counters.bytes += 1;
-            self.hold(stretch);
+            if !stretch.is_empty() {
+                self.hold(stretch);
+            }
             if self.length > 0 {
                 return Some(self.conclude());
             }

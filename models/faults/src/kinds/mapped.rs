@@ -33,7 +33,7 @@ impl<F> State for Mapped<F> {
     }
 }
 
-impl<F: Fn(usize, f64) -> f64 + Clone + Send + 'static> Mapped<F> {
+impl<F: Fn(usize, f64) -> f64 + Clone + Send + Sync + 'static> Mapped<F> {
     pub(crate) fn rule(channels: Channels, change: F) -> FaultRule {
         let (adder, onset) = (Adder::default(), Onset::default());
         FaultRule::Samples(Box::new(Self { channels, change, adder, onset }))
@@ -46,7 +46,7 @@ impl<F> fmt::Debug for Mapped<F> {
     }
 }
 
-impl<F: Fn(usize, f64) -> f64 + Clone + Send + 'static> SampleRule for Mapped<F> {
+impl<F: Fn(usize, f64) -> f64 + Clone + Send + Sync + 'static> SampleRule for Mapped<F> {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         if self.onset.is_new(now) {
             self.adder.clear();
