@@ -245,7 +245,7 @@ impl CaseResult {
     }
 }
 
-/// What a result with a summary says that it is the result of.
+/// Planned case that a result with a summary names as its own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResultClaim<'a> {
     pub(crate) schema: u32,
@@ -255,7 +255,7 @@ pub(crate) struct ResultClaim<'a> {
 }
 
 impl ResultClaim<'_> {
-    /// Checks that it is a planned case.
+    /// Checks that it names the planned case, with its seed and checks.
     pub(crate) fn check(
         &self,
         place: &ResultPlace,

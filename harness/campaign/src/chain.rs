@@ -59,8 +59,8 @@ fn wrong(table: &CaseTable, reason: String) -> TableError {
     TableError::Form { path: table.path.clone(), reason }
 }
 
-/// Checks that the rows of cases are those of their results: of each its place, and the number of its
-/// rows.
+/// Checks that the rows of cases are those of their results. `cases` holds the place of each in the
+/// plan, and the number of rows that its result gives.
 fn same(
     plan: &Plan,
     stored: &CampaignResults,

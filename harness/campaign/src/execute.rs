@@ -37,8 +37,8 @@ pub struct ExecuteOptions<'a> {
     pub cancel: &'a AtomicBool,
 }
 
-/// Runs the selected cases that have no result yet, and the repetitions. `tell` is called with each as it ends,
-/// in any order.
+/// Runs the selected cases that have no result yet, and the repetitions. `tell` is called with each
+/// as it ends, in any order.
 ///
 /// # Errors
 /// If the folder isn't of this plan, or the operating system refuses; stored results stay.

@@ -26,7 +26,7 @@ pub struct CaseFacts {
     pub reason: Option<String>,
     /// BLAKE3 of everything that defines the case.
     pub case_blake3: Option<String>,
-    /// The summary's; null without one.
+    /// Facts of the summary; null without one.
     pub run: Option<SummaryFacts>,
 }
 

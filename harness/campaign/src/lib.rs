@@ -1,9 +1,9 @@
 //! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
 //!
 //! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its
-//! cases, [`case`] runs one of them, [`execute`] all of them in processes of their own, which
-//! [`work`], [`mod@store`] keeps their results and reads them, [`results`] writes their tables, [`merge`] merges those of all shards, [`independence`] groups them
-//! into independent draws.
+//! cases, [`case`] runs one of them, [`execute`] all of them in processes that do the [`work`],
+//! [`mod@store`] stores their results and reads them, [`results`] writes their tables, [`merge`] merges
+//! those of all shards, [`independence`] groups them into independent draws.
 
 pub mod against;
 mod besides;

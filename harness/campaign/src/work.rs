@@ -38,8 +38,8 @@ pub struct CaseJob {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum WorkReply {
-    /// The process writes this part file, before its first result.
-    Writes { part: PathBuf },
+    /// The process is about to store the result of the case, as this record.
+    Stores(RecordAt),
     /// The outcome of a case is stored.
     Done {
         verdict: Verdict,
@@ -55,9 +55,9 @@ pub(super) enum WorkReply {
 /// Place of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RecordAt {
-    part: PathBuf,
-    offset: u64,
-    case: String,
+    pub(super) part: PathBuf,
+    pub(super) offset: u64,
+    pub(super) case: String,
 }
 
 impl From<RecordAt> for ResultPlace {
@@ -113,15 +113,15 @@ pub fn work(
         let not_kept = |error: &dyn std::fmt::Display| WorkReply::NotKept {
             message: format!("failed to {error}"),
         };
-        let is_new = writer.is_none();
         let writer = writer.get_or_insert_with(|| PartWriter::new(&job.folder, &job.stem));
-        if is_new {
-            match writer.path() {
-                Ok(part) => tell(&WorkReply::Writes { part: part.to_owned() })?,
-                Err(error) => {
-                    tell(&not_kept(&error))?;
-                    continue;
-                }
+        match writer.next_record() {
+            Ok((part, offset)) => {
+                let (part, case) = (part.to_owned(), job.case.id.clone());
+                tell(&WorkReply::Stores(RecordAt { part, offset, case }))?;
+            }
+            Err(error) => {
+                tell(&not_kept(&error))?;
+                continue;
             }
         }
         let reply = match keep_in(writer, &job.case.id, json.as_bytes(), &job.known) {

@@ -9,11 +9,11 @@ use super::plan::{Case, Plan};
 use super::process::command;
 use super::status::StatusError;
 use super::store::writer::PartWriter;
-use super::store::{CampaignResults, StoreOutcome, keep_in, part_has};
-use super::work::{CaseJob, WORDS, WorkReply, said};
+use super::store::{CampaignResults, StoreOutcome, has_at, keep_in};
+use super::work::{CaseJob, RecordAt, WORDS, WorkReply, said};
 use octant_base::child::{AskedChild, AskedReply, ChildEnded};
 use octant_requirements::Verdict;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitStatus;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -41,8 +41,8 @@ pub(super) struct Worker<'a> {
 #[derive(Debug)]
 struct WorkerProcess {
     child: AskedChild,
-    /// Part file that it writes, once it has told.
-    part: Option<PathBuf>,
+    /// Record as which it stores the result of its case, once it has told.
+    record: Option<RecordAt>,
     /// True if it has run a case to its end.
     is_used: bool,
 }
@@ -89,9 +89,10 @@ impl<'a> Worker<'a> {
                 let mut command = command(program);
                 let child = AskedChild::start(command.args(["campaign", "work"]), WORDS);
                 let child = child.map_err(|error| system("start", error))?;
-                WorkerProcess { child, part: None, is_used: false }
+                WorkerProcess { child, record: None, is_used: false }
             }
         };
+        process.record = None;
         process.child.ask(job);
         // A limit that isn't a number counts as no limit.
         let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
@@ -99,7 +100,7 @@ impl<'a> Worker<'a> {
             let reply = process.child.reply(limit, cancel);
             match reply.map_err(|error| system("wait for", error))? {
                 AskedReply::Line(line) => match serde_json::from_str(&line) {
-                    Ok(WorkReply::Writes { part }) => process.part = Some(part),
+                    Ok(WorkReply::Stores(record)) => process.record = Some(record),
                     Ok(WorkReply::Done { verdict, reason, differs }) => {
                         process.is_used = true;
                         self.process = Some(process);
@@ -115,17 +116,17 @@ impl<'a> Worker<'a> {
                 AskedReply::Ended(ended, words) => break (ended, words),
             }
         };
-        let WorkerProcess { child, part, is_used } = process;
+        let WorkerProcess { child, record, is_used } = process;
         // Its part is free only when it is gone.
         drop(child);
         if matches!(ended, ChildEnded::Cancelled) {
             return Ok(Tried::Cancelled);
         }
-        // The process may have been ended after it stored the result. Of a case that is run a second
-        // time that isn't enough: the result may be that of the first time.
+        // The process may have been ended after it stored the result. A case that is run a second time
+        // is run once more instead, to compare its results.
         if known.is_empty()
-            && let Some(part) = &part
-            && part_has(part, &case.id)?
+            && let Some(RecordAt { part, offset, .. }) = &record
+            && has_at(part, *offset, &case.id)?
         {
             return Ok(Tried::Done(self.stored(case)?));
         }

@@ -109,7 +109,7 @@ impl AskedChild {
                 }
             }
             if let Some(ended) = self.clock.look(&mut self.child, limit, cancel)? {
-                // It may have answered with its last breath.
+                // Its last answer may have come just before its end.
                 if let (ChildEnded::Status(_) | ChildEnded::Outside(_), Ok(line)) =
                     (&ended, self.answers.recv_timeout(LOOK))
                 {

@@ -210,7 +210,7 @@ impl<'a> CampaignReport<'a> {
         })
     }
 
-    /// Checks that the drifts of all cases could be read as often as they were needed.
+    /// Checks that the drifts of all cases could be read each time.
     ///
     /// # Errors
     /// If the temporary file that holds them could not be read.

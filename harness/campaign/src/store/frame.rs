@@ -11,12 +11,12 @@
 //! | 4 | marker |
 //! | 1, 1, 2 | kind; length of the case's id; zero |
 //! | 4, 4, 4 | length of the facts, of the compressed result, of the result |
-//! | 8 | time at which it was written, ns since 1970; tells no more than the order of two records |
-//! | 32 | BLAKE3 of the result, as its file would have it; of the record that is forgotten, in the first 16 |
+//! | 8 | time at which it was stored, ns since 1970 (UTC): the order of two records |
+//! | 32 | BLAKE3 of the result; of a forgotten one the 16 bytes at the end of its record, and 16 zeros |
 //! | … | id of the case, then facts |
 //! | 16 | first bytes of the BLAKE3 of the record so far |
 //! | … | result, compressed by Zstandard |
-//! | 16 | first bytes of the BLAKE3 of the 16 bytes above and the compressed result: the record's own name |
+//! | 16 | first bytes of the BLAKE3 of the 16 bytes above and the compressed result: names the record |
 //!
 //! The lengths have a checksum of their own, so that damage to a length is told from a file that ends
 //! early: what can be found by its marker after damage proves that the damage is no end.

@@ -3,7 +3,7 @@
 use super::error::{PartError, ResultPlace};
 use super::frame::RecordKind;
 use super::index::{CampaignResults, facts_of};
-use super::scan::scan;
+use super::scan::read_whole;
 use super::writer::{NewResult, PartWriter};
 use crate::case::{CaseResult, ResultError};
 use std::fs::File;
@@ -69,15 +69,15 @@ pub fn forget_errors<'a>(
     Ok(())
 }
 
-/// Returns whether a part has a result of a case.
+/// Returns whether a part has a whole result of a case at a byte.
 ///
 /// # Errors
-/// If it can't be read, or is damaged.
-pub fn part_has(part: &Path, case: &str) -> Result<bool, PartError> {
+/// If the operating system refuses.
+pub fn has_at(part: &Path, offset: u64, case: &str) -> Result<bool, PartError> {
     let file = File::open(part).map_err(PartError::system("read", part))?;
-    let mut has = false;
-    scan(part, &file, |found| {
-        has |= found.head.kind == RecordKind::Result && found.head.case == case;
-    })?;
-    Ok(has)
+    match read_whole(part, &file, offset) {
+        Ok((head, _)) => Ok(head.kind == RecordKind::Result && head.case == case),
+        Err(PartError::Damaged { .. }) => Ok(false),
+        Err(error) => Err(error),
+    }
 }

@@ -38,8 +38,8 @@ pub(super) struct Scanned {
     pub(super) bytes: u64,
 }
 
-/// Reads the heads of all records, and calls `each` with them. The content is read of the last one
-/// alone.
+/// Reads the heads of all records, and calls `each` with them. Only the content of the last one is
+/// read, which may be torn.
 pub(super) fn scan(
     path: &Path,
     file: &File,

@@ -5,7 +5,7 @@
 use super::error::{PartError, ResultPlace};
 use super::frame::{FILE_HEAD, SCHEMA, file_head};
 use super::writer::PartWriter;
-use super::{CampaignResults, StoreOutcome, file, forget_errors, keep, keep_in};
+use super::{CampaignResults, StoreOutcome, file, forget_errors, has_at, keep, keep_in};
 use crate::case::{CaseResult, ResultError};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -84,6 +84,11 @@ proptest! {
         let folder = folder_of(&SAMPLE.bytes[..end]);
         let whole = SAMPLE.ends[1..].iter().filter(|at| **at <= end).count();
         prop_assert_eq!(read(folder.path()).unwrap(), &CASES[..whole]);
+        let part = folder.path().join("results").join(SAMPLE.part.file_name().unwrap());
+        for (index, case) in CASES.iter().enumerate() {
+            let is_there = has_at(&part, SAMPLE.ends[index] as u64, case).unwrap();
+            prop_assert_eq!(is_there, index < whole, "{}", case);
+        }
         go_on(folder.path());
         let results = CampaignResults::open(folder.path()).unwrap();
         prop_assert_eq!(results.len(), whole + 1);
@@ -206,9 +211,71 @@ fn files_of_older_versions_are_read_beside_parts() {
 fn a_part_has_one_writer() {
     let folder = tempfile::tempdir().unwrap();
     let [mut first, mut second] = [(); 2].map(|()| PartWriter::new(folder.path(), "1-of-1"));
-    let paths = [first.path().unwrap().to_owned(), second.path().unwrap().to_owned()];
+    let paths =
+        [first.next_record().unwrap().0.to_owned(), second.next_record().unwrap().0.to_owned()];
     assert_ne!(paths[0], paths[1]);
     drop(first);
-    assert_eq!(PartWriter::new(folder.path(), "1-of-1").path().unwrap(), paths[0]);
+    assert_eq!(PartWriter::new(folder.path(), "1-of-1").next_record().unwrap().0, paths[0]);
     assert!(CampaignResults::open(folder.path()).unwrap().is_empty());
+}
+
+/// The last record is cut at each of its bytes, and each of its bytes is changed: it is absent, the others
+/// are whole, and the next writer stores it again.
+#[test]
+fn a_last_result_that_is_torn_or_damaged_anywhere_is_absent() {
+    let (begin, end) = (SAMPLE.ends[4], SAMPLE.ends[5]);
+    let changed = (begin..end).map(|at| {
+        let mut bytes = SAMPLE.bytes.clone();
+        bytes[at] = !bytes[at];
+        bytes
+    });
+    for bytes in (begin..end).map(|at| SAMPLE.bytes[..at].to_vec()).chain(changed) {
+        let folder = folder_of(&bytes);
+        assert_eq!(read(folder.path()).unwrap(), &CASES[..4]);
+        let result = CampaignResults::open(SAMPLE.folder.path()).unwrap().bytes("e5").unwrap();
+        let text = String::from_utf8(result.unwrap().bytes).unwrap();
+        put(&mut PartWriter::new(folder.path(), "1-of-1"), "e5", &text);
+        assert_eq!(read(folder.path()).unwrap(), CASES);
+    }
+}
+
+/// A copy of a part, as a person makes it, adds nothing; what is forgotten in one is forgotten in both.
+#[test]
+fn a_copied_part_counts_once() {
+    let folder = folder_of(&SAMPLE.bytes);
+    let results = folder.path().join("results");
+    let copy = || std::fs::copy(results.join("1-of-1.1.octres"), results.join("copy.octres"));
+    copy().unwrap();
+    assert_eq!(read(folder.path()).unwrap(), CASES);
+    let there = CampaignResults::open(folder.path()).unwrap();
+    for case in CASES {
+        assert_eq!(there.differing(case).unwrap(), None);
+    }
+    let mut writer = PartWriter::new(folder.path(), "1-of-1");
+    forget_errors(&there, &mut writer, ["c3"].into_iter()).unwrap();
+    let left = CampaignResults::open(folder.path()).unwrap();
+    assert_eq!((left.len(), left.has("c3")), (4, false));
+    put(&mut writer, "c3", &broken("c3", "now"));
+    copy().unwrap();
+    let again = CampaignResults::open(folder.path()).unwrap();
+    assert_eq!((again.len(), again.differing("c3").unwrap()), (5, None));
+    let (result, _) = again.result("c3").unwrap().unwrap();
+    assert_eq!(result.error.as_deref(), Some("now"));
+}
+
+/// Results of a program whose numbers aren't finite are no results: no facts stand for them.
+#[test]
+fn a_result_with_no_number_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (case, text) in [("a1", "NaN"), ("b2", "1e999"), ("c3", "null")] {
+        let json = format!(
+            "{{\"schema\":2,\"case\":\"{case}\",\"verdict\":\"pass\",\
+            \"error\":null,\"summary\":{{\"verdict\":\"pass\",\"seed\":{text}}}}}\n"
+        );
+        keep(folder.path(), case, json.as_bytes()).unwrap();
+        let results = CampaignResults::open(folder.path()).unwrap();
+        assert!(results.has(case));
+        let told = results.result(case).unwrap_err().to_string();
+        assert!(told.contains(&format!("case {case} at byte")), "{told}");
+    }
 }

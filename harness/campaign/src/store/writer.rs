@@ -1,7 +1,7 @@
 //! Appends records to a part file that no other writer has.
 
 use super::error::{PartError, ResultPlace};
-use super::frame::{Checksum, NewRecord, RecordKind, SCHEMA, file_head, record};
+use super::frame::{Checksum, FACTS_MAX, NewRecord, RecordKind, SCHEMA, file_head, record};
 use super::scan::scan;
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Seek, SeekFrom, Write};
@@ -56,18 +56,21 @@ impl PartWriter {
         Self { is_synced: false, ..self }
     }
 
-    /// Returns the file, opened and repaired if it isn't yet.
+    /// Returns the file, opened and repaired if it isn't yet, and the byte at which its next record
+    /// begins.
     ///
     /// # Errors
     /// If the operating system refuses, or the file is damaged.
-    pub fn path(&mut self) -> Result<&Path, PartError> {
-        Ok(&self.opened()?.path)
+    pub fn next_record(&mut self) -> Result<(&Path, u64), PartError> {
+        let OpenPart { path, end, .. } = self.opened()?;
+        Ok((path, *end))
     }
 
     /// Appends a result; it is on the disk when this returns. If it can't be written, nothing of it
     /// stays.
     pub(super) fn append(&mut self, new: NewResult<'_>) -> Result<ResultPlace, PartError> {
         let NewResult { case, bytes, facts } = new;
+        let facts = if facts.len() > FACTS_MAX { &[] } else { facts };
         let body = zstd::bulk::compress(bytes, LEVEL)
             .map_err(PartError::system("compress a result for", &self.folder))?;
         self.put(&NewRecord {
