@@ -258,6 +258,30 @@ fn a_case_that_wants_too_much_memory_is_one_error_and_the_others_pass() {
     assert_eq!(state.verdict(), Verdict::Pass, "{}", state.text());
 }
 
+/// An error that comes again is stored again: the process that had run another case before has the forgotten
+/// one in its part.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_error_that_is_forgotten_and_comes_again_is_stored_again() {
+    let large = SCENARIO.to_owned() + &"#\n".repeat(4_000_000);
+    let (bench, plan, _) = one_of_two(&large, "memory_mib = 256");
+    let (folder, never) = (bench.at("out"), AtomicBool::new(false));
+    stored::clear(&folder);
+    let options = ExecuteOptions {
+        folder: &folder,
+        program: Path::new(OCTANT),
+        jobs: 1,
+        shard: Shard::WHOLE,
+        end: plan.cases.len(),
+        again: false,
+        selection: CaseSelection::of(&plan, &["other".to_owned()]).unwrap(),
+        cancel: &never,
+    };
+    assert_eq!(execute(&plan, &options, &|_| {}).unwrap().run, 1);
+    assert_eq!(begin(&plan, &folder, Shard::WHOLE, 1, &never, true).unwrap().run, 2);
+    assert_one_error(&bench, &plan, "it wanted more than its 256 MiB of memory");
+}
+
 #[test]
 fn a_campaign_that_grows_keeps_its_cases_and_results() {
     let bench = Bench::new(CAMPAIGN);

@@ -22,6 +22,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::borrow::Cow;
+    use std::path::Path;
     use std::sync::Arc;
 
     type Row = (Option<String>, Option<f64>, Option<i64>, Option<bool>);
