@@ -4,8 +4,9 @@
 //! same stream of samples are one draw too, whatever their seeds; they are the same run, repeated
 //! under the label of a factor without effect or of a value in another spelling.
 
+use super::factor_values::FactorValue;
 use super::facts::CaseFacts;
-use super::plan::{Case, FactorValue, Plan};
+use super::plan::{Case, Plan};
 use super::report::combination::of_grid;
 use octant_statistics::cluster;
 use std::collections::{BTreeMap, HashMap};
@@ -72,11 +73,11 @@ fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
     let mut first: HashMap<Others<'_>, &str> = HashMap::new();
     let mut compared = false;
     for (case, stream) in run {
-        if !case.factors.contains_key(factor) {
+        if case.factors.get(factor).is_none() {
             continue;
         }
         let others = case.factors.iter().filter(|(name, _)| *name != factor);
-        let others = others.map(|(name, value)| (name.as_str(), shown(value))).collect();
+        let others = others.map(|(name, value)| (name, shown(value))).collect();
         match first.entry((case.scenario.as_str(), case.seed, others)) {
             std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(stream),
             std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {

@@ -13,6 +13,7 @@ mod draw;
 pub mod emit;
 pub mod execute;
 mod execution;
+pub mod factor_values;
 pub mod factors;
 pub mod facts;
 pub mod independence;

@@ -3,6 +3,7 @@
 //! A plan never changes after it is made. A campaign that grows makes another plan, in which every
 //! earlier case keeps its id.
 
+use super::factor_values::FactorValues;
 use super::requirements::Planned;
 use octant_requirements::RequirementsError;
 use octant_requirements::requirement::EnsembleRequirement;
@@ -11,7 +12,6 @@ use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
@@ -141,17 +141,7 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<String>>,
     /// Value of each factor, for display and statistics.
-    pub factors: BTreeMap<String, FactorValue>,
-}
-
-/// Value of a factor in a case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum FactorValue {
-    /// Number, in the factor's unit.
-    Number(f64),
-    /// Anything else, as text.
-    Text(String),
+    pub factors: FactorValues,
 }
 
 /// Reasons why there is no plan.

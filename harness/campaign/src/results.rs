@@ -189,7 +189,7 @@ fn case_row(
         (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
-    for (name, value) in &case.factors {
+    for (name, value) in case.factors.iter() {
         all.insert(format!("factor.{name}"), factors.value(name, value));
     }
     if let Some(document) = summary.and_then(|summary| serde_json::to_value(summary).ok()) {

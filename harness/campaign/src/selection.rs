@@ -1,7 +1,8 @@
 //! Selection of cases of a plan: by pattern, and by their results.
 
 use super::case;
-use super::plan::{Case, FactorValue, Plan};
+use super::factor_values::FactorValue;
+use super::plan::{Case, Plan};
 use super::store::CampaignResults;
 use octant_requirements::Verdict;
 use std::collections::BTreeSet;
@@ -113,7 +114,7 @@ impl CaseSelection {
 
 /// Names by which a case can be selected.
 fn names(case: &Case) -> Vec<String> {
-    let factor = |(name, value): (&String, &FactorValue)| match value {
+    let factor = |(name, value): (&str, &FactorValue)| match value {
         FactorValue::Number(number) => format!("{name}={number}"),
         FactorValue::Text(text) => format!("{name}={text}"),
     };

@@ -279,6 +279,7 @@ fn an_error_that_is_forgotten_and_comes_again_is_stored_again() {
     };
     assert_eq!(execute(&plan, &options, &|_| {}).unwrap().run, 1);
     assert_eq!(begin(&plan, &folder, Shard::WHOLE, 1, &never, true).unwrap().run, 2);
+    run(&plan, &folder, Shard::WHOLE, 1);
     assert_one_error(&bench, &plan, "it wanted more than its 256 MiB of memory");
 }
 

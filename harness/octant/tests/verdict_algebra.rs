@@ -322,7 +322,7 @@ fn campaign(
         replicate: i as u32,
         set: Vec::new(),
         faults: None,
-        factors: BTreeMap::new(),
+        factors: Default::default(),
     };
     let id = |i: usize| case::hash_of(&planned, &case(i))[..16].to_owned();
     let cases = (0..outcomes.len()).map(|i| Case { id: id(i), ..case(i) });

@@ -83,7 +83,7 @@ fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
                         tr {
                             td { (case_link(&row.case.id, beside)) }
                             td { (row.case.scenario)
-                                @for (name, value) in &row.case.factors { "; " (name) " " (shown(value)) } }
+                                @for (name, value) in row.case.factors.iter() { "; " (name) " " (shown(value)) } }
                             td.n { (row.case.seed) }
                             td.n { (check(outcome.map(|outcome| outcome.verdict))) }
                             @for r in requirements { td.n {

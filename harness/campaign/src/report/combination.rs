@@ -4,7 +4,8 @@
 //! combination are therefore independent of each other, those of several aren't, and bounds are
 //! given for single combinations only.
 
-use crate::plan::{Case, FactorValue, Plan};
+use crate::factor_values::FactorValue;
+use crate::plan::{Case, Plan};
 use octant_base::number;
 use octant_scenario::quantity_of;
 use std::collections::HashMap;

@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
 use crate::common::results;
 use octant_base::number::significant;
-use octant_campaign::plan::FactorValue;
+use octant_campaign::factor_values::FactorValue;
 use serde_json::{Value, json};
 
 /// Computes a percentile, definition 7 of Hyndman and Fan.
@@ -128,9 +128,9 @@ fn the_numbers_are_those_of_another_path_and_stand_on_the_page() {
             let part: Vec<usize> = mine.iter().filter(takes).copied().collect();
             let x: Vec<f64> = part
                 .iter()
-                .map(|index| match plan.cases[*index].factors[name] {
-                    FactorValue::Number(number) => number,
-                    FactorValue::Text(_) => unreachable!(),
+                .map(|index| match plan.cases[*index].factors.get(name) {
+                    Some(FactorValue::Number(number)) => *number,
+                    _ => unreachable!(),
                 })
                 .collect();
             let y: Vec<f64> = part.iter().map(|index| rate(*index)).collect();
