@@ -4,6 +4,7 @@ use super::error::{PartError, ResultPlace};
 use super::files;
 use super::frame::{Checksum, RecordKind, first};
 use super::scan::{Found, hex, read_head, read_whole, scan};
+use super::stored::{Stored, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
 use crate::case::{CaseResult, ResultError};
 use crate::facts::CaseFacts;
@@ -21,8 +22,11 @@ const OPEN_MAX: usize = 64;
 #[derive(Debug)]
 pub struct CampaignResults {
     parts: Vec<Part>,
-    /// Results of each case, the first one first.
-    cases: BTreeMap<Box<str>, Vec<Stored>>,
+    /// Results by the ids of their cases, those of a case in the order in which they count: a list, as a
+    /// campaign can have millions.
+    stored: Vec<(Box<str>, Stored)>,
+    /// Number of cases that have a result.
+    cases: usize,
 }
 
 /// A part file, open if there are few of them.
@@ -30,30 +34,6 @@ pub struct CampaignResults {
 struct Part {
     path: PathBuf,
     file: Option<File>,
-}
-
-/// A stored result.
-#[derive(Clone, Debug)]
-enum Stored {
-    /// A file of its own.
-    File {
-        path: PathBuf,
-        /// True if its name says that it differs from the first.
-        is_second: bool,
-    },
-    /// A record of a part.
-    Record(StoredRecord),
-}
-
-/// A record with a result, by its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct StoredRecord {
-    time_ns: u64,
-    part: u32,
-    offset: u64,
-    has_facts: bool,
-    blake3: [u8; 32],
-    own: Checksum,
 }
 
 /// Bytes of a result.
@@ -74,74 +54,107 @@ impl CampaignResults {
     /// If a part can't be read or is damaged: file, byte, found and expected. The end of a part that was
     /// never completed counts as absent.
     pub fn open(folder: &Path) -> Result<Self, ResultError> {
-        let mut cases: BTreeMap<Box<str>, Vec<Stored>> = BTreeMap::new();
-        for (case, is_second, place) in files::all(folder) {
+        let file = |(case, is_second, place): (String, bool, ResultPlace)| {
             let path = place.path().to_owned();
-            cases.entry(case.into()).or_default().push(Stored::File { path, is_second });
-        }
+            (case.into_boxed_str(), Stored::File { path, is_second })
+        };
+        let mut stored: Vec<(Box<str>, Stored)> =
+            files::all(folder).into_iter().map(file).collect();
         let paths = parts(&folder.join(FOLDER))?;
         let mut parts = Vec::with_capacity(paths.len());
         let stay_open = paths.len() <= OPEN_MAX;
-        let mut records: BTreeMap<Box<str>, Vec<StoredRecord>> = BTreeMap::new();
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
         for (part, path) in (0..).zip(paths) {
             let file = File::open(&path).map_err(PartError::system("read", &path))?;
             scan(&path, &file, |Found { head, offset, own }| {
-                let case = head.case.as_str().into();
+                let case = head.case.into_boxed_str();
                 if head.kind == RecordKind::Forgotten {
                     forgotten.entry(case).or_default().insert(first(&head.blake3));
                     return;
                 }
-                records.entry(case).or_default().push(StoredRecord {
+                let record = StoredRecord {
                     time_ns: head.time_ns,
                     part,
                     offset,
                     has_facts: !head.facts.is_empty(),
                     blake3: head.blake3,
                     own,
-                });
+                };
+                stored.push((case, Stored::Record(record)));
             })?;
             parts.push(Part { path, file: stay_open.then_some(file) });
         }
-        for (case, mut of_case) in records {
-            of_case.sort_unstable();
-            cases.entry(case).or_default().extend(of_case.into_iter().map(Stored::Record));
-        }
+        // The files of a case are in their order already.
+        stored.sort_by(|(a_case, a), (b_case, b)| a_case.cmp(b_case).then_with(|| a.order(b)));
+        let mut found = Self { parts, stored, cases: 0 };
+        found.forget(&forgotten)?;
+        Ok(found)
+    }
+
+    /// Removes what doesn't count any more, and cases of which only second results are left.
+    fn forget(
+        &mut self,
+        forgotten: &BTreeMap<Box<str>, BTreeSet<Checksum>>,
+    ) -> Result<(), ResultError> {
+        let mut gone = BTreeSet::new();
         for (case, forgotten) in forgotten {
-            let Some(of_case) = cases.get_mut(&case) else { continue };
-            let mut kept = Vec::new();
-            for stored in of_case.drain(..) {
-                if !forgotten.contains(&stored.own()?) {
-                    kept.push(stored);
+            let from = self.stored.partition_point(|(other, _)| other < case);
+            for (index, (_, stored)) in self.of(case).iter().enumerate() {
+                if forgotten.contains(&stored.own()?) {
+                    gone.insert(from + index);
                 }
             }
-            *of_case = kept;
         }
-        cases.retain(|_, of_case| of_case.iter().any(|stored| !stored.is_beside()));
-        Ok(Self { parts, cases })
+        let mut from = 0;
+        for of_case in self.stored.chunk_by(|(a, _), (b, _)| a == b) {
+            let left = |index: &usize| !gone.contains(&(from + index));
+            let counts = |index: usize| !of_case[index].1.is_beside();
+            if (0..of_case.len()).filter(left).any(counts) {
+                self.cases += 1;
+            } else {
+                gone.extend(from..from + of_case.len());
+            }
+            from += of_case.len();
+        }
+        let mut index = 0;
+        self.stored.retain(|_| {
+            index += 1;
+            !gone.contains(&(index - 1))
+        });
+        self.stored.shrink_to_fit();
+        Ok(())
+    }
+
+    /// Returns the results of a case.
+    fn of(&self, case: &str) -> &[(Box<str>, Stored)] {
+        let from = self.stored.partition_point(|(other, _)| **other < *case);
+        let rest = self.stored.get(from..).unwrap_or_default();
+        let count = rest.iter().take_while(|(other, _)| **other == *case).count();
+        rest.get(..count).unwrap_or_default()
     }
 
     /// Returns the cases that have a result, in the order of their ids.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
-        self.cases.keys().map(|case| &**case)
+        let cases = self.stored.chunk_by(|(a, _), (b, _)| a == b);
+        cases.filter_map(|of_case| Some(&*of_case.first()?.0))
     }
 
     /// Number of cases that have a result.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.cases.len()
+        self.cases
     }
 
     /// Returns whether no case has a result.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.cases.is_empty()
+        self.cases == 0
     }
 
     /// Returns whether a case has a result.
     #[must_use]
     pub fn has(&self, case: &str) -> bool {
-        self.cases.contains_key(case)
+        !self.of(case).is_empty()
     }
 
     /// Returns the place of the result of a case.
@@ -155,10 +168,10 @@ impl CampaignResults {
     /// # Errors
     /// If a result has to be read to tell, and can't.
     pub fn differing(&self, case: &str) -> Result<Option<ResultPlace>, ResultError> {
-        let Some(all) = self.cases.get(case).filter(|all| all.len() > 1) else { return Ok(None) };
-        let Some(main) = self.main(case) else { return Ok(None) };
+        let all = self.of(case);
+        let Some(main) = self.main(case).filter(|_| all.len() > 1) else { return Ok(None) };
         let mut blake3 = None;
-        for stored in all {
+        for (_, stored) in all {
             // A name is enough, whatever is in the file.
             if stored.is_beside() {
                 return Ok(Some(self.place_of(stored, case)));
@@ -176,8 +189,7 @@ impl CampaignResults {
     /// # Errors
     /// If a result has to be read for it, and can't.
     pub fn known(&self, case: &str) -> Result<Vec<String>, ResultError> {
-        let all = self.cases.get(case).into_iter().flatten();
-        all.map(|stored| Ok(hex(&stored.blake3()?))).collect()
+        self.of(case).iter().map(|(_, stored)| Ok(hex(&stored.blake3()?))).collect()
     }
 
     /// Returns the time at which the result of a case was stored.
@@ -261,7 +273,7 @@ impl CampaignResults {
     /// Returns the checksums of all results of a case that ended as errors, by which they can be
     /// forgotten. A result that can't be read is none of them.
     pub(super) fn errors(&self, case: &str) -> Result<Vec<Checksum>, ResultError> {
-        let all = self.cases.get(case).into_iter().flatten();
+        let all = self.of(case).iter().map(|(_, stored)| stored);
         all.filter(|stored| self.is_error(stored, case)).map(Stored::own).collect()
     }
 
@@ -282,7 +294,7 @@ impl CampaignResults {
 
     /// The result that counts: the first one.
     fn main(&self, case: &str) -> Option<&Stored> {
-        self.cases.get(case)?.iter().find(|stored| !stored.is_beside())
+        self.of(case).iter().map(|(_, stored)| stored).find(|stored| !stored.is_beside())
     }
 
     fn path(&self, record: &StoredRecord) -> &Path {
@@ -335,39 +347,10 @@ impl CampaignResults {
     }
 }
 
-impl Stored {
-    fn is_beside(&self) -> bool {
-        matches!(self, Self::File { is_second: true, .. })
-    }
-
-    fn has_facts(&self) -> bool {
-        matches!(self, Self::Record(StoredRecord { has_facts: true, .. }))
-    }
-
-    fn blake3(&self) -> Result<[u8; 32], ResultError> {
-        match self {
-            Self::File { path, .. } => Ok(*blake3::hash(&read_file(path)?).as_bytes()),
-            Self::Record(record) => Ok(record.blake3),
-        }
-    }
-
-    /// Returns the checksum by which it can be forgotten.
-    fn own(&self) -> Result<Checksum, ResultError> {
-        match self {
-            Self::File { .. } => Ok(first(&self.blake3()?)),
-            Self::Record(record) => Ok(record.own),
-        }
-    }
-}
-
 /// Returns the bytes of the facts of a result.
 pub(super) fn facts_of(result: &CaseResult) -> Vec<u8> {
     // Values of these types can always be serialised.
     serde_json::to_vec(&CaseFacts::of(result)).unwrap_or_default()
-}
-
-fn read_file(path: &Path) -> Result<Vec<u8>, ResultError> {
-    std::fs::read(path).map_err(|source| ResultError::System { path: path.to_owned(), source })
 }
 
 /// Lists the part files in a folder, in the order of their names.

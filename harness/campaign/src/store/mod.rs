@@ -11,6 +11,7 @@ mod frame;
 mod index;
 mod keep;
 mod scan;
+mod stored;
 pub mod writer;
 
 pub use files::file;
