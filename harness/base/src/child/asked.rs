@@ -150,9 +150,8 @@ impl Drop for AskedChild {
 /// Keeps the first bytes of a pipe since the last separator.
 fn listen(mut pipe: ChildStderr, words: &Mutex<Vec<u8>>, most: usize) {
     let mut buffer = [0; 4096];
-    loop {
-        // Output that can't be read counts as absent.
-        let Ok(read @ 1..) = pipe.read(&mut buffer) else { break };
+    // Output that can't be read counts as absent.
+    while let Ok(read @ 1..) = pipe.read(&mut buffer) {
         let read = &buffer[..read];
         let mut words = words.lock().unwrap_or_else(PoisonError::into_inner);
         let new = match read.iter().rposition(|byte| *byte == SEPARATOR) {
