@@ -185,7 +185,7 @@ mod tests {
     fn each_thread_has_its_own() {
         let made = AtomicUsize::new(0);
         let make = || made.fetch_add(1, Ordering::Relaxed);
-        let mut done = vec![0; 3];
+        let mut done = [0; 3];
         let work = |own: &mut usize, _| Ok::<_, ()>(Some(*own));
         let results = in_order_with(3, 60, || false, make, work).unwrap();
         results.into_iter().flatten().for_each(|own| done[own] += 1);

@@ -20,7 +20,7 @@ use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
 use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{deviation, paired, power};
-use sample::{MethodSample, SampleCounts};
+use sample::{FinalErrors, MethodSample, SampleCounts};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
@@ -187,8 +187,8 @@ fn finals<'a>(ensemble: &Ensemble, sample: &'a MethodSample) -> Vec<Final<'a>> {
     let Some(last) = ensemble.drift.last() else { return Vec::new() };
     let Some(solution) = &last.solution else { return Vec::new() };
     let both = solution.all().into_iter().zip(sample.finals());
-    let one = |(band, found): (ErrorBand, Option<(&str, &'static str, &'a [f64])>)| {
-        let (name, unit, values) = found?;
+    let one = |(band, found): (ErrorBand, Option<FinalErrors<'a>>)| {
+        let FinalErrors { name, unit, values } = found?;
         let name = format!("{name} at {:.1} h", last.hours);
         Some(Final { name, unit, hours: last.hours, band, values })
     };

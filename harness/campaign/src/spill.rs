@@ -250,7 +250,7 @@ mod tests {
                 all.insert("whole".to_owned(), ColumnValue::Integer(-(row as i64)));
             }
             if row > 2 * BLOCK {
-                all.insert("late".to_owned(), ColumnValue::Boolean(row % 2 == 0));
+                all.insert("late".to_owned(), ColumnValue::Boolean(row.is_multiple_of(2)));
             }
             all
         };

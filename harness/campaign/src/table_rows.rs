@@ -91,6 +91,7 @@ impl CaseTable {
         Ok(if self.is_in_order {
             self.table
                 .cursor(column)?
+                .map(Box::new)
                 .map_or(CaseColumn::Missing, |cursor| CaseColumn::InOrder { cursor, next: 0 })
         } else {
             self.table.column(column)?.map_or(CaseColumn::Missing, CaseColumn::Whole)
@@ -101,7 +102,7 @@ impl CaseTable {
 /// Values of a column, of which rows are read in the order of the plan.
 pub(super) enum CaseColumn {
     /// The rows are in that order.
-    InOrder { cursor: ColumnCursor, next: usize },
+    InOrder { cursor: Box<ColumnCursor>, next: usize },
     /// They aren't.
     Whole(ColumnValues),
     /// There is no such column.

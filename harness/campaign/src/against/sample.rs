@@ -39,6 +39,14 @@ pub(super) struct MethodSample {
     is_without_navigation: bool,
 }
 
+/// Final errors of all runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FinalErrors<'a> {
+    pub(super) name: &'static str,
+    pub(super) unit: &'static str,
+    pub(super) values: &'a [f64],
+}
+
 /// Number of cases by what they have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SampleCounts {
@@ -142,14 +150,13 @@ impl MethodSample {
         self.drift.get(axis)?.get(time)?.all()
     }
 
-    /// Returns the final errors of attitude and velocity, with name and unit, in their order. `None` where
+    /// Returns the final errors of attitude and velocity in their order. `None` where
     /// a run doesn't have it: results from before they were scored have none.
-    pub(super) fn finals(
-        &self,
-    ) -> impl Iterator<Item = Option<(&'static str, &'static str, &[f64])>> {
+    pub(super) fn finals(&self) -> impl Iterator<Item = Option<FinalErrors<'_>>> {
         let names = self.final_names.filter(|_| !self.is_without_navigation);
         let columns = names.into_iter().flat_map(|names| names.into_iter().zip(&self.finals));
-        columns.map(|((name, unit), column)| Some((name, unit, column.all()?)))
+        columns
+            .map(|((name, unit), column)| Some(FinalErrors { name, unit, values: column.all()? }))
     }
 }
 

@@ -66,7 +66,7 @@ pub fn of_grid(plan: &Plan) -> Vec<String> {
     let is = |factor: &&String| {
         let mut first: HashMap<u32, &FactorValue> = HashMap::new();
         plan.cases.iter().any(|case| {
-            let Some(value) = case.factors.get(*factor) else { return false };
+            let Some(value) = case.factors.get(factor) else { return false };
             *first.entry(case.replicate).or_insert(value) != value
         })
     };

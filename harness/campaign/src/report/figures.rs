@@ -293,11 +293,16 @@ pub(super) fn curves<'a>(
 /// Collects the largest errors of attitude and velocity that every navigating case has.
 fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
     let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
-    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.solution.keys()).collect();
-    let of = |name: &String| {
-        let known = drifts().all(|drift| drift.solution.contains_key(name));
-        let value = |drift: &CaseDrift| drift.solution.get(name).copied().unwrap_or(f64::INFINITY);
-        Some((name.clone(), Spread::of(&known.then(|| sample.column(value))?)?))
+    let all = drifts().flat_map(|drift| &drift.solution);
+    let names: BTreeSet<(&str, &str)> = all.map(|(name, unit, _)| (*name, *unit)).collect();
+    let of = |(name, unit): (&str, &str)| {
+        let get = |drift: &CaseDrift| {
+            let mut all = drift.solution.iter();
+            all.find(|other| (other.0, other.1) == (name, unit)).map(|(.., max)| *max)
+        };
+        let known = drifts().all(|drift| get(drift).is_some());
+        let value = |drift: &CaseDrift| get(drift).unwrap_or(f64::INFINITY);
+        Some((format!("{name}, {unit}"), Spread::of(&known.then(|| sample.column(value))?)?))
     };
     names.into_iter().filter_map(of).collect()
 }

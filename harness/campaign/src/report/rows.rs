@@ -65,9 +65,8 @@ pub struct CaseDrift {
     pub rate_nmi_per_h: f64,
     /// Radial error at the marks that it reached, nmi.
     pub marks_nmi: BTreeMap<String, f64>,
-    /// Largest errors of attitude and velocity that were scored, by name and unit, such as
-    /// "heading, arcmin".
-    pub solution: BTreeMap<String, f64>,
+    /// Largest errors of attitude and velocity that were scored, with name and unit.
+    pub solution: Box<[(&'static str, &'static str, f64)]>,
     /// Errors over time.
     pub curve: Option<StoredCurve>,
 }
@@ -191,7 +190,7 @@ impl CaseDrift {
         let curve = Curve::of(&navigation.series_hours);
         Ok(Self {
             solution: solution
-                .filter_map(|(name, unit, score)| Some((format!("{name}, {unit}"), score?.max)))
+                .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
                 .collect(),
             duration_h: navigation.duration_h,
             final_nmi: radial.r#final,
