@@ -145,19 +145,23 @@ class Command:
 
 
 def crashed(folder):
-    """Results that only a signal explains."""
+    """Results that only a signal explains, and cases with two of them, of every campaign in a folder."""
     found = []
-    for path in folder.rglob("*.json"):
-        text = path.read_text()
-        if any(words in text for words in ("crashed", "signal: ", "took more than", "took too long")):
-            found.append(path)
+    for plan in sorted(folder.rglob("plan.json")):
+        said = subprocess.run([OCTANT, "campaign", "status", plan.parent, "--json"], capture_output=True, text=True)
+        if not said.stdout:
+            found.append(said.stderr)
+            continue
+        state = json.loads(said.stdout)
+        signs = ("crashed", "signal: ", "took more than", "took too long")
+        found += state["differing"] + [bad for bad in state["bad"] if any(words in bad["reason"] for words in signs)]
     return found
 
 
 def left(folder):
     """Files and folders that aren't whole."""
     ends = (".new", ".partial", ".replaced", ".again")
-    return [path for path in folder.rglob("*") if path.name.endswith(ends) or ".differs-" in path.name]
+    return [path for path in folder.rglob("*") if path.name.endswith(ends)]
 
 
 def tables(folder):
@@ -223,7 +227,7 @@ def campaign(folder, rng):
     times = 0
     while rounds.count < SIGNALS and not failed:
         times += 1
-        shutil.rmtree(folder / "torn/cases", ignore_errors=True)
+        shutil.rmtree(folder / "torn/results", ignore_errors=True)
         shutil.rmtree(folder / "torn/parts", ignore_errors=True)
         status, said = rounds.run(folder, run)
         expect(status == 0, f"campaign: status {status}: {said}")
@@ -231,7 +235,7 @@ def campaign(folder, rng):
             break
         subprocess.run([OCTANT, "campaign", "merge", "torn"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
         expect(tables(folder / "torn") == tables(folder / "whole"), "campaign: other bytes than undisturbed")
-        expect(not crashed(folder / "torn/cases"), f"campaign: {crashed(folder / 'torn/cases')}")
+        expect(not crashed(folder / "torn"), f"campaign: {crashed(folder / 'torn')}")
         expect(not left(folder), f"campaign: left over: {left(folder)}")
     return rounds, times
 

@@ -1,7 +1,9 @@
 //! Child processes that don't inherit the signing key, and time limits for them.
 
+mod asked;
 mod limited;
 
+pub use asked::{AskedChild, AskedReply, SEPARATOR};
 pub use limited::{ChildEnded, ChildOutcome, finish};
 
 use std::ffi::OsStr;

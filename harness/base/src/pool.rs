@@ -18,18 +18,34 @@ pub fn in_order<T: Send, E: Send>(
     is_cancelled: impl Fn() -> bool + Sync,
     work: impl Fn(usize) -> Result<Option<T>, E> + Sync,
 ) -> Result<Vec<Option<T>>, E> {
+    in_order_with(jobs, count, is_cancelled, || (), |(), task| work(task))
+}
+
+/// Does tasks as [`in_order`] does. Each thread makes something once, and gives it to all of its tasks: a
+/// process that does them, for example. It is dropped on its thread when no task is left.
+///
+/// # Errors
+/// As [`in_order`].
+pub fn in_order_with<S, T: Send, E: Send>(
+    jobs: usize,
+    count: usize,
+    is_cancelled: impl Fn() -> bool + Sync,
+    of_thread: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, usize) -> Result<Option<T>, E> + Sync,
+) -> Result<Vec<Option<T>>, E> {
     let next = AtomicUsize::new(0);
     let results: Mutex<Vec<Result<Option<T>, E>>> =
         Mutex::new((0..count).map(|_| Ok(None)).collect());
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, count.max(1)) {
             spawn(scope, || {
+                let mut own = of_thread();
                 while !is_cancelled() {
                     let task = next.fetch_add(1, Ordering::Relaxed);
                     if task >= count {
                         break;
                     }
-                    let result = work(task);
+                    let result = work(&mut own, task);
                     if result.is_err() {
                         next.fetch_max(count, Ordering::Relaxed);
                     }
@@ -163,6 +179,17 @@ mod tests {
         let failed = in_order(3, 50, || false, |i| if i % 7 == 3 { Err(i) } else { Ok(Some(i)) });
         assert_eq!(failed, Err(3));
         assert_eq!(in_order(3, 0, || false, |_| Ok::<Option<u8>, ()>(None)), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn each_thread_has_its_own() {
+        let made = AtomicUsize::new(0);
+        let make = || made.fetch_add(1, Ordering::Relaxed);
+        let mut done = [0; 3];
+        let work = |own: &mut usize, _| Ok::<_, ()>(Some(*own));
+        let results = in_order_with(3, 60, || false, make, work).unwrap();
+        results.into_iter().flatten().for_each(|own| done[own] += 1);
+        assert_eq!((made.load(Ordering::Relaxed), done.iter().sum::<usize>()), (3, 60));
     }
 
     #[test]

@@ -6,21 +6,23 @@
 //! inside.
 
 mod comparison;
+mod sample;
 mod words;
 
 pub use comparison::{Detects, EnsembleComparison, ErrorRow, RUNS_MIN};
 
-use crate::case::{self, CaseResult, ResultError};
+use crate::case::ResultError;
 use crate::plan::{Case, Plan, PlanError};
+use crate::store::CampaignResults;
 use octant_base::display::DisplayUnits;
-use octant_observe::ensemble::{Ensemble, EnsembleError, ErrorBand, ensemble};
+use octant_observe::ensemble::{DriftBand, Ensemble, EnsembleError, ErrorBand, ensemble};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
-use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
 use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{deviation, paired, power};
+use sample::{FinalErrors, MethodSample, SampleCounts};
 use serde::{Deserialize, Serialize};
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::path::Path;
 use words::conclude;
 
@@ -86,6 +88,7 @@ pub fn against(
     selection: &Selection<'_>,
 ) -> Result<Against, AgainstError> {
     let mut groups: Vec<Vec<&Case>> = Vec::new();
+    let mut place = HashMap::new();
     for case in &plan.cases {
         let planned = plan.planned(case)?;
         let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
@@ -93,14 +96,8 @@ pub fn against(
         if !chosen {
             continue;
         }
-        let same = |group: &&mut Vec<&Case>| {
-            group.first().is_some_and(|first| {
-                first.scenario == case.scenario
-                    && first.set == case.set
-                    && first.faults == case.faults
-            })
-        };
-        match groups.iter_mut().find(same) {
+        let at = *place.entry((&case.scenario, &case.set, &case.faults)).or_insert(groups.len());
+        match groups.get_mut(at) {
             Some(group) => group.push(case),
             None => groups.push(vec![case]),
         }
@@ -108,6 +105,7 @@ pub fn against(
     if groups.is_empty() {
         return Err(AgainstError::NoCase);
     }
+    let results = CampaignResults::open(folder)?;
     let mut found = Against::default();
     let mut single = 0;
     for group in groups {
@@ -128,19 +126,26 @@ pub fn against(
             ));
             continue;
         }
-        let sample = Sample::read(folder, &group)?;
         let methods = std::iter::once(Method::Primary)
             .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
+        let (mut ensembles, mut samples) = (Vec::new(), Vec::new());
         for method in methods {
-            let ensemble = match ensemble(&scenario, method) {
-                Ok(ensemble) => ensemble,
-                Err(error @ EnsembleError::Setup(_)) => return Err(error.into()),
-                Err(error) => {
-                    found.left_out.push(format!("{name}: {error}"));
-                    continue;
+            match ensemble(&scenario, method) {
+                Ok(ensemble) => {
+                    let hours = times(&ensemble).map(|time| time.hours).collect();
+                    samples.push(MethodSample::new(method, hours));
+                    ensembles.push(ensemble);
                 }
-            };
-            match compare(first, &ensemble, &sample, method) {
+                Err(error @ EnsembleError::Setup(_)) => return Err(error.into()),
+                Err(error) => found.left_out.push(format!("{name}: {error}")),
+            }
+        }
+        if samples.is_empty() {
+            continue;
+        }
+        let counts = sample::read(&results, &group, &mut samples)?;
+        for (ensemble, sample) in ensembles.iter().zip(&samples) {
+            match compare(first, ensemble, sample, counts) {
                 Ok(comparison) => found.compared.push(comparison),
                 Err(reason) => found.left_out.push(format!("{name}: {reason}")),
             }
@@ -162,107 +167,43 @@ fn named(case: &Case) -> String {
     }
 }
 
-/// Results of the cases of an ensemble.
-#[derive(Default)]
-struct Sample {
-    summaries: Vec<Summary>,
-    open: usize,
-    broken: usize,
-    repeated: usize,
-}
-
-impl Sample {
-    fn read(folder: &Path, cases: &[&Case]) -> Result<Self, ResultError> {
-        let mut sample = Self::default();
-        let mut streams = HashSet::new();
-        for case in cases {
-            let path = case::file(folder, &case.id);
-            if !path.exists() {
-                sample.open += 1;
-                continue;
-            }
-            match CaseResult::read(&path)?.summary {
-                Some(summary) if !streams.insert(summary.stream_hash.clone()) => {
-                    sample.repeated += 1;
-                }
-                Some(summary) => sample.summaries.push(summary),
-                None => sample.broken += 1,
-            }
-        }
-        Ok(sample)
-    }
-
-    /// Lists the published calibrations, with the navigation after them.
-    fn of(&self, method: Method) -> Vec<(&CalibrationScore, Option<&NavigationScore>)> {
-        fn one(
-            summary: &Summary,
-            method: Method,
-        ) -> Option<(&CalibrationScore, Option<&NavigationScore>)> {
-            let (calibration, navigation) = match method {
-                Method::Primary => (&summary.calibration, &summary.navigation),
-                Method::Baseline => {
-                    let baseline = summary.baseline.as_ref()?;
-                    (&baseline.calibration, &baseline.navigation)
-                }
-            };
-            let calibration = calibration.as_ref().filter(|c| c.refused.is_none())?;
-            Some((calibration, navigation.as_ref()))
-        }
-        self.summaries.iter().filter_map(|summary| one(summary, method)).collect()
-    }
-}
-
-/// Interpolates latitude and longitude error at a time between two points of a series.
-fn at(navigation: &NavigationScore, hours: f64) -> Option<[f64; 2]> {
-    let series = &navigation.series_hours;
-    let after = series.partition_point(|point| point[0] < hours);
-    let [to_h, to @ ..] = *series.get(after).or(series.last().filter(|p| p[0] >= hours - 1e-3))?;
-    let [from_h, from @ ..] = *series.get(after.checked_sub(1)?)?;
-    let part = if to_h > from_h { ((hours - from_h) / (to_h - from_h)).min(1.0) } else { 1.0 };
-    Some([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])))
+/// Times at which a drift is compared.
+fn times(ensemble: &Ensemble) -> impl Iterator<Item = &DriftBand> {
+    let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
+    ensemble.drift.iter().skip(every - 1).step_by(every)
 }
 
 /// Attitude or velocity error at the end of the navigation, predicted and in each run.
-struct Final {
+struct Final<'a> {
     name: String,
     unit: &'static str,
     hours: f64,
     band: ErrorBand,
-    values: Vec<f64>,
+    values: &'a [f64],
 }
 
-/// Collects the final errors of attitude and velocity that the prediction and all runs have: results
-/// from before they were scored have none.
-fn finals(
-    ensemble: &Ensemble,
-    runs: &[(&CalibrationScore, Option<&NavigationScore>)],
-) -> Vec<Final> {
+/// Lists the final errors of attitude and velocity that the prediction and all runs have.
+fn finals<'a>(ensemble: &Ensemble, sample: &'a MethodSample) -> Vec<Final<'a>> {
     let Some(last) = ensemble.drift.last() else { return Vec::new() };
     let Some(solution) = &last.solution else { return Vec::new() };
-    let scores: Option<Vec<_>> =
-        runs.iter().map(|(_, navigation)| Some((*navigation)?.errors())).collect();
-    let Some(scores) = scores else { return Vec::new() };
-    let one = |(index, band): (usize, ErrorBand)| {
-        // Latitude and longitude come first.
-        let index = index + 2;
-        let (name, unit, _) = scores.first()?[index];
-        let values = scores.iter().map(|run| Some(run[index].2?.r#final)).collect::<Option<_>>()?;
+    let both = solution.all().into_iter().zip(sample.finals());
+    let one = |(band, found): (ErrorBand, Option<FinalErrors<'a>>)| {
+        let FinalErrors { name, unit, values } = found?;
         let name = format!("{name} at {:.1} h", last.hours);
         Some(Final { name, unit, hours: last.hours, band, values })
     };
-    solution.all().into_iter().enumerate().filter_map(one).collect()
+    both.filter_map(one).collect()
 }
 
 fn compare(
     first: &Case,
     ensemble: &Ensemble,
-    sample: &Sample,
-    method: Method,
+    sample: &MethodSample,
+    counts: SampleCounts,
 ) -> Result<EnsembleComparison, String> {
-    let runs = sample.of(method);
-    let count = runs.len();
+    let count = sample.runs;
     if count < 2 {
-        return Err(match sample.repeated {
+        return Err(match counts.repeated {
             0 => format!("{count} of its cases have a calibration to compare"),
             repeated => format!(
                 "{count} of its cases have a calibration to compare: {repeated} more are the same runs \
@@ -270,9 +211,8 @@ fn compare(
             ),
         });
     }
-    let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
-    let times: Vec<_> = ensemble.drift.iter().skip(every - 1).step_by(every).collect();
-    let finals = finals(ensemble, &runs);
+    let times: Vec<_> = times(ensemble).collect();
+    let finals = finals(ensemble, sample);
     let rows = NAMES.len() + 2 * times.len() + finals.len();
     // Each row has two intervals.
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
@@ -282,12 +222,9 @@ fn compare(
         paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;
 
     let mut states = Vec::with_capacity(NAMES.len());
-    for name in NAMES {
+    for (index, name) in NAMES.into_iter().enumerate() {
         let Some(state) = ensemble.states.iter().find(|state| state.name == name) else { continue };
-        let values: Option<Vec<f64>> = runs
-            .iter()
-            .map(|(calibration, _)| calibration.parameters.get(name).and_then(|p| p.error))
-            .collect();
+        let values = sample.parameter(index);
         let values = values.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
         let predicted = (state.mean, state.sigma);
         states.push(row(
@@ -295,18 +232,15 @@ fn compare(
             &state.unit,
             None,
             predicted,
-            &values,
+            values,
             (low, high),
             student,
         ));
     }
     let mut drift = Vec::with_capacity(2 * times.len());
     for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
-        for time in &times {
-            let values: Option<Vec<f64>> = runs
-                .iter()
-                .map(|(_, navigation)| Some(at((*navigation)?, time.hours)?[axis]))
-                .collect();
+        for (index, time) in times.iter().enumerate() {
+            let values = sample.drift(axis, index);
             let values = values
                 .ok_or_else(|| format!("one of its cases has no drift at {:.1} h", time.hours))?;
             let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
@@ -317,7 +251,7 @@ fn compare(
                 "arcmin",
                 Some(time.hours),
                 predicted,
-                &values,
+                values,
                 (low, high),
                 student,
             ));
@@ -325,7 +259,7 @@ fn compare(
     }
     for Final { name, unit, hours, band, values } in finals {
         let predicted = (band.mean, band.sigma);
-        drift.push(row(name, unit, Some(hours), predicted, &values, (low, high), student));
+        drift.push(row(name, unit, Some(hours), predicted, values, (low, high), student));
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
     let mut comparison = EnsembleComparison {
@@ -333,9 +267,9 @@ fn compare(
         set: first.set.clone(),
         method: ensemble.method.clone(),
         runs: count,
-        open: sample.open,
-        without: sample.broken + sample.summaries.len() - count,
-        repeated: sample.repeated,
+        open: counts.open,
+        without: counts.broken + counts.summaries - count,
+        repeated: counts.repeated,
         confidence: CONFIDENCE,
         known_to: 0.5 * (high - low),
         detects: detects(count as u64, each),

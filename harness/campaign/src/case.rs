@@ -1,7 +1,10 @@
-//! Runs one case to its summary, and stores its result as a file.
+//! Runs one case to its summary, and reads its result.
 
 pub use super::make::hash_of;
-use super::plan::{Case, Plan, PlanError, PlannedScenario};
+pub use super::result_error::ResultError;
+
+use super::plan::{Case, PlanError, PlannedScenario};
+use super::store::error::ResultPlace;
 use octant_base::control::Control;
 use octant_requirements::{Comparison, Verdict};
 use octant_run::method::MethodError;
@@ -11,8 +14,7 @@ use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_score::verdict::RequirementResult;
 use serde::{Deserialize, Serialize};
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Version of the result file.
 pub const SCHEMA: u32 = 2;
@@ -56,19 +58,6 @@ pub enum CaseError {
     Json(#[from] serde_json::Error),
 }
 
-/// Input of a case's process, on its standard input.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CaseJob {
-    /// The case.
-    pub case: Case,
-    /// Scenario.
-    pub scenario: PlannedScenario,
-    /// Limit of its memory, MiB.
-    pub memory_mib: u64,
-    /// The folder of the campaign.
-    pub folder: PathBuf,
-}
-
 /// Runs a case.
 ///
 /// # Errors
@@ -101,68 +90,6 @@ pub fn hash_of_summary(summary: &serde_json::Value) -> String {
 fn verdict_of(verdict: Verdict, summary: &Summary) -> Verdict {
     let nothing = summary.requirements.is_empty();
     verdict.worst(if nothing { Verdict::Inconclusive } else { Verdict::Pass })
-}
-
-/// Reasons why the result of a case can't be read. The text fits after "failed to".
-#[derive(Debug, thiserror::Error)]
-pub enum ResultError {
-    /// The file can't be read.
-    #[error("read {path}: {source}")]
-    System {
-        /// The file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// The file isn't the result of a case.
-    #[error("read {path}: expected the result of a case: {source}")]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// Problem found.
-        source: serde_json::Error,
-    },
-    /// The file has a version that this program doesn't read.
-    #[error(
-        "read {path}: found version {found}, this program reads versions 1 to {SCHEMA}{}",
-        if *.found > SCHEMA { ": a newer Octant wrote it" } else { "" }
-    )]
-    Version {
-        /// The file.
-        path: PathBuf,
-        /// Its version.
-        found: u32,
-    },
-    /// The file is named for another case.
-    #[error(
-        "read {path}: it is the result of case {case}, expected that of the case it is named for"
-    )]
-    Name {
-        /// The file.
-        path: PathBuf,
-        /// Case of its result.
-        case: String,
-    },
-    /// The result contradicts itself.
-    #[error("read {path}: it contradicts itself: {}", .contradictions.join("; "))]
-    Contradiction {
-        /// The file.
-        path: PathBuf,
-        /// Contradictions.
-        contradictions: Vec<String>,
-    },
-    /// The result isn't that of the planned case.
-    #[error("read {path}: its {what} is {found}, the plan has {expected}")]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// Part that differs.
-        what: String,
-        /// Value in the result.
-        found: String,
-        /// Value in the plan.
-        expected: String,
-    },
 }
 
 impl CaseResult {
@@ -226,114 +153,58 @@ impl CaseResult {
     pub fn read(path: &Path) -> Result<Self, ResultError> {
         let bytes = std::fs::read(path)
             .map_err(|source| ResultError::System { path: path.to_owned(), source })?;
-        Self::from_bytes(path, &bytes)
+        Self::from_bytes(&ResultPlace::File(path.to_owned()), &bytes)
     }
 
-    /// Reads as [`CaseResult::read`], from bytes.
+    /// Reads as [`CaseResult::read`], from the bytes that are stored in a place.
     ///
     /// # Errors
     /// If it can't be read, or isn't the result of its case: found and expected.
-    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, ResultError> {
-        let result = Self::unjudged(path, bytes)?;
+    pub fn from_bytes(place: &ResultPlace, bytes: &[u8]) -> Result<Self, ResultError> {
+        let result = Self::unjudged(place, bytes)?;
         match result.contradictions(bytes).as_slice() {
             [] => Ok(result),
             all => Err(ResultError::Contradiction {
-                path: path.to_owned(),
+                place: place.clone(),
                 contradictions: all.to_vec(),
             }),
         }
     }
 
-    /// Reads the result file of a case as it is: its verdict isn't reliable until it is derived
-    /// again.
+    /// Reads the result of a case as it is: its verdict isn't reliable until it is derived again.
     ///
     /// # Errors
     /// If it can't be read, or isn't the result of its case: found and expected.
-    pub fn unjudged(path: &Path, bytes: &[u8]) -> Result<Self, ResultError> {
-        let form = |source| ResultError::Form { path: path.to_owned(), source };
+    pub fn unjudged(place: &ResultPlace, bytes: &[u8]) -> Result<Self, ResultError> {
+        let form = |source| ResultError::Form { place: place.clone(), source };
         // The version is checked first: nothing else is reliable in a newer file.
         let Version { schema } = serde_json::from_slice(bytes).map_err(form)?;
         if !(1..=SCHEMA).contains(&schema) {
-            return Err(ResultError::Version { path: path.to_owned(), found: schema });
+            let place = place.clone();
+            return Err(ResultError::Version { place, found: schema, newest: SCHEMA });
         }
         let result: Self = serde_json::from_slice(bytes).map_err(form)?;
-        let name = path.file_name().map_or("".into(), |name| name.to_string_lossy());
-        if name.split('.').next() != Some(result.case.as_str()) {
-            return Err(ResultError::Name { path: path.to_owned(), case: result.case });
+        if place.case() != result.case {
+            return Err(ResultError::Name { place: place.clone(), case: result.case });
         }
         Ok(result)
     }
 
-    /// Reads the result of a planned case in the folder of its campaign, with the BLAKE3 of the
-    /// file. `None` if there is none.
-    ///
-    /// # Errors
-    /// If it can't be read, or isn't the result of its case: found and expected.
-    pub fn of_plan(
-        plan: &Plan,
-        folder: &Path,
-        case: &Case,
-    ) -> Result<Option<(Self, String)>, ResultError> {
-        let path = file(folder, &case.id);
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(ResultError::System { path, source }),
-        };
-        let result = Self::from_bytes(&path, &bytes)?;
-        if let Ok(planned) = plan.planned(case) {
-            result.belongs(&path, planned, case)?;
-        }
-        Ok(Some((result, blake3::hash(&bytes).to_hex().to_string())))
-    }
-
     /// Checks that the result belongs to a planned case, with its seed and checks.
-    fn belongs(
+    pub(crate) fn belongs(
         &self,
-        path: &Path,
+        place: &ResultPlace,
         planned: &PlannedScenario,
         case: &Case,
     ) -> Result<(), ResultError> {
-        let wrong = |what: &str, found: &str, expected: &str| {
-            Err(ResultError::Foreign {
-                path: path.to_owned(),
-                what: what.to_owned(),
-                found: found.to_owned(),
-                expected: expected.to_owned(),
-            })
-        };
         let Some(summary) = &self.summary else { return Ok(()) };
-        if self.schema >= CHAINED {
-            let expected = hash_of(planned, case);
-            let found = self.case_blake3.as_deref().unwrap_or("none");
-            if found != expected {
-                return wrong("case_blake3", found, &expected);
-            }
-        }
-        if summary.seed != case.seed {
-            return wrong("seed", &summary.seed.to_string(), &case.seed.to_string());
-        }
-        for check in &planned.checks {
-            let of_it = |result: &&RequirementResult| result.id == check.id;
-            let same = |result: &&RequirementResult| {
-                (result.measure.as_str(), result.comparison, result.limit)
-                    == (check.measure.as_str(), check.comparison, check.limit)
-            };
-            let mut found = summary.requirements.iter().filter(of_it).peekable();
-            // A missing check is reported as not checked.
-            if let Some(first) = found.peek().copied()
-                && !found.any(|result| same(&result))
-            {
-                let sign =
-                    |comparison: Comparison, limit: f64| format!("{} {limit}", comparison.sign());
-                return wrong(
-                    &format!("requirement {}", check.id),
-                    &format!("{} {}", first.measure, sign(first.comparison, first.limit)),
-                    &format!("{} {}", check.measure, sign(check.comparison, check.limit)),
-                );
-            }
-        }
-        Ok(())
+        let claim = ResultClaim {
+            schema: self.schema,
+            case_blake3: self.case_blake3.as_deref(),
+            seed: summary.seed,
+            checks: &summary.requirements,
+        };
+        claim.check(place, planned, case)
     }
 
     /// Lists the contradictions within the result.
@@ -374,63 +245,66 @@ impl CaseResult {
     }
 }
 
-#[derive(Deserialize)]
-struct Version {
-    schema: u32,
+/// Planned case that a result with a summary names as its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ResultClaim<'a> {
+    pub(crate) schema: u32,
+    pub(crate) case_blake3: Option<&'a str>,
+    pub(crate) seed: u64,
+    pub(crate) checks: &'a [RequirementResult],
 }
 
-/// Outcome of storing a result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum StoreOutcome {
-    /// The result was written.
-    New,
-    /// The same bytes were there already.
-    Same,
-    /// A different result was there: the same case has two results. This one is stored beside it.
-    Differs(PathBuf),
-}
-
-/// Returns the result file of a case in the folder of its campaign.
-#[must_use]
-pub fn file(folder: &Path, id: &str) -> PathBuf {
-    folder.join("cases").join(id.get(..2).unwrap_or("")).join(format!("{id}.json"))
-}
-
-/// Stores a result: whole or not at all, and never over a different one.
-///
-/// # Errors
-/// If the operating system refuses.
-pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<StoreOutcome> {
-    let path = file(folder, id);
-    let parent = path.parent().unwrap_or(folder);
-    std::fs::create_dir_all(parent)?;
-    let new = super::new_file(parent)?;
-    std::fs::write(new.path(), bytes)?;
-    new.as_file().sync_data()?;
-    match new.persist_noclobber(&path) {
-        Ok(_) => Ok(StoreOutcome::New),
-        Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
-            if std::fs::read(&path)? == bytes {
-                return Ok(StoreOutcome::Same);
+impl ResultClaim<'_> {
+    /// Checks that it names the planned case, with its seed and checks.
+    pub(crate) fn check(
+        &self,
+        place: &ResultPlace,
+        planned: &PlannedScenario,
+        case: &Case,
+    ) -> Result<(), ResultError> {
+        let wrong = |what: &str, found: &str, expected: &str| {
+            Err(ResultError::Foreign {
+                place: place.clone(),
+                what: what.to_owned(),
+                found: found.to_owned(),
+                expected: expected.to_owned(),
+            })
+        };
+        if self.schema >= CHAINED {
+            let expected = hash_of(planned, case);
+            let found = self.case_blake3.unwrap_or("none");
+            if found != expected {
+                return wrong("case_blake3", found, &expected);
             }
-            let hash = blake3::hash(bytes).to_hex();
-            let other = path.with_file_name(format!("{id}.differs-{}.json", &hash.as_str()[..8]));
-            refused.file.persist(&other).map_err(|error| error.error)?;
-            Ok(StoreOutcome::Differs(other))
         }
-        Err(refused) => Err(refused.error),
+        if self.seed != case.seed {
+            return wrong("seed", &self.seed.to_string(), &case.seed.to_string());
+        }
+        for check in &planned.checks {
+            let of_it = |result: &&RequirementResult| result.id == check.id;
+            let same = |result: &&RequirementResult| {
+                (result.measure.as_str(), result.comparison, result.limit)
+                    == (check.measure.as_str(), check.comparison, check.limit)
+            };
+            let mut found = self.checks.iter().filter(of_it).peekable();
+            // A missing check is reported as not checked.
+            if let Some(first) = found.peek().copied()
+                && !found.any(|result| same(&result))
+            {
+                let sign =
+                    |comparison: Comparison, limit: f64| format!("{} {limit}", comparison.sign());
+                return wrong(
+                    &format!("requirement {}", check.id),
+                    &format!("{} {}", first.measure, sign(first.comparison, first.limit)),
+                    &format!("{} {}", check.measure, sign(check.comparison, check.limit)),
+                );
+            }
+        }
+        Ok(())
     }
 }
 
-/// Finds a different result of the same case.
-pub(crate) fn differing(path: &Path, id: &str) -> Option<PathBuf> {
-    let start = format!("{id}.differs-");
-    let mut found: Vec<PathBuf> = std::fs::read_dir(path.parent()?)
-        .ok()?
-        .flatten()
-        .filter(|entry| entry.file_name().to_string_lossy().starts_with(&start))
-        .map(|entry| entry.path())
-        .collect();
-    found.sort();
-    found.into_iter().next()
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
 }

@@ -4,190 +4,206 @@
 //! is compared; if they aren't, as for a part made on another machine, the rows are checked for
 //! consistency: the verdict of a check with its value and limit, that of a case with its checks.
 
-use super::case;
 use super::factors::FactorColumns;
 use super::plan::Plan;
-use super::results::{self, RESULT, Rows, TABLES};
-use super::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
+use super::results::{self, RESULT, TABLES};
+use super::spill::SpilledRows;
+use super::store::CampaignResults;
+use super::table::{ColumnKind, ColumnValue, TableError};
+use super::table_rows::{CaseColumn, CaseRows, CaseTable};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
-use std::collections::{BTreeMap, HashMap};
-use std::path::{Path, PathBuf};
+use std::collections::HashMap;
+use std::path::PathBuf;
 
-/// Table with the rows of each case.
-struct Read {
-    path: PathBuf,
-    columns: BTreeMap<String, ColumnValues>,
-    cases: BTreeMap<usize, Vec<usize>>,
-}
-
-impl Read {
-    fn of(path: PathBuf, place: &HashMap<&str, usize>) -> Result<Self, TableError> {
-        let form = |reason: String| TableError::Form { path: path.clone(), reason };
-        let table = ExistingTable::open(&path)?;
-        let mut columns = BTreeMap::new();
-        for (name, _) in &table.columns {
-            columns.extend(table.column(name)?.map(|values| (name.clone(), values)));
-        }
-        let Some(ColumnValues::Text(ids)) = columns.get("case") else {
-            return Err(form("it has no column case".to_owned()));
-        };
-        let mut cases: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (row, id) in ids.iter().enumerate() {
-            let id = id.as_deref().unwrap_or("");
-            let index = place.get(id);
-            let index = index.ok_or_else(|| form(format!("the plan has no case {id}")))?;
-            cases.entry(*index).or_default().push(row);
-        }
-        Ok(Self { path, columns, cases })
-    }
-
-    fn rows(&self, case: usize) -> &[usize] {
-        self.cases.get(&case).map_or(&[], Vec::as_slice)
-    }
-
-    fn text(&self, column: &str, row: usize) -> Option<String> {
-        match self.columns.get(column)?.at(row)? {
-            ColumnValue::Text(text) => Some(text.to_string()),
-            _ => None,
-        }
-    }
-
-    fn number(&self, column: &str, row: usize) -> Option<f64> {
-        match self.columns.get(column)?.at(row)? {
-            ColumnValue::Number(number) => Some(number),
-            _ => None,
-        }
-    }
-
-    fn verdict(&self, row: usize) -> Option<Verdict> {
-        let name = self.text("verdict", row)?;
-        Verdict::ALL.into_iter().find(|verdict| verdict.name() == name)
-    }
-
-    fn wrong(&self, reason: String) -> TableError {
-        TableError::Form { path: self.path.clone(), reason }
-    }
-}
-
-/// Checks the tables at `paths`, named as by a merge, against the results in a folder, or for
-/// consistency if it has none.
+/// Checks the tables at `paths`, named as by a merge, against the results of their folder, or for
+/// consistency where there is none.
 ///
 /// # Errors
 /// If one can't be read, or contradicts a result or itself.
-pub fn check(plan: &Plan, folder: &Path, path: impl Fn(&str) -> PathBuf) -> Result<(), TableError> {
+pub fn check(
+    plan: &Plan,
+    stored: &CampaignResults,
+    path: impl Fn(&str) -> PathBuf,
+) -> Result<(), TableError> {
     let place: HashMap<&str, usize> =
         plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
-    let [cases, checks, drift] = TABLES.map(|(name, _)| Read::of(path(name), &place));
+    let [cases, checks, drift] = TABLES.map(|(name, _)| CaseTable::open(&path(name), &place));
     let tables = [cases?, checks?, drift?];
-    let there = |index: &usize| case::file(folder, &plan.cases[*index].id).exists();
-    let (compared, alone): (Vec<usize>, Vec<usize>) =
-        tables[0].cases.keys().copied().partition(there);
-    for index in alone {
-        consistent(plan, index, &tables[0], &tables[1])?;
-    }
+    let there = |index: &usize| stored.has(&plan.cases[*index].id);
+    let (compared, alone): (Vec<usize>, Vec<usize>) = tables[0].cases().partition(there);
+    consistent(plan, &alone, &tables[0], &tables[1])?;
     for table in &tables[1..] {
-        if let Some(index) = table.cases.keys().find(|index| !tables[0].cases.contains_key(index)) {
-            let id = &plan.cases[*index].id;
-            return Err(table.wrong(format!("it has case {id}, and {} hasn't", TABLES[0].0)));
+        if let Some(index) = table.cases().find(|index| tables[0].rows(*index).is_empty()) {
+            let id = &plan.cases[index].id;
+            return Err(wrong(table, format!("it has case {id}, and {} hasn't", TABLES[0].0)));
         }
     }
-    // One after another, because memory would hold the rows of a large campaign twice.
     let is_text = |factor: &str| {
-        matches!(tables[0].columns.get(&format!("factor.{factor}")), Some(ColumnValues::Text(_)))
+        tables[0].table.columns.contains(&(format!("factor.{factor}"), ColumnKind::Text))
     };
     let factors = FactorColumns::of(plan).without_units(is_text, plan);
-    for index in compared {
-        let expected = results::rows(plan, folder, std::iter::once(index), &factors)?;
-        for (table, rows) in tables.iter().zip(&expected) {
-            same(plan, folder, index, table, rows)?;
-        }
+    // In a temporary folder of the system: the folder of the tables may be write-protected.
+    let cases = compared.iter().copied();
+    let expected = results::rows(plan, stored, cases, &factors, &std::env::temp_dir())?;
+    for (number, (table, rows)) in tables.iter().zip(&expected.tables).enumerate() {
+        let counts = expected.counts.iter().map(|counts| counts[number]);
+        let cases: Vec<(usize, usize)> = compared.iter().copied().zip(counts).collect();
+        same(plan, stored, &cases, table, rows)?;
     }
     Ok(())
 }
 
-/// Checks that the rows of a case are those of its result.
+/// Makes the error of a table that contradicts something.
+fn wrong(table: &CaseTable, reason: String) -> TableError {
+    TableError::Form { path: table.path.clone(), reason }
+}
+
+/// Checks that the rows of cases are those of their results. `cases` holds the place of each in the
+/// plan, and the number of rows that its result gives.
 fn same(
     plan: &Plan,
-    folder: &Path,
-    index: usize,
-    table: &Read,
-    expected: &Rows,
+    stored: &CampaignResults,
+    cases: &[(usize, usize)],
+    table: &CaseTable,
+    expected: &SpilledRows,
 ) -> Result<(), TableError> {
-    let id = &plan.cases[index].id;
-    let file = case::file(folder, id);
-    let found = table.rows(index);
-    if found.len() != expected.rows {
-        return Err(table.wrong(format!(
-            "case {id} has {} rows, its result {} gives {}",
-            found.len(),
-            file.display(),
-            expected.rows
-        )));
+    let id = |case: usize| &plan.cases[case].id;
+    let place = |case| stored.place(id(case)).map_or_else(String::new, |place| place.to_string());
+    for (case, count) in cases {
+        let found = table.count(*case);
+        if found != *count {
+            return Err(wrong(
+                table,
+                format!(
+                    "case {} has {found} rows, its result {} gives {count}",
+                    id(*case),
+                    place(*case)
+                ),
+            ));
+        }
     }
-    for (name, values) in &table.columns {
-        for (row, at) in found.iter().enumerate() {
-            let now = expected.columns.get(name).and_then(|values| values.at(row));
-            // Converted as for a column of this kind.
-            let mut cell = ColumnValues::new(values.kind());
-            cell.push(now.clone());
-            let said = values.at(*at);
-            if cell.at(0) == said {
-                continue;
+    for (name, kind) in &table.table.columns {
+        let mut values = table.values(name)?;
+        let mut of_results = expected.column(name);
+        for (case, _) in cases {
+            for row in table.rows(*case).iter().flat_map(CaseRows::each) {
+                let said = values.at(row)?;
+                // Converted as for a column of this kind.
+                let now = kind.converted(of_results.next().transpose()?.flatten());
+                if now == said {
+                    continue;
+                }
+                return Err(wrong(
+                    table,
+                    format!(
+                        "case {} has {} in column {name}, its result {} has {}: it isn't what this \
+                         result gives",
+                        id(*case),
+                        in_words(&said),
+                        place(*case),
+                        in_words(&now)
+                    ),
+                ));
             }
-            let text = |value: &Option<ColumnValue>| match value {
-                None => "nothing".to_owned(),
-                Some(ColumnValue::Text(text)) => text.to_string(),
-                Some(ColumnValue::Number(number)) => number.to_string(),
-                Some(ColumnValue::Integer(number)) => number.to_string(),
-                Some(ColumnValue::Boolean(value)) => value.to_string(),
-            };
-            return Err(table.wrong(format!(
-                "case {id} has {} in column {name}, its result {} has {}: it isn't what this result gives",
-                text(&said),
-                file.display(),
-                text(&cell.at(0))
-            )));
         }
     }
     Ok(())
 }
 
-/// Checks the rows of a case for consistency with each other.
-fn consistent(plan: &Plan, index: usize, cases: &Read, checks: &Read) -> Result<(), TableError> {
-    let id = &plan.cases[index].id;
-    let mut worst = Verdict::Pass;
-    for row in checks.rows(index) {
-        let requirement = checks.text("requirement", *row).unwrap_or_default();
-        let sign = checks.text("comparison", *row).unwrap_or_default();
-        let comparison = Comparison::ALL.into_iter().find(|known| known.sign() == sign);
-        let (verdict, limit) = (checks.verdict(*row), checks.number("limit", *row));
-        let (Some(verdict), Some(comparison), Some(limit)) = (verdict, comparison, limit) else {
-            return Err(checks
-                .wrong(format!("case {id} has no verdict, comparison or limit of {requirement}")));
-        };
-        let value = checks.number("value", *row);
-        if !stands(verdict, comparison, value, limit) {
-            let value = value.map_or("none".to_owned(), |value| value.to_string());
-            return Err(checks.wrong(format!(
-                "case {id} says {} of {requirement}, whose value is {value} and whose limit is {sign} {limit}",
-                verdict.name()
-            )));
-        }
-        worst = worst.worst(verdict);
+fn in_words(value: &Option<ColumnValue>) -> String {
+    match value {
+        None => "nothing".to_owned(),
+        Some(ColumnValue::Text(text)) => text.to_string(),
+        Some(ColumnValue::Number(number)) => number.to_string(),
+        Some(ColumnValue::Integer(number)) => number.to_string(),
+        Some(ColumnValue::Boolean(value)) => value.to_string(),
     }
-    for row in cases.rows(index) {
-        let Some(verdict) = cases.verdict(*row) else {
-            return Err(cases.wrong(format!("case {id} has no verdict")));
-        };
-        if verdict < worst {
-            let [said, worst] = [verdict, worst].map(Verdict::name);
-            return Err(cases.wrong(format!("case {id} says {said}, its checks come to {worst}")));
+}
+
+/// Texts and numbers of a column.
+struct Cells(CaseColumn);
+
+impl Cells {
+    fn of(table: &CaseTable, column: &str) -> Result<Self, TableError> {
+        table.values(column).map(Self)
+    }
+
+    fn text(&mut self, row: usize) -> Result<Option<String>, TableError> {
+        Ok(match self.0.at(row)? {
+            Some(ColumnValue::Text(text)) => Some(text.to_string()),
+            _ => None,
+        })
+    }
+
+    fn number(&mut self, row: usize) -> Result<Option<f64>, TableError> {
+        Ok(match self.0.at(row)? {
+            Some(ColumnValue::Number(number)) => Some(number),
+            _ => None,
+        })
+    }
+
+    fn verdict(&mut self, row: usize) -> Result<Option<Verdict>, TableError> {
+        let name = self.text(row)?;
+        Ok(Verdict::ALL.into_iter().find(|verdict| Some(verdict.name()) == name.as_deref()))
+    }
+}
+
+/// Checks the rows of cases for consistency with each other.
+fn consistent(
+    plan: &Plan,
+    alone: &[usize],
+    cases: &CaseTable,
+    checks: &CaseTable,
+) -> Result<(), TableError> {
+    let of_checks = |column: &str| Cells::of(checks, column);
+    let (mut requirements, mut signs) = (of_checks("requirement")?, of_checks("comparison")?);
+    let (mut verdicts, mut limits) = (of_checks("verdict")?, of_checks("limit")?);
+    let mut values = of_checks("value")?;
+    let mut of_cases = Cells::of(cases, "verdict")?;
+    let mut hashes = Cells::of(cases, RESULT)?;
+    let has_hashes = cases.table.columns.iter().any(|(name, _)| name == RESULT);
+    for index in alone {
+        let id = &plan.cases[*index].id;
+        let mut worst = Verdict::Pass;
+        for row in checks.rows(*index).iter().flat_map(CaseRows::each) {
+            let requirement = requirements.text(row)?.unwrap_or_default();
+            let sign = signs.text(row)?.unwrap_or_default();
+            let comparison = Comparison::ALL.into_iter().find(|known| known.sign() == sign);
+            let (verdict, limit) = (verdicts.verdict(row)?, limits.number(row)?);
+            let value = values.number(row)?;
+            let (Some(verdict), Some(comparison), Some(limit)) = (verdict, comparison, limit)
+            else {
+                return Err(wrong(
+                    checks,
+                    format!("case {id} has no verdict, comparison or limit of {requirement}"),
+                ));
+            };
+            if !stands(verdict, comparison, value, limit) {
+                let value = value.map_or("none".to_owned(), |value| value.to_string());
+                return Err(wrong(
+                    checks,
+                    format!(
+                        "case {id} says {} of {requirement}, whose value is {value} and whose limit is \
+                         {sign} {limit}",
+                        verdict.name()
+                    ),
+                ));
+            }
+            worst = worst.worst(verdict);
         }
-        if cases.columns.contains_key(RESULT)
-            && cases.text(RESULT, *row).is_none_or(|hash| hash.len() != 64)
-        {
-            return Err(cases.wrong(format!("case {id} has no hash of its result")));
+        for row in cases.rows(*index).iter().flat_map(CaseRows::each) {
+            let Some(verdict) = of_cases.verdict(row)? else {
+                return Err(wrong(cases, format!("case {id} has no verdict")));
+            };
+            if verdict < worst {
+                let [said, worst] = [verdict, worst].map(Verdict::name);
+                let reason = format!("case {id} says {said}, its checks come to {worst}");
+                return Err(wrong(cases, reason));
+            }
+            if has_hashes && hashes.text(row)?.is_none_or(|hash| hash.len() != 64) {
+                return Err(wrong(cases, format!("case {id} has no hash of its result")));
+            }
         }
     }
     Ok(())

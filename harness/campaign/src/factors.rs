@@ -1,6 +1,7 @@
 //! Factors as columns: which are texts, and which are numbers with a unit.
 
-use super::plan::{Case, FactorValue, Plan};
+use super::factor_values::FactorValue;
+use super::plan::{Case, Plan};
 use super::table::ColumnValue;
 use octant_scenario::quantity_of;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,8 +30,7 @@ impl<'a> FactorColumns<'a> {
         let mut all = Self::default();
         let mut refused: BTreeSet<&str> = BTreeSet::new();
         for case in &plan.cases {
-            for (name, value) in &case.factors {
-                let name = name.as_str();
+            for (name, value) in case.factors.iter() {
                 if matches!(value, FactorValue::Text(_)) {
                     all.texts.insert(name);
                 }
@@ -57,13 +57,11 @@ impl<'a> FactorColumns<'a> {
     pub(super) fn without_units(mut self, is_text: impl Fn(&str) -> bool, plan: &'a Plan) -> Self {
         let old: BTreeSet<&str> = self.units.keys().copied().filter(|name| is_text(name)).collect();
         self.units.retain(|name, _| !old.contains(name));
-        let factors = plan.cases.iter().flat_map(|case| &case.factors);
+        let factors = plan.cases.iter().flat_map(|case| case.factors.iter());
         self.texts.extend(
             factors
-                .filter(|(name, value)| {
-                    old.contains(name.as_str()) && matches!(value, FactorValue::Text(_))
-                })
-                .map(|(name, _)| name.as_str()),
+                .filter(|(name, value)| old.contains(name) && matches!(value, FactorValue::Text(_)))
+                .map(|(name, _)| name),
         );
         self
     }

@@ -4,11 +4,10 @@
 //! same stream of samples are one draw too, whatever their seeds; they are the same run, repeated
 //! under the label of a factor without effect or of a value in another spelling.
 
-use super::besides::besides;
-use super::case::CaseResult;
-use super::plan::{Case, FactorValue, Plan};
+use super::factor_values::FactorValue;
+use super::facts::CaseFacts;
+use super::plan::{Case, Plan};
 use super::report::combination::of_grid;
-use octant_requirements::Verdict;
 use octant_statistics::cluster;
 use std::collections::{BTreeMap, HashMap};
 
@@ -25,17 +24,10 @@ impl Shown {
     /// Extracts a result's evidence for a requirement. Everything except a pass counts as not
     /// passed: a check that failed or was inconclusive, a refused calibration, an error.
     #[must_use]
-    pub fn of(result: &CaseResult, requirement: &str) -> Self {
-        Self {
-            passed: passes(result, requirement),
-            stream: result.summary.as_ref().map(|summary| summary.stream_hash.clone()),
-        }
+    pub fn of(facts: &CaseFacts, requirement: &str) -> Self {
+        let stream = facts.stream().map(str::to_owned);
+        Self { passed: facts.passes(requirement), stream }
     }
-}
-
-/// Returns whether a result counts as passed for a requirement.
-pub(super) fn passes(result: &CaseResult, requirement: &str) -> bool {
-    result.check(requirement) == Verdict::Pass && besides(result) == Verdict::Pass
 }
 
 /// Returns the independent draw of each case, numbered from 0, from its seed and its stream.
@@ -81,11 +73,11 @@ fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
     let mut first: HashMap<Others<'_>, &str> = HashMap::new();
     let mut compared = false;
     for (case, stream) in run {
-        if !case.factors.contains_key(factor) {
+        if case.factors.get(factor).is_none() {
             continue;
         }
         let others = case.factors.iter().filter(|(name, _)| *name != factor);
-        let others = others.map(|(name, value)| (name.as_str(), shown(value))).collect();
+        let others = others.map(|(name, value)| (name, shown(value))).collect();
         match first.entry((case.scenario.as_str(), case.seed, others)) {
             std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(stream),
             std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {

@@ -1,7 +1,6 @@
 //! Checks that the folder of a campaign is consistent: plan, results, tables, statistics and
 //! manifest.
 
-use super::case::{self, CaseResult};
 use super::chain;
 use super::merge::merged;
 use super::plan::{FILE_NAME, Plan};
@@ -9,6 +8,7 @@ use super::report::{evidence::STATISTICS, rows};
 use super::results::TABLES;
 use super::shard::Shard;
 use super::status;
+use super::store::CampaignResults;
 use octant_evidence::files;
 use octant_evidence::inside::Inside;
 use octant_evidence::manifest::CampaignFacts;
@@ -38,7 +38,9 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
             plan.id, facts.plan
         ));
     }
-    let status = status::of(&plan, folder, Shard::WHOLE).map_err(|error| error.to_string())?;
+    let stored = CampaignResults::open(folder).map_err(|error| error.to_string())?;
+    let status =
+        status::of_results(&plan, &stored, Shard::WHOLE).map_err(|error| error.to_string())?;
     inside.verdict = Some(status.verdict());
     inside.numerics = (!status.numerics.is_empty()).then(|| status.numerics.join("; "));
     let checks = status.requirements.iter().map(|(id, found)| (id.clone(), found.verdict));
@@ -58,12 +60,12 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
     let verdict = status.verdict().name();
     differs("manifest.json", "verdict", facts.verdict.name(), verdict);
     let end = match &plan.stop {
-        Some(rule) => status::decide(&plan, folder, rule)
+        Some(rule) => status::decide_by(&plan, &stored, rule)
             .map_err(|error| error.to_string())?
             .end(plan.cases.len()),
         None => plan.cases.len(),
     };
-    let (_, results) = rows::read(&plan, folder, end).map_err(|error| error.to_string())?;
+    let results = rows::hash(&plan, &stored, end).map_err(|error| error.to_string())?;
     differs("manifest.json", "results_blake3", &facts.results_blake3, &results);
     match files::read(&folder.join(STATISTICS)) {
         Ok(bytes) => {
@@ -76,29 +78,32 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(format!("{STATISTICS}: {error}")),
     }
-    limits(&plan, folder, inside)?;
+    limits(&plan, folder, &stored, inside)?;
     if TABLES.iter().all(|(name, _)| merged(folder, name).is_file()) {
         let table = |name: &str| merged(folder, name);
-        chain::check(&plan, folder, table).map_err(|error| error.to_string())?;
+        chain::check(&plan, &stored, table).map_err(|error| error.to_string())?;
     }
     Ok(())
 }
 
 /// Compares the limits in each case's result with those of its scenario, if the folder has it.
 /// Limits of the requirements' file are in the plan, and are compared whenever a result is read.
-fn limits(plan: &Plan, folder: &Path, inside: &mut Inside) -> Result<(), String> {
+fn limits(
+    plan: &Plan,
+    folder: &Path,
+    stored: &CampaignResults,
+    inside: &mut Inside,
+) -> Result<(), String> {
     for case in &plan.cases {
         let Ok(planned) = plan.planned(case) else { continue };
         let planned = planned.copied(folder);
         // Without the copy the scenario's limits aren't known.
         let Ok(scenario) = planned.scenario(case) else { continue };
-        let read = CaseResult::of_plan(plan, folder, case).map_err(|error| error.to_string())?;
+        let read = stored.of_plan(plan, case).map_err(|error| error.to_string())?;
         let Some((result, _)) = read else { continue };
         let Some(summary) = result.summary else { continue };
-        let name = case::file(Path::new(""), &case.id);
-        let mut tell = |what: String| {
-            inside.contradictions.push(format!("{}: {what}", name.display()));
-        };
+        let mut tell =
+            |what: String| inside.contradictions.push(format!("case {}: {what}", case.id));
         for requirement in &scenario.requirements {
             let check = &requirement.check;
             let words = |measure: &str, comparison: Comparison, limit: f64| {

@@ -1,9 +1,9 @@
 //! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
 //!
 //! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its
-//! cases, [`case`] runs one of them, [`execute`] all of them, each in a process of its own,
-//! [`results`] writes their tables, [`merge`] merges those of all shards, [`independence`] groups them
-//! into independent draws.
+//! cases, [`case`] runs one of them, [`execute`] all of them in processes that do the [`work`],
+//! [`mod@store`] stores their results and reads them, [`results`] writes their tables, [`merge`] merges
+//! those of all shards, [`independence`] groups them into independent draws.
 
 pub mod against;
 mod besides;
@@ -12,7 +12,10 @@ pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
+mod execution;
+pub mod factor_values;
 pub mod factors;
+pub mod facts;
 pub mod independence;
 pub mod inside;
 mod make;
@@ -23,16 +26,22 @@ pub mod process;
 pub mod reexecute;
 pub mod report;
 pub mod requirements;
+mod result_error;
 pub mod results;
 pub mod selection;
 mod shard;
 pub mod sites;
+mod spill;
 pub mod status;
 pub mod stop;
+pub mod store;
 pub mod sweep;
 pub mod sweep_page;
 pub mod table;
+mod table_rows;
 pub mod trace;
+pub mod work;
+mod worker;
 
 /// Prefix and suffix of the name of an incomplete file.
 const NEW: (&str, &str) = (".octant-", ".new");

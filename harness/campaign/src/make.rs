@@ -1,9 +1,8 @@
 //! Builds the plan of a campaign file: every combination of scenarios, factors and replicates.
 
 use super::draw::At;
-use super::plan::{
-    CASES_MAX, Case, FactorValue, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system,
-};
+use super::factor_values::{FactorValue, FactorValues};
+use super::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system};
 use super::requirements::{self, Planned};
 use octant_scenario::Scenario;
 use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
@@ -62,15 +61,17 @@ impl Plan {
                         replicate,
                         set: member.set.clone(),
                         faults: None,
-                        factors: BTreeMap::new(),
+                        factors: FactorValues::default(),
                     };
+                    let mut values = Vec::new();
                     for (index, factor) in campaign.factors.iter().enumerate() {
                         let at = match factor.levels.grid() {
                             Some(_) => At::Level(level_of(&campaign.factors, cell, index)),
                             None => draws.at(index, replicate),
                         };
-                        give(&mut case, factor, at);
+                        values.extend(give(&mut case, factor, at));
                     }
+                    case.factors = values.into_iter().collect();
                     case.id = id_of(planned, &case);
                     cases.push(case);
                 }
@@ -233,8 +234,8 @@ fn planned(
     })
 }
 
-/// Sets a factor in a case.
-fn give(case: &mut Case, factor: &FactorSpec, at: At) {
+/// Sets a factor in a case, and returns its name and its value there.
+fn give(case: &mut Case, factor: &FactorSpec, at: At) -> Option<(String, FactorValue)> {
     let value = match (&factor.levels, at) {
         (Levels::Values { key, values, .. }, At::Level(level)) => {
             case.set.push(format!("{key}={}", values[level]));
@@ -253,9 +254,9 @@ fn give(case: &mut Case, factor: &FactorSpec, at: At) {
             FactorValue::Number(number)
         }
         // Levels and draws come from the same factor.
-        (_, At::Level(_) | At::Number(_)) => return,
+        (_, At::Level(_) | At::Number(_)) => return None,
     };
-    case.factors.insert(factor.name.clone(), value);
+    Some((factor.name.clone(), value))
 }
 
 /// Converts a TOML value for statistics: a number, or a text, which includes quantities.

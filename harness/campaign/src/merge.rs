@@ -3,12 +3,14 @@
 use super::chain;
 use super::independence::Shown;
 use super::plan::{Plan, short};
-use super::results::{Columns, NUMERICS, TABLES, ordered};
+use super::results::{self, Columns, NUMERICS, TABLES, ordered};
 use super::shard::Shard;
 use super::stop;
-use super::table::{ColumnKind, ColumnValues, ExistingTable, TableError, write_with_units};
+use super::table::{
+    ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
+};
+use super::table_rows::{CaseColumn, CaseRows, CaseTable};
 use octant_requirements::Verdict;
-use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -101,13 +103,6 @@ fn parts(folders: &[PathBuf], table: &str) -> Vec<PathBuf> {
     all
 }
 
-/// Place of a row.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    part: usize,
-    row: usize,
-}
-
 /// Returns the number of cases that count: all, or those up to the point where the stopping rule is
 /// satisfied, from the parts in `folders`.
 ///
@@ -120,12 +115,15 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     // A case without a summary checked nothing, so it isn't passed.
     for path in parts(folders, "cases") {
         let table = ExistingTable::open(&path)?;
-        let [cases, streams] = ["case", "stream_hash"].map(|name| texts(&table, &path, name));
+        let [mut cases, mut streams] =
+            [texts(&table, &path, "case")?, texts(&table, &path, "stream_hash")?];
         // Parts of older versions have only the verdict of the whole case.
-        let besides =
+        let mut besides =
             texts(&table, &path, "besides").or_else(|_| texts(&table, &path, "verdict"))?;
-        for ((case, stream), besides) in cases?.into_iter().zip(streams?).zip(besides) {
-            let (Some(case), passed) = (case, besides.as_deref() == pass) else { continue };
+        for _ in 0..table.rows {
+            let (case, stream) = (text(&mut cases)?, text(&mut streams)?);
+            let passed = text(&mut besides)?.as_deref() == pass;
+            let Some(case) = case else { continue };
             let stream = stream.map(|stream| stream.to_string());
             all.insert(case, Shown { passed, stream });
         }
@@ -133,9 +131,11 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     let mut checked: HashSet<Arc<str>> = HashSet::new();
     for path in parts(folders, "checks") {
         let table = ExistingTable::open(&path)?;
-        let [cases, ids, verdicts] =
-            ["case", "requirement", "verdict"].map(|name| texts(&table, &path, name));
-        for ((case, id), verdict) in cases?.into_iter().zip(ids?).zip(verdicts?) {
+        let (mut cases, mut ids) =
+            (texts(&table, &path, "case")?, texts(&table, &path, "requirement")?);
+        let mut verdicts = texts(&table, &path, "verdict")?;
+        for _ in 0..table.rows {
+            let (case, id, verdict) = (text(&mut cases)?, text(&mut ids)?, text(&mut verdicts)?);
             if let (Some(case), Some(id)) = (case, id)
                 && *id == *rule.requirement
             {
@@ -154,19 +154,24 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     Ok(decision.end(plan.cases.len()))
 }
 
-/// Reads a text column of a part.
-fn texts(
-    table: &ExistingTable,
-    path: &Path,
-    name: &str,
-) -> Result<Vec<Option<Arc<str>>>, TableError> {
-    match table.column(name)? {
-        Some(ColumnValues::Text(texts)) => Ok(texts),
-        _ => Err(TableError::Form {
+/// Opens a text column of a part.
+fn texts(table: &ExistingTable, path: &Path, name: &str) -> Result<ColumnCursor, TableError> {
+    let is_text = table.columns.contains(&(name.to_owned(), ColumnKind::Text));
+    match table.cursor(name)?.filter(|_| is_text) {
+        Some(cursor) => Ok(cursor),
+        None => Err(TableError::Form {
             path: path.to_owned(),
             reason: format!("it has no texts in a column {name}"),
         }),
     }
+}
+
+/// Reads the next text of a column.
+fn text(cursor: &mut ColumnCursor) -> Result<Option<Arc<str>>, TableError> {
+    Ok(match cursor.next()? {
+        Some(ColumnValue::Text(text)) => Some(text),
+        _ => None,
+    })
 }
 
 /// Merges the parts in `folders` into the tables of `out`, with the cases of the plan up to `end`,
@@ -190,9 +195,9 @@ pub fn merge(
             let folder = folders.first().cloned().unwrap_or_default();
             return Err(MergeError::Nothing { folder });
         }
-        let tables =
-            paths.iter().map(|path| ExistingTable::open(path)).collect::<Result<Vec<_>, _>>()?;
-        for (table, path) in tables.iter().zip(&paths) {
+        let mut tables = Vec::with_capacity(paths.len());
+        for path in &paths {
+            let table = ExistingTable::open(path)?;
             if table.plan != plan.id {
                 return Err(MergeError::Foreign {
                     path: path.clone(),
@@ -200,74 +205,42 @@ pub fn merge(
                     expected: short(&plan.id).to_owned(),
                 });
             }
+            tables.push(CaseTable::of(path, table, &place)?);
         }
-        let mut rows: BTreeMap<usize, Vec<Row>> = BTreeMap::new();
-        for (at, table) in tables.iter().enumerate() {
-            let Some(ColumnValues::Text(cases)) = table.column("case")? else {
-                let reason = "it has no column case".to_owned();
-                return Err(TableError::Form { path: paths[at].clone(), reason }.into());
-            };
-            for (row, case) in cases.iter().enumerate() {
-                let index = case.as_deref().and_then(|case| place.get(case).copied());
-                let Some(index) = index else {
-                    let reason = format!("the plan has no case {}", case.as_deref().unwrap_or(""));
-                    return Err(TableError::Form { path: paths[at].clone(), reason }.into());
-                };
-                rows.entry(index).or_default().push(Row { part: at, row });
-            }
-        }
+        let rows = Merging::of(&tables);
         let columns = columns(first, &tables);
-        refuse_differing(plan, &rows, &tables, &paths, &columns)?;
+        rows.refuse_differing(plan, &tables, &columns)?;
         // If several parts contain a case, the rows of the first are used.
-        let kept: Vec<Row> = rows
-            .range(..end)
-            .flat_map(|(_, rows)| {
-                let first = rows.first().map_or(0, |row| row.part);
-                rows.iter().copied().filter(move |row| row.part == first)
-            })
-            .collect();
+        let kept = rows.kept(end);
         // A column whose cases don't count is left out.
-        let empty = |column: &str| -> Result<bool, TableError> {
-            for (part, table) in tables.iter().enumerate() {
-                let Some(values) = table.column(column)? else { continue };
-                let mut mine = kept.iter().filter(|row| row.part == part);
-                if mine.any(|row| values.at(row.row).is_some()) {
-                    return Ok(false);
-                }
-            }
-            Ok(true)
-        };
         let mut columns = columns;
         if end < plan.cases.len() {
             let first = |name: &String| first.iter().any(|(other, _)| other == name);
             let mut there = Vec::with_capacity(columns.len());
             for (column, kind) in columns {
-                if first(&column) || !empty(&column)? {
+                if first(&column) || has_value(&tables, &kept, &column)? {
                     there.push((column, kind));
                 }
             }
             columns = there;
         }
         if name == "cases" {
+            let cases = kept.iter().map(|kept| kept.rows.rows).sum();
             merged_cases = Merged {
                 parts: paths.len(),
-                cases: kept.len(),
-                missing: end.min(plan.cases.len()) - kept.len(),
+                cases,
+                missing: end.min(plan.cases.len()).saturating_sub(cases),
             };
         }
         let mut units = BTreeMap::new();
-        tables.iter().for_each(|table| units.extend(table.units.clone()));
+        tables.iter().for_each(|table| units.extend(table.table.units.clone()));
         // A part that is older than units makes the column text.
         units.retain(|name, _| columns.contains(&(name.clone(), ColumnKind::Number)));
-        write_with_units(&merged(out, name), &plan.id, &columns, &units, |index| {
-            let (column, kind) = &columns[index];
-            let of_parts =
-                tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
-            let mut values = ColumnValues::new(*kind);
-            for Row { part, row } in &kept {
-                values.push(of_parts[*part].as_ref().and_then(|values| values.at(*row)));
-            }
-            Ok(Cow::Owned(values))
+        write_streamed(&merged(out, name), &plan.id, &columns, &units, |index| {
+            let mut of_parts = of_parts(&tables, &columns[index].0)?;
+            let rows =
+                kept.iter().flat_map(|kept| kept.rows.each().map(move |row| (kept.part, row)));
+            Ok(rows.map(move |(part, row)| of_parts[part].at(row)))
         })?;
     }
     Ok(merged_cases)
@@ -277,6 +250,7 @@ pub fn merge(
 fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
     let end = format!(".{}.parquet", TABLES[0].0);
     for folder in folders {
+        let stored = results::open(folder)?;
         for path in parts(std::slice::from_ref(folder), TABLES[0].0) {
             // A part of another plan is reported as such elsewhere.
             if ExistingTable::open(&path)?.plan != plan.id {
@@ -284,7 +258,7 @@ fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
             }
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let stem = name.strip_suffix(&end).unwrap_or(&name);
-            chain::check(plan, folder, |table| {
+            chain::check(plan, &stored, |table| {
                 path.with_file_name(format!("{stem}.{table}.parquet"))
             })?;
         }
@@ -292,10 +266,28 @@ fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
     Ok(())
 }
 
+/// Opens a column of every part.
+fn of_parts(tables: &[CaseTable], column: &str) -> Result<Vec<CaseColumn>, TableError> {
+    tables.iter().map(|table| table.values(column)).collect()
+}
+
+/// Returns whether any of the rows that are kept has a value in a column.
+fn has_value(tables: &[CaseTable], kept: &[Rows], column: &str) -> Result<bool, TableError> {
+    let mut of_parts = of_parts(tables, column)?;
+    for Rows { part, rows } in kept {
+        for row in rows.each() {
+            if of_parts[*part].at(row)?.is_some() {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
+}
+
 /// Lists every column of any part; a column of different kinds becomes text.
-fn columns(first: Columns, tables: &[ExistingTable]) -> Vec<(String, ColumnKind)> {
+fn columns(first: Columns, tables: &[CaseTable]) -> Vec<(String, ColumnKind)> {
     let mut kinds: BTreeMap<&str, ColumnKind> = BTreeMap::new();
-    for (name, kind) in tables.iter().flat_map(|table| &table.columns) {
+    for (name, kind) in tables.iter().flat_map(|table| &table.table.columns) {
         let all = kinds.entry(name).or_insert(*kind);
         if *all != *kind {
             *all = ColumnKind::Text;
@@ -304,51 +296,89 @@ fn columns(first: Columns, tables: &[ExistingTable]) -> Vec<(String, ColumnKind)
     ordered(first, &kinds)
 }
 
-/// Refuses parts that contain a case with different values.
-fn refuse_differing(
-    plan: &Plan,
-    rows: &BTreeMap<usize, Vec<Row>>,
-    tables: &[ExistingTable],
-    paths: &[PathBuf],
-    columns: &[(String, ColumnKind)],
-) -> Result<(), MergeError> {
-    let several = |rows: &&Vec<Row>| {
-        rows.first().is_some_and(|first| rows.iter().any(|r| r.part != first.part))
-    };
-    if !rows.values().any(|rows| several(&rows)) {
-        return Ok(());
+/// Rows of a case in a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Rows {
+    part: usize,
+    rows: CaseRows,
+}
+
+/// Rows of all parts, by case in the order of the plan and by part.
+struct Merging(Vec<Rows>);
+
+impl Merging {
+    fn of(tables: &[CaseTable]) -> Self {
+        let of_table = |(part, table): (usize, &CaseTable)| {
+            table.runs.iter().map(|rows| Rows { part, rows: *rows }).collect::<Vec<_>>()
+        };
+        let mut all: Vec<Rows> = tables.iter().enumerate().flat_map(of_table).collect();
+        all.sort_unstable_by_key(|rows| (rows.rows.case, rows.part, rows.rows.start));
+        Self(all)
     }
-    // The numerics version comes first: if it differs, other differences have no meaning.
-    let (before, after): (Vec<_>, Vec<_>) =
-        columns.iter().map(|(name, _)| name).partition(|name| *name == NUMERICS);
-    for column in before.into_iter().chain(after) {
-        let values =
-            tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
-        let value = |row: &Row| values[row.part].as_ref().and_then(|values| values.at(row.row));
-        for (index, rows) in rows.iter().filter(|(_, rows)| several(rows)) {
-            // Rows with the same index in different parts are the same row; a part with more rows
-            // differs.
-            let of = |part: usize| rows.iter().filter(move |row| row.part == part);
-            let first = rows[0].part;
-            for part in rows.iter().map(|row| row.part).filter(|part| *part != first) {
-                let same = of(first).map(value).eq(of(part).map(value));
-                if !same && column == NUMERICS {
-                    return Err(MergeError::Numerics {
-                        case: plan.cases[*index].id.clone(),
-                        first: paths[first].clone(),
-                        second: paths[part].clone(),
-                    });
-                }
-                if !same {
-                    return Err(MergeError::Differs {
-                        case: plan.cases[*index].id.clone(),
-                        column: column.clone(),
-                        first: paths[first].clone(),
-                        second: paths[part].clone(),
+
+    /// Returns the rows of each case.
+    fn cases(&self) -> impl Iterator<Item = &[Rows]> {
+        self.0.chunk_by(|a, b| a.rows.case == b.rows.case)
+    }
+
+    /// Returns the rows that count.
+    fn kept(&self, end: usize) -> Vec<Rows> {
+        let counting = self.cases().take_while(|rows| rows.iter().all(|rows| rows.rows.case < end));
+        let first = |rows: &&[Rows]| rows.first().map_or(0, |first| first.part);
+        let of_first = counting.flat_map(|rows| {
+            let part = first(&rows);
+            rows.iter().copied().filter(move |rows| rows.part == part)
+        });
+        of_first.collect()
+    }
+
+    /// Refuses parts that contain a case with different values.
+    fn refuse_differing(
+        &self,
+        plan: &Plan,
+        tables: &[CaseTable],
+        columns: &[(String, ColumnKind)],
+    ) -> Result<(), MergeError> {
+        let several = |rows: &&[Rows]| {
+            rows.first().is_some_and(|first| rows.iter().any(|rows| rows.part != first.part))
+        };
+        if !self.cases().any(|rows| several(&rows)) {
+            return Ok(());
+        }
+        // The numerics version comes first: if it differs, other differences have no meaning.
+        let (before, after): (Vec<_>, Vec<_>) =
+            columns.iter().map(|(name, _)| name).partition(|name| *name == NUMERICS);
+        for column in before.into_iter().chain(after) {
+            let mut of_parts = of_parts(tables, column)?;
+            for rows in self.cases().filter(several) {
+                // Rows with the same index in different parts are the same row; a part with more rows
+                // differs.
+                let mut first: Option<(usize, Vec<Option<ColumnValue>>)> = None;
+                for of_part in rows.chunk_by(|a, b| a.part == b.part) {
+                    let Some(part) = of_part.first().map(|rows| rows.part) else { continue };
+                    let places = of_part.iter().flat_map(|rows| rows.rows.each());
+                    let values =
+                        places
+                            .map(|row| of_parts[part].at(row))
+                            .collect::<Result<Vec<_>, TableError>>()?;
+                    let Some((of_first, expected)) = &first else {
+                        first = Some((part, values));
+                        continue;
+                    };
+                    if *expected == values {
+                        continue;
+                    }
+                    let case = of_part.first().map_or(0, |rows| rows.rows.case);
+                    let case = plan.cases[case].id.clone();
+                    let [first, second] = [*of_first, part].map(|part| tables[part].path.clone());
+                    return Err(if column == NUMERICS {
+                        MergeError::Numerics { case, first, second }
+                    } else {
+                        MergeError::Differs { case, column: column.clone(), first, second }
                     });
                 }
             }
         }
+        Ok(())
     }
-    Ok(())
 }

@@ -3,6 +3,7 @@
 //! A plan never changes after it is made. A campaign that grows makes another plan, in which every
 //! earlier case keeps its id.
 
+use super::factor_values::FactorValues;
 use super::requirements::Planned;
 use octant_requirements::RequirementsError;
 use octant_requirements::requirement::EnsembleRequirement;
@@ -11,7 +12,7 @@ use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Version of `plan.json`.
@@ -50,6 +51,24 @@ pub struct Plan {
     pub scenarios: Vec<PlannedScenario>,
     /// Cases, in the order in which they are begun.
     pub cases: Vec<Case>,
+}
+
+/// Content of a plan that makes its id: the plan without names of files, in the same form.
+#[derive(Serialize)]
+struct HashedPlan<'a> {
+    schema: u32,
+    id: &'static str,
+    title: &'a str,
+    campaign: &'static str,
+    limits: CaseLimits,
+    stop: &'a Option<StopRule>,
+    factors: &'a [String],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    requirements: &'a [Planned],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    not_by_test: &'a [String],
+    scenarios: Vec<PlannedScenario>,
+    cases: &'a [Case],
 }
 
 /// Limits of a case.
@@ -122,17 +141,7 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<String>>,
     /// Value of each factor, for display and statistics.
-    pub factors: BTreeMap<String, FactorValue>,
-}
-
-/// Value of a factor in a case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum FactorValue {
-    /// Number, in the factor's unit.
-    Number(f64),
-    /// Anything else, as text.
-    Text(String),
+    pub factors: FactorValues,
 }
 
 /// Reasons why there is no plan.
@@ -255,17 +264,29 @@ impl Plan {
 
     /// Computes the id from the contents, independent of the places of files.
     pub(super) fn hash(&self) -> String {
+        let Self { schema, id: _, title, campaign: _, limits, stop, factors, .. } = self;
+        let Self { requirements, not_by_test, scenarios, cases, .. } = self;
         let placeless = |scenario: &PlannedScenario| PlannedScenario {
             file: PathBuf::new(),
             ..scenario.clone()
         };
-        let unnamed = Self {
-            id: String::new(),
-            campaign: PathBuf::new(),
-            scenarios: self.scenarios.iter().map(placeless).collect(),
-            ..self.clone()
+        let content = HashedPlan {
+            schema: *schema,
+            id: "",
+            title,
+            campaign: "",
+            limits: *limits,
+            stop,
+            factors,
+            requirements,
+            not_by_test,
+            scenarios: scenarios.iter().map(placeless).collect(),
+            cases,
         };
-        blake3::hash(unnamed.to_json().as_bytes()).to_hex().to_string()
+        let mut hasher = blake3::Hasher::new();
+        // Values of these types can always be serialised, and a hash takes all bytes.
+        let _ = serde_json::to_writer_pretty(BufWriter::new(&mut hasher), &content);
+        hasher.update(b"\n").finalize().to_hex().to_string()
     }
 
     /// Returns a case by its id.

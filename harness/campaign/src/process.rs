@@ -25,6 +25,24 @@ pub fn command(program: &Path) -> Command {
     command
 }
 
+/// Limits the memory of this process: when it needs more it ends, and leaves other cases undisturbed.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn limit_memory(mib: u64) -> std::io::Result<()> {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+        let bytes = Some(mib.saturating_mul(1 << 20));
+        let most = getrlimit(Resource::As).maximum;
+        let limit = Rlimit { current: bytes.min(most.or(bytes)), maximum: most };
+        setrlimit(Resource::As, limit)?;
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = mib;
+    Ok(())
+}
+
 /// Makes this process end together with the one that started it. If that one is gone already, this
 /// process ends at once.
 ///

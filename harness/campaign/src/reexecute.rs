@@ -1,7 +1,8 @@
 //! Runs cases of a campaign again from its folder alone, and extrapolates from a sample to all.
 
-use super::case::{self, CaseResult, ResultError, file};
+use super::case::{self, ResultError};
 use super::plan::{Case, Plan};
+use super::store::CampaignResults;
 use octant_base::control::Control;
 use octant_score::numerics::differs;
 use serde_json::Value;
@@ -69,9 +70,10 @@ pub fn run(
     seed: u64,
     tell: impl Fn(usize, usize),
 ) -> Result<Again, ResultError> {
+    let results = CampaignResults::open(folder)?;
     let mut there = Vec::new();
     for case in &plan.cases {
-        if let Some((result, _)) = CaseResult::of_plan(plan, folder, case)?
+        if let Some((result, _)) = results.of_plan(plan, case)?
             && result.summary.is_some()
         {
             there.push(case);
@@ -82,7 +84,7 @@ pub fn run(
     let mut again = Again { of: there.len(), ..Again::default() };
     for (done, index) in drawn.iter().enumerate() {
         tell(done, drawn.len());
-        match one(plan, folder, there[*index]) {
+        match one(plan, folder, &results, there[*index]) {
             Ok(None) => again.same += 1,
             Ok(Some((difference, None))) => again.differing.push(difference),
             Ok(Some((difference, Some(told)))) => {
@@ -98,14 +100,19 @@ pub fn run(
 type Differs = (String, Option<String>);
 
 /// Runs one case again; `None` if it has the same result.
-fn one(plan: &Plan, folder: &Path, case: &Case) -> Result<Option<Differs>, String> {
+fn one(
+    plan: &Plan,
+    folder: &Path,
+    results: &CampaignResults,
+    case: &Case,
+) -> Result<Option<Differs>, String> {
     let told = |error: &dyn std::fmt::Display| format!("case {}: {error}", case.id);
     let planned = plan.planned(case).map_err(|error| told(&error))?;
     let planned = planned.copied(folder);
     let result = case::run(&planned, case, &Control::default()).map_err(|error| told(&error))?;
     let now = serde_json::to_value(&result).map_err(|error| told(&error))?;
-    let path = file(folder, &case.id);
-    let bytes = std::fs::read(&path).map_err(|error| told(&error))?;
+    let stored = results.bytes(&case.id).map_err(|error| told(&error))?;
+    let bytes = stored.map(|stored| stored.bytes).unwrap_or_default();
     let then: Value = serde_json::from_slice(&bytes).map_err(|error| told(&error))?;
     let numerics = then["summary"]["numerics"].as_u64().and_then(|version| version.try_into().ok());
     let found = difference(&then["summary"], &now["summary"]);

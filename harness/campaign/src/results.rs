@@ -1,12 +1,13 @@
 //! Results of cases as tables: one row per case, per checked requirement, and per point of a drift.
 
 use super::besides::besides;
-use super::case::{self, CaseResult};
+use super::case::{CaseResult, ResultError};
 use super::factors::FactorColumns;
 use super::plan::{Case, Plan};
-use super::table::{ColumnKind, ColumnValue, ColumnValues, TableError, write_with_units};
+use super::spill::SpilledRows;
+use super::store::CampaignResults;
+use super::table::{ColumnKind, ColumnValue, TableError, write_streamed};
 use octant_score::summary::Summary;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -64,50 +65,13 @@ pub const TABLES: [(&str, Columns); 3] = [
     ),
 ];
 
-/// Rows, with the columns that they need.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rows {
-    pub(super) columns: BTreeMap<String, ColumnValues>,
-    pub(super) rows: usize,
-}
-
-impl Rows {
-    fn new(first: Columns) -> Self {
-        let empty =
-            |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), ColumnValues::new(*kind));
-        Self { columns: first.iter().map(empty).collect(), rows: 0 }
-    }
-
-    fn push(&mut self, row: BTreeMap<String, ColumnValue>) {
-        for (name, value) in row {
-            let column = self.columns.entry(name).or_insert_with(|| {
-                let mut column = ColumnValues::new(value.kind());
-                (0..self.rows).for_each(|_| column.push(None));
-                column
-            });
-            column.push(Some(value));
-        }
-        self.rows += 1;
-        for column in self.columns.values_mut().filter(|column| column.len() < self.rows) {
-            column.push(None);
-        }
-    }
-
-    fn write(
-        &self,
-        first: Columns,
-        path: &Path,
-        plan: &str,
-        units: &BTreeMap<String, String>,
-    ) -> Result<(), TableError> {
-        let mut units = units.clone();
-        units.retain(|name, _| self.columns.contains_key(name));
-        let kinds = self.columns.iter().map(|(name, values)| (name.as_str(), values.kind()));
-        let columns = ordered(first, &kinds.collect());
-        write_with_units(path, plan, &columns, &units, |index| {
-            Ok(Cow::Borrowed(&self.columns[&columns[index].0]))
-        })
-    }
+/// Rows of all tables, and how many of each case.
+#[derive(Debug)]
+pub(super) struct TableRows {
+    /// The tables, in the order of [`TABLES`].
+    pub(super) tables: [SpilledRows; 3],
+    /// Rows of each case in each table, in the order in which the cases were given.
+    pub(super) counts: Vec<[usize; 3]>,
 }
 
 /// Lists columns in the order in which they are written.
@@ -131,40 +95,63 @@ pub fn tables(
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
     let factors = FactorColumns::of(plan);
-    let all = rows(plan, folder, cases, &factors)?;
-    for ((name, first), rows) in TABLES.iter().zip(&all) {
-        rows.write(first, &path(name), &plan.id, &factors.units())?;
+    let beside = path(TABLES[0].0);
+    let place = beside.parent().unwrap_or(folder);
+    let all = rows(plan, &open(folder)?, cases, &factors, place)?;
+    for ((name, first), rows) in TABLES.iter().zip(&all.tables) {
+        let columns = ordered(first, &rows.kinds());
+        let mut units = factors.units();
+        units.retain(|name, _| rows.kinds().contains_key(name.as_str()));
+        write_streamed(&path(name), &plan.id, &columns, &units, |index| {
+            Ok(rows.column(&columns[index].0))
+        })?;
     }
     Ok(())
 }
 
-/// Collects the rows of all tables from the results in a folder.
+/// Opens the results in a folder.
+pub(super) fn open(folder: &Path) -> Result<CampaignResults, TableError> {
+    CampaignResults::open(folder).map_err(|error| unread(folder, &error))
+}
+
+/// Describes why a result, or all of them, can't be read.
+fn unread(path: &Path, error: &ResultError) -> TableError {
+    // The reason begins with action and file, as the error does.
+    let (path, reason) = (path.to_owned(), error.to_string());
+    let start = format!("read {}: ", path.display());
+    let reason = reason.strip_prefix(&start).map(str::to_owned).unwrap_or(reason);
+    TableError::Form { path, reason }
+}
+
+/// Collects the rows of all tables from results, in temporary files in a folder.
 pub(super) fn rows(
     plan: &Plan,
-    folder: &Path,
+    results: &CampaignResults,
     cases: impl Iterator<Item = usize>,
     factors: &FactorColumns<'_>,
-) -> Result<[Rows; 3], TableError> {
-    let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
+    place: &Path,
+) -> Result<TableRows, TableError> {
+    let [mut all_cases, mut checks, mut drift] =
+        TABLES.map(|(_, first)| SpilledRows::new(place, first));
+    let mut counts = Vec::new();
     for index in cases {
         let Some(case) = plan.cases.get(index) else { continue };
-        let file = case::file(folder, &case.id);
-        // The reason begins with action and file, as the error does.
-        let form = |reason: String| {
-            let start = format!("read {}: ", file.display());
-            let reason = reason.strip_prefix(&start).unwrap_or(&reason).to_owned();
-            TableError::Form { path: file.clone(), reason }
-        };
-        let read =
-            CaseResult::of_plan(plan, folder, case).map_err(|error| form(error.to_string()))?;
-        let (result, hash) = read.ok_or_else(|| form("it is gone".to_owned()))?;
-        all_cases.push(case_row(case, &result, &hash, factors));
+        let place = results.place(&case.id);
+        let path = place.map_or_else(Default::default, |place| place.path().to_owned());
+        let read = results.of_plan(plan, case).map_err(|error| unread(&path, &error))?;
+        let (result, hash) = read.ok_or_else(|| TableError::Form {
+            path: path.clone(),
+            reason: format!("the result of case {} is gone", case.id),
+        })?;
+        let before = [checks.rows(), drift.rows()];
+        all_cases.push(case_row(case, &result, &hash, factors))?;
         if let Some(summary) = &result.summary {
-            check_rows(case, summary).for_each(|row| checks.push(row));
-            drift_rows(case, summary).for_each(|row| drift.push(row));
+            check_rows(case, summary).try_for_each(|row| checks.push(row))?;
+            drift_rows(case, summary).try_for_each(|row| drift.push(row))?;
         }
+        counts.push([1, checks.rows() - before[0], drift.rows() - before[1]]);
     }
-    Ok([all_cases, checks, drift])
+    Ok(TableRows { tables: [all_cases, checks, drift], counts })
 }
 
 fn text(value: impl Into<Arc<str>>) -> ColumnValue {
@@ -202,7 +189,7 @@ fn case_row(
         (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
-    for (name, value) in &case.factors {
+    for (name, value) in case.factors.iter() {
         all.insert(format!("factor.{name}"), factors.value(name, value));
     }
     if let Some(document) = summary.and_then(|summary| serde_json::to_value(summary).ok()) {

@@ -1,7 +1,9 @@
 //! Selection of cases of a plan: by pattern, and by their results.
 
-use super::case::{self, CaseResult};
-use super::plan::{Case, FactorValue, Plan};
+use super::case;
+use super::factor_values::FactorValue;
+use super::plan::{Case, Plan};
+use super::store::CampaignResults;
 use octant_requirements::Verdict;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -61,17 +63,18 @@ impl CaseSelection {
     }
 
     /// Adds a repetition of the selected cases whose stored result has failed. Cases that ended as
-    /// errors without a summary aren't among them: their results are removed and made again.
+    /// errors without a summary aren't among them: their results are forgotten and made again.
     ///
     /// # Errors
     /// If an existing result can't be read.
     pub fn repeating_failed(self, plan: &Plan, folder: &Path) -> Result<Self, case::ResultError> {
         let mut repeated = BTreeSet::new();
+        let results = CampaignResults::open(folder)?;
         for (index, case) in plan.cases.iter().enumerate() {
             if self.picks(index)
-                && let Some((result, _)) = CaseResult::of_plan(plan, folder, case)?
-                && result.verdict > Verdict::Inconclusive
-                && result.error.is_none()
+                && let Some(facts) = results.facts(plan, case)?
+                && facts.verdict > Verdict::Inconclusive
+                && facts.error.is_none()
             {
                 repeated.insert(index);
             }
@@ -111,7 +114,7 @@ impl CaseSelection {
 
 /// Names by which a case can be selected.
 fn names(case: &Case) -> Vec<String> {
-    let factor = |(name, value): (&String, &FactorValue)| match value {
+    let factor = |(name, value): (&str, &FactorValue)| match value {
         FactorValue::Number(number) => format!("{name}={number}"),
         FactorValue::Text(text) => format!("{name}={text}"),
     };

@@ -1,11 +1,11 @@
 //! Progress of a campaign, and its failures.
 
-use super::besides::{besides, is_refused_alone};
-use super::case::{self, CaseResult, ResultError, differing};
+use super::case::ResultError;
 use super::independence::{self, Shown};
 use super::plan::{Case, Plan, StopRule};
 use super::shard::Shard;
 use super::stop::{self, StopDecision};
+use super::store::CampaignResults;
 use octant_base::number::plain;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::EnsembleRequirement;
@@ -97,6 +97,18 @@ pub struct StatusError(#[from] pub ResultError);
 /// # Errors
 /// If an existing result can't be read.
 pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, StatusError> {
+    of_results(plan, &CampaignResults::open(folder)?, shard)
+}
+
+/// Determines the state of a part of a campaign from results.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn of_results(
+    plan: &Plan,
+    results: &CampaignResults,
+    shard: Shard,
+) -> Result<CampaignStatus, StatusError> {
     let mine = || plan.cases.iter().enumerate().filter(|(index, _)| shard.has(*index));
     let mut status = CampaignStatus {
         title: plan.title.clone(),
@@ -118,7 +130,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, St
     let end = match &plan.stop {
         None => plan.cases.len(),
         Some(rule) => {
-            let decision = decide(plan, folder, rule)?;
+            let decision = decide_by(plan, results, rule)?;
             status.stopped = in_words(rule, decision);
             decision.end(plan.cases.len())
         }
@@ -134,11 +146,9 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, St
     let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
     status.cases = mine().filter(|(index, _)| *index < end).count();
     for (_, case) in mine().filter(|(index, _)| *index < end) {
-        let path = case::file(folder, &case.id);
         let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
-        let read = CaseResult::of_plan(plan, folder, case);
-        let Some((result, _)) = read? else {
+        let Some(facts) = results.facts(plan, case)? else {
             status.open += 1;
             let checked: Vec<&String> = checked.collect();
             checked.iter().for_each(|id| counts.entry(id).or_default().missing += 1);
@@ -146,36 +156,34 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, St
             looked.push(Looked { case, stream: None, passed });
             continue;
         };
-        *status.verdicts.entry(result.verdict.name()).or_default() += 1;
+        *status.verdicts.entry(facts.verdict.name()).or_default() += 1;
         let counted = |id: &String| plan.ensemble(id).is_some();
         let is_counted = checked.clone().next().is_some() && checked.clone().all(counted);
-        if !(is_counted && is_refused_alone(&result)) {
-            status.besides = status.besides.worst(besides(&result));
+        if !(is_counted && facts.refused_alone) {
+            status.besides = status.besides.worst(facts.besides);
         }
-        let passed =
-            checked.clone().map(|id| (id.as_str(), Some(independence::passes(&result, id))));
+        let passed = checked.clone().map(|id| (id.as_str(), Some(facts.passes(id))));
         let passed = passed.collect();
-        let stream = result.summary.as_ref().map(|summary| summary.stream_hash.clone());
-        if let Some(summary) = &result.summary {
-            *numerics.entry(summary.numerics).or_default() += 1;
+        let stream = facts.stream().map(str::to_owned);
+        if let Some(run) = &facts.run {
+            *numerics.entry(run.numerics).or_default() += 1;
         }
         looked.push(Looked { case, stream, passed });
         for id in checked {
             let counts = counts.entry(id).or_default();
-            *match result.check(id) {
+            *match facts.check(id) {
                 Verdict::Pass => &mut counts.pass,
                 Verdict::None | Verdict::Inconclusive => &mut counts.inconclusive,
                 Verdict::Fail => &mut counts.fail,
                 Verdict::Error => &mut counts.error,
             } += 1;
         }
-        if differing(&path, &case.id).is_some() {
+        if results.differing(&case.id)?.is_some() {
             status.differing.push(case.id.clone());
         }
-        if result.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
-            let reasons = result.summary.map(|summary| summary.reasons).unwrap_or_default();
-            let reason = result.error.or_else(|| reasons.into_iter().next()).unwrap_or_default();
-            status.bad.push(Bad { case: case.id.clone(), verdict: result.verdict, reason });
+        if facts.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
+            let reason = facts.why().cloned().unwrap_or_default();
+            status.bad.push(Bad { case: case.id.clone(), verdict: facts.verdict, reason });
         }
     }
     let others = numerics.into_iter().filter_map(|(version, cases)| {
@@ -217,13 +225,25 @@ struct Looked<'a> {
 /// # Errors
 /// If an existing result can't be read, or contradicts itself.
 pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<StopDecision, StatusError> {
+    decide_by(plan, &CampaignResults::open(folder)?, rule)
+}
+
+/// Evaluates the stopping rule on results.
+///
+/// # Errors
+/// If an existing result can't be read, or contradicts itself.
+pub fn decide_by(
+    plan: &Plan,
+    results: &CampaignResults,
+    rule: &StopRule,
+) -> Result<StopDecision, StatusError> {
     let wrong = RefCell::new(None);
     let decision = stop::decide(plan, rule, |case| {
-        let read = CaseResult::of_plan(plan, folder, case).unwrap_or_else(|error| {
+        let read = results.facts(plan, case).unwrap_or_else(|error| {
             wrong.borrow_mut().get_or_insert(error);
             None
         });
-        Some(Shown::of(&read?.0, &rule.requirement))
+        Some(Shown::of(&read?, &rule.requirement))
     });
     wrong.into_inner().map_or(Ok(decision), |error| Err(error.into()))
 }

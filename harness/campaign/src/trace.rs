@@ -1,10 +1,10 @@
 //! Traces the requirements of a campaign to its cases and their results, and back.
 
-use super::besides::besides;
-use super::case::{self, CaseResult, ResultError, differing};
+use super::case::ResultError;
 use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
+use super::store::CampaignResults;
 use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
 use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult as Traced};
 use octant_requirements::{Comparison, Verdict};
@@ -77,6 +77,19 @@ pub fn trace(
     folder: &Path,
     end: usize,
 ) -> Result<CampaignTrace, ResultError> {
+    trace_by(plan, requirements, &CampaignResults::open(folder)?, end)
+}
+
+/// Traces a campaign as [`trace`] does, by results that are open.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn trace_by(
+    plan: &Plan,
+    requirements: &Requirements,
+    results: &CampaignResults,
+    end: usize,
+) -> Result<CampaignTrace, ResultError> {
     let requirements = &with_those_of_scenarios(plan, requirements);
     let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
     let mut of = |case: &super::plan::Case| -> Result<TracedCase, ResultError> {
@@ -86,12 +99,11 @@ pub fn trace(
             .flat_map(|scenario| scenario.requirements.iter().filter(of_file))
             .cloned()
             .collect();
-        let path = case::file(folder, &case.id);
-        let result = if let Some((result, _)) = CaseResult::of_plan(plan, folder, case)? {
+        let result = if let Some(facts) = results.facts(plan, case)? {
             // A check that passes in a run without evidence isn't a pass either, and of two results
             // none counts.
-            let most = match besides(&result) {
-                _ if differing(&path, &case.id).is_some() => Verdict::Error,
+            let most = match facts.besides {
+                _ if results.differing(&case.id)?.is_some() => Verdict::Error,
                 Verdict::Fail => Verdict::Inconclusive,
                 other => other,
             };
@@ -102,20 +114,20 @@ pub fn trace(
                 check.is_some_and(|check| check.ensemble.is_some())
             };
             let check = |id: &String| {
-                let check = match result.check(id) {
+                let check = match facts.check(id) {
                     Verdict::Fail if most != Verdict::Pass && allowed(id) => most,
                     check => check.worst(most),
                 };
                 (id.clone(), traced(check))
             };
             let checks = verifies.iter().map(check).collect();
-            streams.push(result.summary.as_ref().map(|summary| summary.stream_hash.clone()));
+            streams.push(facts.stream().map(str::to_owned));
             Some(Traced {
-                verdict: traced(result.verdict),
+                verdict: traced(facts.verdict),
                 checks,
                 // A campaign keeps summaries; a recording is made by running the case again.
                 recording: None,
-                folder: Some(path.display().to_string()),
+                folder: results.place(&case.id).map(|place| place.folder().display().to_string()),
             })
         } else {
             streams.push(None);

@@ -11,10 +11,10 @@ use clap::{Args, Subcommand};
 use octant_base::control::Control;
 use octant_base::display::UnitChoice;
 use octant_base::interrupt;
-use octant_campaign::case;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, Shard, execute};
 use octant_campaign::plan::Plan;
 use octant_campaign::selection::CaseSelection;
+use octant_campaign::store::CampaignResults;
 use octant_campaign::{merge, results, status};
 use octant_evidence::manifest::{Machine, operator};
 use octant_nightly::accept::{self, Baseline, accept as accept_night};
@@ -460,7 +460,8 @@ fn conclude(
     };
     execute(plan, &options, &|_| {})?;
     if let Some(first) = plan.cases.first() {
-        let read = |folder: &Path| std::fs::read(case::file(folder, &first.id)).ok();
+        let read = |folder: &Path| CampaignResults::open(folder).ok()?.bytes(&first.id).ok()?;
+        let read = |folder: &Path| read(folder).map(|stored| stored.bytes);
         let (once, twice) = (read(folder), read(&again));
         if twice.is_some() && once != twice && !found.differing.contains(&first.id) {
             found.differing.push(first.id.clone());

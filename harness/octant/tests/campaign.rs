@@ -2,11 +2,13 @@
 //! cases that must not end in a pass.
 
 use crate::common::program::{OCTANT, program};
-use octant_campaign::case::{self, CaseResult};
+use crate::common::results as stored;
+use octant_campaign::case;
 use octant_campaign::execute::{ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute};
 use octant_campaign::merge::{self, MergeError};
-use octant_campaign::plan::{Plan, PlanWritten};
+use octant_campaign::plan::{Case, Plan, PlanWritten};
 use octant_campaign::selection::CaseSelection;
+use octant_campaign::store::{CampaignResults, StoreOutcome, keep};
 use octant_campaign::table::{ColumnValue, ExistingTable};
 use octant_campaign::{results, status};
 use octant_requirements::Verdict;
@@ -173,9 +175,10 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     let table = ExistingTable::open(&merge::merged(&whole, "cases")).unwrap();
     assert_eq!((table.rows, table.plan.as_str()), (6, plan.id.as_str()));
     let column = |name: &str| table.column(name).unwrap().unwrap();
+    let kept = CampaignResults::open(&whole).unwrap();
     for (row, case) in plan.cases.iter().enumerate() {
         assert_eq!(column("case").at(row), Some(ColumnValue::Text(case.id.as_str().into())));
-        let result = CaseResult::read(&case::file(&whole, &case.id)).unwrap();
+        let (result, _) = kept.result(&case.id).unwrap().unwrap();
         let summary = result.summary.unwrap();
         let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
         assert_eq!(
@@ -255,6 +258,31 @@ fn a_case_that_wants_too_much_memory_is_one_error_and_the_others_pass() {
     assert_eq!(state.verdict(), Verdict::Pass, "{}", state.text());
 }
 
+/// An error that comes again is stored again: the process that had run another case before has the forgotten
+/// one in its part.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_error_that_is_forgotten_and_comes_again_is_stored_again() {
+    let large = SCENARIO.to_owned() + &"#\n".repeat(4_000_000);
+    let (bench, plan, _) = one_of_two(&large, "memory_mib = 256");
+    let (folder, never) = (bench.at("out"), AtomicBool::new(false));
+    stored::clear(&folder);
+    let options = ExecuteOptions {
+        folder: &folder,
+        program: Path::new(OCTANT),
+        jobs: 1,
+        shard: Shard::WHOLE,
+        end: plan.cases.len(),
+        again: false,
+        selection: CaseSelection::of(&plan, &["other".to_owned()]).unwrap(),
+        cancel: &never,
+    };
+    assert_eq!(execute(&plan, &options, &|_| {}).unwrap().run, 1);
+    assert_eq!(begin(&plan, &folder, Shard::WHOLE, 1, &never, true).unwrap().run, 2);
+    run(&plan, &folder, Shard::WHOLE, 1);
+    assert_one_error(&bench, &plan, "it wanted more than its 256 MiB of memory");
+}
+
 #[test]
 fn a_campaign_that_grows_keeps_its_cases_and_results() {
     let bench = Bench::new(CAMPAIGN);
@@ -310,18 +338,16 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     let (plan, folder) = (bench.plan(), bench.at("out"));
     run(&plan, &folder, Shard::WHOLE, 2);
     let id = &plan.cases[0].id;
-    let bytes = std::fs::read(case::file(&folder, id)).unwrap();
-    assert_eq!(case::keep(&folder, id, &bytes).unwrap(), case::StoreOutcome::Same);
+    let text = stored::text(&folder, id);
+    assert_eq!(keep(&folder, id, text.as_bytes()).unwrap(), StoreOutcome::Same);
 
     // The same case again, with another result.
-    let text = String::from_utf8(bytes).unwrap();
     let mut other: serde_json::Value = serde_json::from_str(&text).unwrap();
     other["summary"]["stream_hash"] = "another".into();
     other["summary_blake3"] = case::hash_of_summary(&other["summary"]).into();
     let other = format!("{other}\n");
-    let kept = case::keep(&folder, id, other.as_bytes()).unwrap();
-    assert!(matches!(kept, case::StoreOutcome::Differs(_)), "{kept:?}");
-    assert_eq!(std::fs::read_to_string(case::file(&folder, id)).unwrap(), text, "the first stays");
+    stored::put_beside(&folder, id, &other);
+    assert_eq!(stored::text(&folder, id), text, "the first stays");
     let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
     assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
 
@@ -330,7 +356,7 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     run(&plan, &elsewhere, Shard::WHOLE, 2);
     let both = [folder.clone(), elsewhere.clone()];
     assert_eq!(merge::merge(&plan, &both, &bench.at("good"), 2).unwrap().cases, 2);
-    std::fs::write(case::file(&elsewhere, id), &other).unwrap();
+    stored::put(&elsewhere, id, &other);
     run(&plan, &elsewhere, Shard::WHOLE, 2);
     let error = merge::merge(&plan, &both, &bench.at("bad"), 2).unwrap_err();
     assert!(
@@ -339,8 +365,7 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     );
 
     // Result of a case that isn't in the plan.
-    std::fs::write(case::file(&elsewhere, id).with_file_name("0123456789abcdef.json"), &other)
-        .unwrap();
+    stored::put(&elsewhere, "0123456789abcdef", &other);
     let never = AtomicBool::new(false);
     let error = begin(&plan, &elsewhere, Shard::WHOLE, 1, &never, false).unwrap_err();
     assert!(
@@ -638,9 +663,10 @@ mod interrupted {
 
     /// Counts the results; each must belong to a case that came to its end.
     fn whole_results(plan: &Plan, folder: &Path) -> usize {
-        let files = plan.cases.iter().map(|case| case::file(folder, &case.id));
-        let results = files.filter(|file| file.exists()).map(|file| CaseResult::read(&file));
-        results.inspect(|result| assert_eq!(result.as_ref().unwrap().error, None)).count()
+        let stored = CampaignResults::open(folder).unwrap();
+        let there = plan.cases.iter().filter(|case| stored.has(&case.id));
+        let error = |case: &Case| stored.of_plan(plan, case).unwrap().unwrap().0.error;
+        there.inspect(|case| assert_eq!(error(case), None)).count()
     }
 
     #[test]
@@ -658,7 +684,7 @@ mod interrupted {
             (Target::Group, Signal::KILL, [None, Some(0)]),
         ] {
             // At least one case must be left to interrupt.
-            let _ = std::fs::remove_dir_all(torn.join("cases"));
+            stored::clear(&torn);
             let mut running = start(&bench, "2");
             let children = running.children();
             assert!(!children.is_empty());

@@ -3,6 +3,7 @@
 
 use crate::campaign_report::bench::{Bench, CAMPAIGN, check};
 use crate::common::program::{ends, octant_in, program};
+use crate::common::results as stored;
 use octant_campaign::case;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
@@ -44,8 +45,9 @@ fn readers(bench: &Bench) -> Vec<(&'static str, i32, String)> {
 fn an_edited_case_result_is_refused_by_every_reader_and_named() {
     let (bench, plan, out) = campaign();
     parts(&plan, &out);
-    let path = case::file(&out, &plan.cases[0].id);
-    let whole: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let id = &plan.cases[0].id;
+    let put = |result: &Value| stored::put(&out, id, &format!("{result}\n"));
+    let whole = stored::value(&out, id);
     assert_eq!(whole["verdict"], "fail");
     assert!(readers(&bench).iter().all(|(_, status, _)| [0, 1, 3].contains(status)));
 
@@ -87,20 +89,20 @@ fn an_edited_case_result_is_refused_by_every_reader_and_named() {
                 let hash = case::hash_of_summary(&result["summary"]);
                 result["summary_blake3"] = hash.into();
             }
-            std::fs::write(&path, format!("{result}\n")).unwrap();
+            put(&result);
             for (command, status, said) in readers(&bench) {
                 assert!(![0, 1, 3].contains(&status), "{what}, {rehash}: {command}: {status}");
-                assert!(said.contains(path.file_name().unwrap().to_str().unwrap()), "{said}");
+                assert!(said.contains(id) && said.contains("results/"), "{said}");
             }
         }
     }
     // A number from which nothing is derived: only the hash reveals the edit.
     let mut result = whole.clone();
     result["summary"]["navigation"]["latitude_error_arcmin"]["max"] = 0.001.into();
-    std::fs::write(&path, format!("{result}\n")).unwrap();
+    put(&result);
     assert!(readers(&bench).iter().all(|(_, status, said)| *status == 4 || said.contains("read")));
     // With the original content restored, every reader works.
-    std::fs::write(&path, format!("{whole}\n")).unwrap();
+    put(&whole);
     parts(&plan, &out);
     assert!(readers(&bench).iter().all(|(_, status, _)| [0, 1, 3].contains(status)));
 }
@@ -108,14 +110,13 @@ fn an_edited_case_result_is_refused_by_every_reader_and_named() {
 #[test]
 fn a_limit_that_differs_from_the_plan_is_refused() {
     let (bench, plan, out) = campaign();
-    let path = case::file(&out, &plan.cases[1].id);
-    let mut result: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let mut result = stored::value(&out, &plan.cases[1].id);
     let checks = result["summary"]["requirements"].as_array_mut().unwrap();
     let check = checks.iter_mut().find(|check| check["id"] == "NAV-1").unwrap();
     let value = check["value"].as_f64().unwrap();
     (check["limit"], check["margin"]) = (1000.0.into(), (1000.0 - value).into());
     result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
-    std::fs::write(&path, format!("{result}\n")).unwrap();
+    stored::put(&out, &plan.cases[1].id, &format!("{result}\n"));
     let (status, said) = bench.report();
     assert!(status != 0 && said.contains("1000") && said.contains("<= 10"), "{said}");
 }
@@ -492,11 +493,10 @@ fn a_run_and_a_campaign_are_run_again_from_their_folders_alone() {
     let (status, said, _) = octant(&["verify", "out", "--reexecute", "2", "--sample-seed", "7"]);
     assert!(status == 0 && said.contains("2 of 4 cases, drawn with --sample-seed 7"), "{said}");
     let case = &plan.cases[0];
-    let file = case::file(&out, &case.id);
-    let mut result: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    let mut result = stored::value(&out, &case.id);
     result["summary"]["navigation"]["latitude_error_arcmin"]["rms"] = 0.001.into();
     result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
-    std::fs::write(&file, format!("{result}\n")).unwrap();
+    stored::put(&out, &case.id, &format!("{result}\n"));
     parts(&plan, &out);
     octant(&["campaign", "merge", "out"]);
     octant(&["campaign", "report", "out"]);
@@ -514,8 +514,7 @@ fn a_limit_that_differs_from_the_scenario_is_found_by_verify() {
     let (bench, plan, out) = campaign();
     bench.octant(&["campaign", "report", "out"]);
     assert_eq!(bench.octant(&["verify", "out"]).status.code(), Some(0));
-    let path = case::file(&out, &plan.cases[0].id);
-    let whole: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let whole = stored::value(&out, &plan.cases[0].id);
     type Edit = fn(&mut Vec<Value>);
     let edits: [(Edit, &str); 2] = [
         (
@@ -538,7 +537,7 @@ fn a_limit_that_differs_from_the_scenario_is_found_by_verify() {
         result["summary"]["verdict"] = "pass".into();
         result["verdict"] = "pass".into();
         result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
-        std::fs::write(&path, format!("{result}\n")).unwrap();
+        stored::put(&out, &plan.cases[0].id, &format!("{result}\n"));
         bench.octant(&["campaign", "report", "out"]);
         let output = bench.octant(&["verify", "out"]);
         let said = String::from_utf8(output.stdout).unwrap();

@@ -58,7 +58,7 @@ impl Bench {
             let hash = case::hash_of(self.plan.planned(case).unwrap(), case);
             let result = CaseResult::of(&case.id, Some(hash), summary).unwrap();
             let json = result.to_json().unwrap();
-            case::keep(self.folder.path(), &case.id, json.as_bytes()).unwrap();
+            octant_campaign::store::keep(self.folder.path(), &case.id, json.as_bytes()).unwrap();
         }
     }
 

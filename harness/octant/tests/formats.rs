@@ -4,9 +4,10 @@
 
 use crate::common::program::program;
 use octant_calibration::table::CalibrationTable;
-use octant_campaign::case::{self, CaseResult};
+use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
+use octant_campaign::store::file;
 use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
 use octant_campaign::{merge, requirements, status};
 use octant_evidence::manifest::Manifest;
@@ -192,7 +193,7 @@ fn a_plan_and_the_results_of_its_cases() {
     assert_eq!(plan.requirements[0].check.id, "NAV-2");
     let folder = sample("campaign");
     for case in &plan.cases {
-        let result = CaseResult::read(&case::file(&folder, &case.id)).unwrap();
+        let result = CaseResult::read(&file(&folder, &case.id)).unwrap();
         assert_eq!((result.verdict, &result.case), (Verdict::Pass, &case.id));
         assert_eq!(result.summary.unwrap().seed, case.seed);
     }

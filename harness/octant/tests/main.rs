@@ -10,6 +10,7 @@ mod architecture;
 mod branches;
 mod campaign;
 mod campaign_report;
+mod campaign_scale;
 mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;

@@ -1,7 +1,6 @@
 //! Nightly regression: a regression is found, and nothing else is; and every problem of a history.
 
 use crate::common::program::octant_in;
-use octant_campaign::case;
 use octant_campaign::plan::Plan;
 use octant_campaign::table::{ColumnValue as Cell, ExistingTable};
 use serde_json::Value;
@@ -367,10 +366,10 @@ fn a_night_is_judged_anew_campaign_by_campaign() {
     assert_eq!(judged["requirements"][0]["then"], "pass");
     // A result whose value is above its limit fails, whatever verdict is stored with it.
     let plan = Plan::read(&night.join("night/plan.json")).unwrap();
-    let path = case::file(&night.join("night"), &plan.cases[0].id);
-    let mut result: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let (folder, id) = (night.join("night"), &plan.cases[0].id);
+    let mut result = crate::common::results::value(&folder, id);
     result["summary"]["navigation"]["radial_error_nmi"]["max"] = 4711.0.into();
-    std::fs::write(&path, result.to_string()).unwrap();
+    crate::common::results::put(&folder, id, &result.to_string());
     let (status, found) = rejudge();
     let judged = &found["judged"][0];
     assert_eq!((status, &found["verdict"]), (Some(1), &"fail".into()), "{found}");
@@ -440,9 +439,8 @@ fn a_night_that_was_broken_off_goes_on() {
     assert!(err.contains("found no finished night in h"), "{out}{err}");
     std::fs::remove_file(folder.join("suite/spike.json")).unwrap();
     std::fs::remove_dir_all(folder.join("night/parts")).unwrap();
-    let cases = folder.join("night/cases");
-    let one = std::fs::read_dir(&cases).unwrap().next().unwrap().unwrap().path();
-    std::fs::remove_dir_all(one).unwrap();
+    let plan = Plan::read(&folder.join("night/plan.json")).unwrap();
+    crate::common::results::remove(&folder.join("night"), &plan.cases[1].id);
     let (status, again) = bench.night(&["--suite", "suite.toml"]);
     // Complete, and without a baseline.
     assert_eq!((status, &again["night"]), (Some(3), &night["night"]));

@@ -4,6 +4,7 @@
 use crate::campaign_report::bench::{Bench, CAMPAIGN};
 use crate::chain::{TOO_NEAR, run};
 use crate::common::program::{octant_in, program};
+use crate::common::results;
 use octant_campaign::case;
 use octant_score::numerics::NUMERICS;
 use serde_json::{Value, json};
@@ -123,7 +124,7 @@ fn an_older_campaign_is_judged_anew_case_by_case() {
     // A value over its limit with a stored pass: every other reader refuses the file, here it is
     // judged, and fails.
     let case = judged["cases"][0]["case"].as_str().unwrap();
-    let path = case::file(&folder, case);
+    let path = octant_campaign::store::file(&folder, case);
     let mut result: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     result["summary"]["navigation"]["radial_error_nmi"]["max"] = 4711.0.into();
     std::fs::write(&path, result.to_string()).unwrap();
@@ -204,8 +205,8 @@ fn the_numerics_version_is_wherever_a_number_is() {
     plan.write(&out, false).unwrap();
     bench.octant(&["campaign", "run", "out"]);
     bench.octant(&["campaign", "merge", "out"]);
-    let path = case::file(&out, &plan.cases[0].id);
-    let mut result = read(path.clone());
+    let id = &plan.cases[0].id;
+    let mut result = results::value(&out, id);
     assert_eq!(result["summary"]["numerics"], NUMERICS);
     let table =
         octant_campaign::table::ExistingTable::open(&octant_campaign::merge::merged(&out, "cases"))
@@ -220,7 +221,7 @@ fn the_numerics_version_is_wherever_a_number_is() {
     copy(&out, &other);
     result["summary"]["numerics"] = (NUMERICS + 1).into();
     result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
-    std::fs::write(case::file(&other, &plan.cases[0].id), result.to_string()).unwrap();
+    results::put(&other, id, &result.to_string());
     std::fs::remove_dir_all(other.join("parts")).unwrap();
     bench.octant(&["campaign", "run", "other"]);
     let output = bench.octant(&["campaign", "merge", "out", "other"]);
@@ -237,7 +238,7 @@ fn the_numerics_version_is_wherever_a_number_is() {
         result["summary"]["numerics"] = version.into();
         result["summary"]["navigation"]["latitude_error_arcmin"]["rms"] = 0.001.into();
         result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
-        std::fs::write(&path, result.to_string()).unwrap();
+        results::put(&out, id, &result.to_string());
         for name in ["cases", "checks", "drift"] {
             std::fs::remove_file(octant_campaign::merge::merged(&out, name)).unwrap_or(());
         }

@@ -2,9 +2,10 @@
 //! that of every other command that reports the verdict.
 
 use crate::campaign_report::bench::{Bench, CAMPAIGN, SCENARIO, TEMPLATE, check};
-use octant_campaign::case;
+use crate::common::results;
 use octant_campaign::plan::{Case, Plan};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 type Change = fn(usize, &Case, &mut Value);
@@ -26,7 +27,7 @@ fn says(bench: &Bench, arguments: &[&str]) -> (i32, String) {
 /// JSON.
 #[track_caller]
 fn agree(bench: &Bench, expected: i32, name: &str) -> Value {
-    let before = case_files(&bench.at("out"));
+    let before = parts(&bench.at("out"));
     for command in [
         &["campaign", "status", "out"][..],
         &["campaign", "trace", "out"],
@@ -41,22 +42,16 @@ fn agree(bench: &Bench, expected: i32, name: &str) -> Value {
         assert_eq!(status, expected, "{command:?}: {said}");
         assert!(said.contains(&format!(": {name}\n")), "{command:?}: {said}");
     }
-    assert_eq!(case_files(&bench.at("out")), before, "no case has run");
+    assert_eq!(parts(&bench.at("out")), before, "no case has run");
     let (_, said) = says(bench, &["campaign", "trace", "out", "--json"]);
     let traced: Value = serde_json::from_str(&said).unwrap();
     assert_eq!(traced["verdict"], name);
     traced
 }
 
-fn case_files(out: &Path) -> Vec<PathBuf> {
-    let mut all = Vec::new();
-    for folder in std::fs::read_dir(out.join("cases")).unwrap() {
-        all.extend(
-            std::fs::read_dir(folder.unwrap().path()).unwrap().map(|file| file.unwrap().path()),
-        );
-    }
-    all.sort();
-    all
+fn parts(out: &Path) -> BTreeSet<(Vec<u8>, PathBuf)> {
+    let all = std::fs::read_dir(out.join("results")).unwrap();
+    all.map(|file| file.unwrap().path()).map(|path| (std::fs::read(&path).unwrap(), path)).collect()
 }
 
 /// Returns the row of a requirement in a trace.
@@ -121,7 +116,7 @@ fn an_ensemble_that_shows_too_little_is_inconclusive_everywhere() {
 #[test]
 fn a_case_without_a_result_is_inconclusive_everywhere() {
     let (bench, plan, out) = modest_and_filled(|_, _, _| {});
-    std::fs::remove_file(case::file(&out, &plan.cases[1].id)).unwrap();
+    results::remove(&out, &plan.cases[1].id);
     let traced = agree(&bench, 3, "inconclusive");
     assert_eq!(traced["open"], 1);
     assert_eq!(verdict_of(&traced, "CAL-1"), "inconclusive");
@@ -189,8 +184,7 @@ fn a_failure_without_evidence_is_none_that_draws_may_have() {
 fn a_case_with_two_results_is_an_error_of_all_that_it_checks() {
     let (bench, plan, out) = modest_and_filled(|_, _, _| {});
     let id = &plan.cases[1].id;
-    let file = case::file(&out, id);
-    std::fs::copy(&file, file.with_file_name(format!("{id}.differs-1.json"))).unwrap();
+    results::put_beside(&out, id, &(results::text(&out, id) + "\n"));
     let (_, said) = says(&bench, &["campaign", "trace", "out", "--json"]);
     let traced: Value = serde_json::from_str(&said).unwrap();
     for id in ["CAL-1", "NAV-1"] {

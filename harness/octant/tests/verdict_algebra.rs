@@ -5,10 +5,11 @@
 //! use.
 
 use octant_base::control::Control;
-use octant_campaign::case::{self, CaseResult, StoreOutcome as KeptResult};
+use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario};
 use octant_campaign::requirements::Planned;
+use octant_campaign::store::{self, StoreOutcome};
 use octant_campaign::{status, trace};
 use octant_realtime::schedule::{Granted, RequestOutcome};
 use octant_requirements::requirement::{
@@ -321,7 +322,7 @@ fn campaign(
         replicate: i as u32,
         set: Vec::new(),
         faults: None,
-        factors: BTreeMap::new(),
+        factors: Default::default(),
     };
     let id = |i: usize| case::hash_of(&planned, &case(i))[..16].to_owned();
     let cases = (0..outcomes.len()).map(|i| Case { id: id(i), ..case(i) });
@@ -339,7 +340,7 @@ fn campaign(
         cases: cases.collect(),
     };
     let keep = |i: usize, result: &CaseResult| {
-        case::keep(folder, &id(i), result.to_json().unwrap().as_bytes()).unwrap()
+        store::keep(folder, &id(i), result.to_json().unwrap().as_bytes()).unwrap()
     };
     for (i, outcome) in outcomes.iter().enumerate() {
         match outcome {
@@ -351,7 +352,7 @@ fn campaign(
                 keep(i, &other);
                 other.verdict = Verdict::Error;
                 other.error = Some("another".to_owned());
-                assert!(matches!(keep(i, &other), KeptResult::Differs(_)));
+                assert!(matches!(keep(i, &other), StoreOutcome::Differs(_)));
             }
             Came::Foreign(parts) => {
                 _ = keep(i, &result("ffffffffffffffff", &planned, &case(i), parts))

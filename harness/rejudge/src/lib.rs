@@ -10,6 +10,8 @@ use octant_campaign::execute::Shard;
 use octant_campaign::plan::{self, Plan};
 use octant_campaign::report::evidence::STATISTICS;
 use octant_campaign::status;
+use octant_campaign::store::writer::PartWriter;
+use octant_campaign::store::{CampaignResults, StoredResult, keep_in};
 use octant_evidence::files;
 use octant_evidence::inside::{SUMMARY, certified};
 use octant_evidence::manifest::{self, FILE_NAME, Manifest, ManifestError};
@@ -269,14 +271,13 @@ fn campaign(
     let place = tempfile::tempdir().map_err(|error| system(error.to_string()))?;
     let (mut made_by, mut numerics) = (BTreeSet::new(), BTreeSet::new());
     let (mut cases, mut not_stored, mut unknown) = (Vec::new(), BTreeSet::new(), 0);
+    let results = CampaignResults::open(folder).map_err(|error| form(folder, error))?;
+    let mut writer = PartWriter::new(place.path(), "rejudged").unsynced();
     for case in &plan.cases {
-        let path = case::file(folder, &case.id);
-        let bytes = match files::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
-            Err(error) => return Err(form(&path, error)),
-        };
-        let stored = CaseResult::unjudged(&path, &bytes).map_err(|reason| form(&path, reason))?;
+        let stored = results.bytes(&case.id).map_err(|error| form(folder, error))?;
+        let Some(StoredResult { place: at, bytes, .. }) = stored else { continue };
+        let path = at.path().to_owned();
+        let stored = CaseResult::unjudged(&at, &bytes).map_err(|reason| form(&path, reason))?;
         let mut is_unknown = false;
         let again = match &stored.summary {
             None => stored.clone(),
@@ -311,7 +312,7 @@ fn campaign(
             continue;
         }
         let text = again.to_json().map_err(|error| form(&path, error))?;
-        case::keep(place.path(), &case.id, text.as_bytes())
+        keep_in(&mut writer, &case.id, text.as_bytes(), &[])
             .map_err(|error| system(error.to_string()))?;
     }
     let status =

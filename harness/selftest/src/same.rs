@@ -60,7 +60,7 @@ fn shards(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     tables(bench, "one processor", &mut outcome)?;
     let (several, parts): (&[&str], &[&str]) = (&["1/1"], &["2/3", "1/3", "3/3"]);
     for (how, shards) in [("two processors", several), ("three parts", parts)] {
-        for old in ["campaign/cases", "campaign/parts"] {
+        for old in ["campaign/results", "campaign/parts"] {
             let path = bench.at(old);
             std::fs::remove_dir_all(&path)
                 .map_err(|error| format!("remove {}: {error}", path.display()))?;

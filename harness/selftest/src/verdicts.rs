@@ -7,6 +7,8 @@ use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
 use minisign::KeyPair;
+use octant_campaign::case::ResultError;
+use octant_campaign::store::{CampaignResults, keep};
 use octant_requirements::Verdict;
 
 const BIAS_STEP: &str = include_str!("../../../fixtures/selftest/bias-step.toml");
@@ -263,9 +265,13 @@ fn campaigns() -> Vec<SelftestCase> {
             (4, "two results"),
             |bench| {
                 campaign(bench, 1, ALWAYS, "")?;
-                let (folder, id) = only_case(bench)?;
-                let result = bench.read(&format!("{folder}/{id}.json"))?;
-                bench.write(&format!("{folder}/{id}.differs-00000000.json"), result)?;
+                let (folder, id) = (bench.at("campaign"), only_case(bench)?);
+                let failed = |error: ResultError| format!("failed to {error}");
+                let stored =
+                    CampaignResults::open(&folder).map_err(failed)?.bytes(&id).map_err(failed)?;
+                let mut other = stored.ok_or("find the result of the case")?.bytes;
+                other.push(b'\n');
+                keep(&folder, &id, &other).map_err(failed)?;
                 status(bench)
             },
         ),
@@ -337,11 +343,11 @@ fn key_pair(bench: &CaseBench<'_>, name: &str) -> Result<String, CaseSetupError>
     Ok(pair.pk.to_base64())
 }
 
-fn only_case(bench: &CaseBench<'_>) -> Result<(String, String), CaseSetupError> {
+fn only_case(bench: &CaseBench<'_>) -> Result<String, CaseSetupError> {
     let plan = octant_campaign::plan::Plan::read(&bench.at("campaign/plan.json"))
         .map_err(|error| error.to_string())?;
     let case = plan.cases.first().ok_or("find a case in the plan")?;
-    Ok((format!("campaign/cases/{}", &case.id[..2]), case.id.clone()))
+    Ok(case.id.clone())
 }
 
 fn status(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {

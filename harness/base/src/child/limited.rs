@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Interval at which a process is polled.
-const LOOK: Duration = Duration::from_millis(5);
+pub(super) const LOOK: Duration = Duration::from_millis(5);
 /// Longest interval between polls that counts in full: after a longer one, this process was
 /// stopped, or the host had no time for it.
 const LOOK_MAX: Duration = Duration::from_millis(100);
@@ -81,32 +81,59 @@ fn all(pipe: Option<impl Read>, most: u64) -> String {
 
 /// Waits for the end of a process as [`finish`].
 fn wait(child: &mut Child, limit: Duration, cancel: &AtomicBool) -> io::Result<ChildEnded> {
-    let (mut ran, mut stopped) = (Duration::ZERO, Duration::ZERO);
-    let mut is_stopped = false;
-    let mut before = Instant::now();
+    let mut clock = RunClock::start();
     loop {
+        if let Some(ended) = clock.look(child, limit, cancel)? {
+            return Ok(ended);
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// Time for which a process ran and was stopped, from its polls.
+#[derive(Debug)]
+pub(super) struct RunClock {
+    ran: Duration,
+    stopped: Duration,
+    is_stopped: bool,
+    before: Instant,
+}
+
+impl RunClock {
+    pub(super) fn start() -> Self {
+        let (ran, stopped) = (Duration::ZERO, Duration::ZERO);
+        Self { ran, stopped, is_stopped: false, before: Instant::now() }
+    }
+
+    /// Polls a process: `None` while it runs. Ends it on request, or when it ran for longer than `limit`.
+    pub(super) fn look(
+        &mut self,
+        child: &mut Child,
+        limit: Duration,
+        cancel: &AtomicBool,
+    ) -> io::Result<Option<ChildEnded>> {
         if let Some(status) = child.try_wait()? {
-            return Ok(outside(status).map_or(ChildEnded::Status(status), ChildEnded::Outside));
+            let outside = outside(status);
+            return Ok(Some(outside.map_or(ChildEnded::Status(status), ChildEnded::Outside)));
         }
         let now = Instant::now();
-        let passed = now.duration_since(before).min(LOOK_MAX);
-        before = now;
-        is_stopped = stops(child, is_stopped);
-        *(if is_stopped { &mut stopped } else { &mut ran }) += passed;
+        let passed = now.duration_since(self.before).min(LOOK_MAX);
+        self.before = now;
+        self.is_stopped = stops(child, self.is_stopped);
+        *(if self.is_stopped { &mut self.stopped } else { &mut self.ran }) += passed;
         let ended = if cancel.load(Ordering::Relaxed) {
             ChildEnded::Cancelled
-        } else if ran > limit {
+        } else if self.ran > limit {
             ChildEnded::TooLong
-        } else if stopped > STOPPED_MAX {
+        } else if self.stopped > STOPPED_MAX {
             ChildEnded::Outside(format!("a stop of more than {} s", STOPPED_MAX.as_secs()))
         } else {
-            std::thread::sleep(LOOK);
-            continue;
+            return Ok(None);
         };
         // A process that has just ended by itself can't be killed.
         let _ = child.kill();
         child.wait()?;
-        return Ok(ended);
+        Ok(Some(ended))
     }
 }
 

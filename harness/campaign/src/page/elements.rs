@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use octant_base::display::ShownUnit;
 use octant_base::number;
+use octant_evidence::manifest::shell_line;
 use octant_statistics::sample::ConfidenceInterval;
 
 /// Maximum number of rows of a table on the page; the rest is in separate files.
@@ -33,11 +34,13 @@ pub(super) fn short(hash: &str) -> &str {
     hash.get(..16).unwrap_or(hash)
 }
 
-/// Renders a case, as a link to its result if there is one.
-pub(super) fn case_link(case: &str, beside: bool) -> Markup {
+/// Renders a case, with the command that shows its result if the page is in the folder of its campaign:
+/// `beside` is the name of that folder.
+pub(super) fn case_link(case: &str, beside: Option<&str>) -> Markup {
     html! {
-        @if beside {
-            a.mono href={ "cases/" (case.get(..2).unwrap_or("")) "/" (case) ".json" } { (case) }
+        @if let Some(folder) = beside {
+            @let words = ["octant", "campaign", "result", folder, case].map(str::to_owned);
+            span.mono title=(shell_line(&words)) { (case) }
         } @else {
             span.mono { (case) }
         }

@@ -14,7 +14,7 @@ const SHOWN: usize = 50;
 /// Number of cases of a discrepancy that are shown at once; the others are folded.
 const FIRST: usize = 5;
 
-pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let outliers = &report.statistics.outliers;
     let of = |wanted: &dyn Fn(&RowOutcome) -> Option<String>| -> Vec<(String, String)> {
         let why = |row: &ReportRow<'_>| Some((row.case.id.clone(), wanted(row.outcome.as_ref()?)?));
@@ -74,7 +74,7 @@ fn cases(
     title: &str,
     none: &str,
     all: &[(String, String)],
-    beside: bool,
+    beside: Option<&str>,
 ) -> Markup {
     html! {
         h3 { (title) }
@@ -96,7 +96,7 @@ fn cases(
 }
 
 /// Renders everything that isn't a pass, with the dispositions.
-pub(super) fn discrepancies(report: &CampaignReport<'_>, beside: bool) -> Markup {
+pub(super) fn discrepancies(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let hint = "What is said of them stands in dispositions.toml, which people fill in. It changes no \
         verdict. One more case makes another discrepancy, of which nothing is said yet.";
     let list = |cases: &[String]| list(cases, beside);
@@ -106,7 +106,7 @@ pub(super) fn discrepancies(report: &CampaignReport<'_>, beside: bool) -> Markup
     }
 }
 
-fn list(cases: &[String], beside: bool) -> Markup {
+fn list(cases: &[String], beside: Option<&str>) -> Markup {
     let (first, rest) = cases.split_at(cases.len().min(FIRST));
     html! {
         div.reason {

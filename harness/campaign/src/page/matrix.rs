@@ -8,7 +8,7 @@ use crate::report::combination::shown;
 use maud::{Markup, html};
 use octant_report::page::badge;
 
-pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
+pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let trace = &report.trace;
     html! {
         (heading("trace"))
@@ -33,7 +33,7 @@ pub(super) fn section(report: &CampaignReport<'_>, beside: bool) -> Markup {
                 (rest(row.cases.len()))
             }
         }
-        (missing("Requirements without a case", &trace.without_case, false))
+        (missing("Requirements without a case", &trace.without_case, None))
         (missing("Cases without a requirement", &trace.without_requirement, beside))
         @if !report.status.not_by_test.is_empty() {
             h3 { "Requirements that no run verifies" }
@@ -52,19 +52,19 @@ fn rest(all: usize) -> Markup {
     }
 }
 
-fn missing(title: &str, ids: &[String], cases: bool) -> Markup {
+fn missing(title: &str, ids: &[String], beside: Option<&str>) -> Markup {
     html! {
         h3 { (title) }
         @if ids.is_empty() { p { "None." } } @else {
             p.cases { @for id in ids.iter().take(ROWS_MAX) {
-                @if cases { (case_link(id, true)) } @else { strong { (id) } } " "
+                @if beside.is_some() { (case_link(id, beside)) } @else { strong { (id) } } " "
             } }
             (rest(ids.len()))
         }
     }
 }
 
-fn cases(report: &CampaignReport<'_>, beside: bool) -> Markup {
+fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let requirements = &report.statistics.requirements;
     let mut worst_first: Vec<_> = report.rows.iter().collect();
     worst_first.sort_by_key(|row| std::cmp::Reverse(row.outcome.as_ref().map(|o| o.verdict)));
@@ -83,7 +83,7 @@ fn cases(report: &CampaignReport<'_>, beside: bool) -> Markup {
                         tr {
                             td { (case_link(&row.case.id, beside)) }
                             td { (row.case.scenario)
-                                @for (name, value) in &row.case.factors { "; " (name) " " (shown(value)) } }
+                                @for (name, value) in row.case.factors.iter() { "; " (name) " " (shown(value)) } }
                             td.n { (row.case.seed) }
                             td.n { (check(outcome.map(|outcome| outcome.verdict))) }
                             @for r in requirements { td.n {

@@ -22,10 +22,11 @@ use octant_report::page::{badge, page};
 use octant_requirements::Verdict;
 
 /// Renders the report as one HTML file. `beside` tells that it is in the folder of the campaign:
-/// then cases link to the files of their results.
+/// then each case has the command that shows its result.
 #[must_use]
 pub fn render(report: &CampaignReport<'_>, beside: bool) -> String {
     let verdict = report.statistics.verdict;
+    let beside = beside.then_some(report.name.as_str());
     let body = html! {
         a.skip href="#requirements" { "To the requirements" }
         (header(report))

@@ -4,7 +4,8 @@
 //! combination are therefore independent of each other, those of several aren't, and bounds are
 //! given for single combinations only.
 
-use crate::plan::{Case, FactorValue, Plan};
+use crate::factor_values::FactorValue;
+use crate::plan::{Case, Plan};
 use octant_base::number;
 use octant_scenario::quantity_of;
 use std::collections::HashMap;
@@ -65,7 +66,7 @@ pub fn of_grid(plan: &Plan) -> Vec<String> {
     let is = |factor: &&String| {
         let mut first: HashMap<u32, &FactorValue> = HashMap::new();
         plan.cases.iter().any(|case| {
-            let Some(value) = case.factors.get(*factor) else { return false };
+            let Some(value) = case.factors.get(factor) else { return false };
             *first.entry(case.replicate).or_insert(value) != value
         })
     };

@@ -2,11 +2,12 @@
 //! results.
 
 use super::combination::Combination;
+use super::curves::CurveFile;
 use super::envelope::ShownEnvelope;
 use super::error::ReportError;
 use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use super::requirement::RequirementFigures;
-use super::rows::ReportRow;
+use super::rows::{ReportRow, ReportRows};
 use super::selftest::SelfTest;
 use super::units::CampaignUnits;
 use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
@@ -14,7 +15,8 @@ use crate::against::{Against, Selection, against};
 use crate::execute::{Shard, refuse_foreign};
 use crate::plan::Plan;
 use crate::status::{self, CampaignStatus, StatusError};
-use crate::trace::trace;
+use crate::store::CampaignResults;
+use crate::trace::trace_by;
 use octant_base::display::UnitChoice;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
@@ -25,6 +27,7 @@ use octant_requirements::trace::CampaignTrace;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Version of `statistics.json`.
 pub const SCHEMA: u32 = 1;
@@ -116,6 +119,16 @@ pub struct CampaignReport<'a> {
     pub tables: Vec<(String, String)>,
     /// Units of errors on the page.
     pub units: CampaignUnits,
+    /// The file of the drifts.
+    curves: Arc<CurveFile>,
+}
+
+/// Checks that the drifts could be read.
+fn check(curves: &CurveFile) -> Result<(), ReportError> {
+    let path = std::env::temp_dir();
+    let wrong =
+        |source| ReportError::System { action: "read the drifts of cases from", path, source };
+    curves.error().map_or(Ok(()), |source| Err(wrong(source)))
 }
 
 impl<'a> CampaignReport<'a> {
@@ -124,20 +137,23 @@ impl<'a> CampaignReport<'a> {
     /// # Errors
     /// If something in the folder can't be read, or isn't of the plan.
     pub fn of(plan: &'a Plan, folder: &Path) -> Result<Self, ReportError> {
-        refuse_foreign(plan, folder)?;
+        let results = CampaignResults::open(folder)?;
+        refuse_foreign(plan, folder, &results)?;
         let dispositions = Dispositions::read(&folder.join(disposition::FILE_NAME))?;
         let result = |StatusError(error)| ReportError::Result(error);
-        let status = status::of(plan, folder, Shard::WHOLE).map_err(result)?;
+        let status = status::of_results(plan, &results, Shard::WHOLE).map_err(result)?;
         let end = match &plan.stop {
-            Some(rule) => status::decide(plan, folder, rule).map_err(result)?.end(plan.cases.len()),
+            Some(rule) => {
+                status::decide_by(plan, &results, rule).map_err(result)?.end(plan.cases.len())
+            }
             None => plan.cases.len(),
         };
-        let (rows, results_blake3) = rows::read(plan, folder, end)?;
+        let ReportRows { rows, results_blake3, curves } = rows::read(plan, &results, end)?;
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
-        let trace = trace(plan, &about, folder, end)?;
+        let trace = trace_by(plan, &about, &results, end)?;
         let run = rows.iter().filter(|row| row.outcome.is_some()).count();
-        let (tables, mut wrong) = tables::look(plan, folder, run)?;
+        let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
             wrong.push(reason);
             None
@@ -151,6 +167,7 @@ impl<'a> CampaignReport<'a> {
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
             .collect();
         figures::mark(&mut of_combinations);
+        check(&curves)?;
         let statistics = Statistics {
             schema: SCHEMA,
             title: plan.title.clone(),
@@ -189,7 +206,16 @@ impl<'a> CampaignReport<'a> {
             notes,
             tables,
             units: CampaignUnits::of(plan, folder),
+            curves,
         })
+    }
+
+    /// Checks that the drifts of all cases could be read each time.
+    ///
+    /// # Errors
+    /// If the temporary file that holds them could not be read.
+    pub fn check(&self) -> Result<(), ReportError> {
+        check(&self.curves)
     }
 
     /// Chooses units of errors on the page, in place of the scenarios'. Files for machines keep theirs.

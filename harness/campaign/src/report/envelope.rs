@@ -1,8 +1,11 @@
 //! Percentiles of the errors over time: in the units of `statistics.json`, and in those of the page.
 
-use super::rows::Curve;
+use super::curves::StoredCurve;
 use octant_statistics::envelope::envelope;
 use serde::Serialize;
+
+/// Number of points of all curves that are in memory at a time.
+const BLOCK: usize = 64;
 
 /// Percentiles of the envelopes.
 pub const PERCENTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -23,7 +26,7 @@ pub struct EnvelopeFigures {
 impl EnvelopeFigures {
     /// Builds the envelope up to the end of the shortest navigation; `None` for navigations whose
     /// lengths differ so much that their grids differ.
-    pub(super) fn of(curves: &[&Curve], beyond: usize) -> Option<Self> {
+    pub(super) fn of(curves: &[&StoredCurve], beyond: usize) -> Option<Self> {
         let curves: Vec<_> = curves.iter().map(|curve| (*curve, [1.0; 2])).collect();
         let ShownEnvelope { hours, latitude, longitude } = ShownEnvelope::of(&curves, beyond)?;
         let percentiles = PERCENTILES.to_vec();
@@ -46,24 +49,32 @@ impl ShownEnvelope {
     /// Builds the envelope of errors, each with the number of units in a minute of arc of latitude and of
     /// longitude at its site. The errors are converted first: where the sites differ, percentiles of
     /// distances aren't the distances of percentiles.
-    pub(super) fn of(curves: &[(&Curve, [f64; 2])], beyond: usize) -> Option<Self> {
+    pub(super) fn of(curves: &[(&StoredCurve, [f64; 2])], beyond: usize) -> Option<Self> {
         let step_s = curves.first()?.0.step_s;
         if curves.iter().any(|(curve, _)| curve.step_s != step_s) {
             return None;
         }
-        let points = curves.iter().map(|(curve, _)| curve.latitude_arcmin.len()).min()?;
-        let of = |axis: usize, column: fn(&Curve) -> &[f64]| {
-            let one = |(curve, factors): &(&Curve, [f64; 2])| {
-                let values = column(curve).get(..points)?;
-                Some(values.iter().map(|value| value * factors[axis]).collect::<Vec<f64>>())
-            };
-            let all: Vec<Vec<f64>> = curves.iter().filter_map(one).collect();
-            percentiles(&all, points, beyond)
+        let points = curves.iter().map(|(curve, _)| curve.points).min()?;
+        // Some points of all curves at a time.
+        let of = |axis: usize| {
+            let mut found = vec![Vec::with_capacity(points); PERCENTILES.len()];
+            for from in (0..points).step_by(BLOCK) {
+                let count = BLOCK.min(points - from);
+                let one = |(curve, factors): &(&StoredCurve, [f64; 2])| {
+                    let mut values = curve.read(axis, from, count)?;
+                    values.iter_mut().for_each(|value| *value *= factors[axis]);
+                    Some(values)
+                };
+                let all = curves.iter().map(one).collect::<Option<Vec<Vec<f64>>>>()?;
+                let block = percentiles(&all, count, beyond)?;
+                found.iter_mut().zip(block).for_each(|(curve, more)| curve.extend(more));
+            }
+            Some(found)
         };
         Some(Self {
             hours: (0..points).map(|k| k as f64 * step_s / 3600.0).collect(),
-            latitude: of(0, |curve| &curve.latitude_arcmin)?,
-            longitude: of(1, |curve| &curve.longitude_arcmin)?,
+            latitude: of(0)?,
+            longitude: of(1)?,
         })
     }
 }

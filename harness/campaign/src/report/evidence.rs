@@ -5,6 +5,7 @@ use super::contents::{CampaignReport, again};
 use super::error::ReportError;
 use super::junit::junit;
 use crate::plan::INPUTS;
+use crate::store::CampaignResults;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
@@ -50,6 +51,7 @@ pub fn write(
         .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
     let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
     let html = crate::page::render(report, true);
+    report.check()?;
     if !report.dispositions.text.is_empty() {
         keep(&path, report.dispositions.text.as_bytes())?;
     }
@@ -67,7 +69,7 @@ pub fn write(
         _ => {}
     }
     let program = program_sha256();
-    let (first, last) = times(report, folder);
+    let (first, last) = times(report, folder)?;
     let facts = RunFacts {
         command_line: report.again().pop().unwrap_or_default(),
         campaign: Some(CampaignFacts {
@@ -91,16 +93,16 @@ pub fn write(
     Ok(Manifest::write(folder, &facts)?)
 }
 
-/// Returns the times of the first and the last result, from the file system.
-fn times(report: &CampaignReport<'_>, folder: &Path) -> (Option<String>, Option<String>) {
-    let of = |case: &str| {
-        let path = crate::case::file(folder, case);
-        std::fs::metadata(path).ok()?.modified().ok()
-    };
+/// Times of the first and the last result.
+type Times = (Option<String>, Option<String>);
+
+/// Returns the times of the first and the last result.
+fn times(report: &CampaignReport<'_>, folder: &Path) -> Result<Times, ReportError> {
+    let results = CampaignResults::open(folder)?;
     let run = report.rows.iter().filter(|row| row.outcome.is_some());
-    let all: Vec<SystemTime> = run.filter_map(|row| of(&row.case.id)).collect();
+    let all: Vec<SystemTime> = run.filter_map(|row| results.time(&row.case.id)).collect();
     let text = |time: &SystemTime| humantime::format_rfc3339_seconds(*time).to_string();
-    (all.iter().min().map(text), all.iter().max().map(text))
+    Ok((all.iter().min().map(text), all.iter().max().map(text)))
 }
 
 /// Copies the campaign's file, its requirements and its scenarios, if they are still the planned

@@ -9,8 +9,9 @@
 //! that of the good cases. Cases with the same stream count once.
 
 use super::combination::{self, Combination, number_of, takes_part};
+use super::curves::StoredCurve;
 use super::envelope::EnvelopeFigures;
-use super::rows::{CaseDrift, Curve, ReportRow};
+use super::rows::{CaseDrift, ReportRow};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
 use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
@@ -200,7 +201,7 @@ impl<'a> Sample<'a> {
     }
 
     /// Returns the errors over time, each with the place of its case.
-    fn curves(&self) -> Vec<(usize, &'a Curve)> {
+    fn curves(&self) -> Vec<(usize, &'a StoredCurve)> {
         let cases = self.places.iter().zip(&self.cases);
         cases.filter_map(|(place, (_, drift))| Some((*place, (*drift)?.curve.as_ref()?))).collect()
     }
@@ -247,7 +248,8 @@ impl CombinationFigures {
         let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
-        let curves: Vec<&Curve> = sample.curves().into_iter().map(|(_, curve)| curve).collect();
+        let curves: Vec<&StoredCurve> =
+            sample.curves().into_iter().map(|(_, curve)| curve).collect();
         let values = |name: &String| {
             let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
             cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
@@ -283,7 +285,7 @@ pub(super) fn curves<'a>(
     combination: &Combination,
     rows: &'a [ReportRow<'_>],
     draws: &[usize],
-) -> (Vec<(usize, &'a Curve)>, usize) {
+) -> (Vec<(usize, &'a StoredCurve)>, usize) {
     let sample = Sample::of_draws(rows, &combination.cases, draws);
     (sample.curves(), sample.beyond())
 }
@@ -291,11 +293,16 @@ pub(super) fn curves<'a>(
 /// Collects the largest errors of attitude and velocity that every navigating case has.
 fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
     let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
-    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.solution.keys()).collect();
-    let of = |name: &String| {
-        let known = drifts().all(|drift| drift.solution.contains_key(name));
-        let value = |drift: &CaseDrift| drift.solution.get(name).copied().unwrap_or(f64::INFINITY);
-        Some((name.clone(), Spread::of(&known.then(|| sample.column(value))?)?))
+    let all = drifts().flat_map(|drift| &drift.solution);
+    let names: BTreeSet<(&str, &str)> = all.map(|(name, unit, _)| (*name, *unit)).collect();
+    let of = |(name, unit): (&str, &str)| {
+        let get = |drift: &CaseDrift| {
+            let mut all = drift.solution.iter();
+            all.find(|other| (other.0, other.1) == (name, unit)).map(|(.., max)| *max)
+        };
+        let known = drifts().all(|drift| get(drift).is_some());
+        let value = |drift: &CaseDrift| get(drift).unwrap_or(f64::INFINITY);
+        Some((format!("{name}, {unit}"), Spread::of(&known.then(|| sample.column(value))?)?))
     };
     names.into_iter().filter_map(of).collect()
 }

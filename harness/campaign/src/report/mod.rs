@@ -8,6 +8,7 @@
 mod about;
 pub mod combination;
 mod contents;
+mod curves;
 pub mod discrepancy;
 pub mod envelope;
 mod error;

@@ -1,22 +1,20 @@
 //! Reads each case's result once, and keeps the parts that a report needs.
 
+pub use super::curves::Curve;
+
+use super::curves::{CurveFile, CurveWriter, StoredCurve};
 use super::error::ReportError;
 use crate::besides::besides;
-use crate::case::{self, CaseResult, differing};
+use crate::case::CaseResult;
 use crate::independence;
 use crate::plan::{Case, Plan};
+use crate::store::CampaignResults;
 use octant_requirements::Verdict;
 use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
-use octant_statistics::envelope::resampled;
 use std::collections::BTreeMap;
-use std::path::Path;
-
-/// Maximum number of points of a drift.
-const POINTS_MAX: f64 = 500.0;
-/// Distances between points, s.
-const STEPS_S: [f64; 14] =
-    [0.1, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0, 7200.0, 21_600.0];
+use std::io;
+use std::sync::Arc;
 
 /// Case with its result.
 #[derive(Clone, Debug)]
@@ -67,22 +65,34 @@ pub struct CaseDrift {
     pub rate_nmi_per_h: f64,
     /// Radial error at the marks that it reached, nmi.
     pub marks_nmi: BTreeMap<String, f64>,
-    /// Largest errors of attitude and velocity that were scored, by name and unit, such as
-    /// "heading, arcmin".
-    pub solution: BTreeMap<String, f64>,
+    /// Largest errors of attitude and velocity that were scored, with name and unit.
+    pub solution: Box<[(&'static str, &'static str, f64)]>,
     /// Errors over time.
-    pub curve: Option<Curve>,
+    pub curve: Option<StoredCurve>,
 }
 
-/// Errors over time, at whole multiples of a step from the start of the navigation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
-    /// The step, s: the same for navigations of the same length.
-    pub step_s: f64,
-    /// Latitude error, arcmin.
-    pub latitude_arcmin: Vec<f64>,
-    /// Longitude error, arcmin.
-    pub longitude_arcmin: Vec<f64>,
+/// Rows of a plan.
+#[derive(Debug)]
+pub struct ReportRows<'a> {
+    /// The rows.
+    pub rows: Vec<ReportRow<'a>>,
+    /// One hash of all results.
+    pub results_blake3: String,
+    /// The file of the drifts.
+    pub(super) curves: Arc<CurveFile>,
+}
+
+/// Hashes all results of a plan up to `end`, without keeping any.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn hash(plan: &Plan, results: &CampaignResults, end: usize) -> Result<String, ReportError> {
+    let mut hasher = blake3::Hasher::new();
+    for case in plan.cases.iter().take(end) {
+        let hash = results.of_plan(plan, case)?.map_or_else(|| "-".to_owned(), |(_, hash)| hash);
+        hasher.update(format!("{} {hash}\n", case.id).as_bytes());
+    }
+    Ok(hasher.finalize().to_hex().to_string())
 }
 
 /// Reads the rows of a plan up to `end`, and one hash of all results.
@@ -91,24 +101,32 @@ pub struct Curve {
 /// If an existing result can't be read.
 pub fn read<'a>(
     plan: &'a Plan,
-    folder: &Path,
+    results: &CampaignResults,
     end: usize,
-) -> Result<(Vec<ReportRow<'a>>, String), ReportError> {
+) -> Result<ReportRows<'a>, ReportError> {
     let mut hasher = blake3::Hasher::new();
     let mut rows = Vec::with_capacity(end);
+    let mut curves = CurveWriter::new();
+    let wrong = |source| ReportError::System {
+        action: "keep the drifts of cases in",
+        path: std::env::temp_dir(),
+        source,
+    };
     for case in plan.cases.iter().take(end) {
-        let path = case::file(folder, &case.id);
-        let read = CaseResult::of_plan(plan, folder, case)?;
+        let read = results.of_plan(plan, case)?;
         let Some((result, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
             rows.push(ReportRow { case, outcome: None });
             continue;
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-        let differs = differing(&path, &case.id).is_some();
-        rows.push(ReportRow { case, outcome: Some(RowOutcome::of(result, differs)) });
+        let differs = results.differing(&case.id)?.is_some();
+        let outcome = RowOutcome::of(result, differs, &mut curves).map_err(wrong)?;
+        rows.push(ReportRow { case, outcome: Some(outcome) });
     }
-    Ok((rows, hasher.finalize().to_hex().to_string()))
+    curves.flush().map_err(wrong)?;
+    let results_blake3 = hasher.finalize().to_hex().to_string();
+    Ok(ReportRows { rows, results_blake3, curves: curves.file() })
 }
 
 /// Returns the independent draw of each row.
@@ -121,7 +139,7 @@ pub(super) fn draws(rows: &[ReportRow<'_>]) -> Vec<usize> {
 }
 
 impl RowOutcome {
-    fn of(result: CaseResult, differs: bool) -> Self {
+    fn of(result: CaseResult, differs: bool, curves: &mut CurveWriter) -> io::Result<Self> {
         let besides = besides(&result);
         let (verdict, error) = (result.verdict, result.error);
         let mut outcome = Self {
@@ -136,7 +154,7 @@ impl RowOutcome {
             stream_hash: None,
             drift: None,
         };
-        let Some(summary) = result.summary else { return outcome };
+        let Some(summary) = result.summary else { return Ok(outcome) };
         let Summary { reasons, requirements, faults, calibration, navigation, stream_hash, .. } =
             summary;
         outcome.reasons = reasons;
@@ -145,8 +163,9 @@ impl RowOutcome {
         outcome.unfired =
             faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
         outcome.stream_hash = Some(stream_hash);
-        outcome.drift = navigation.as_ref().map(CaseDrift::of);
-        outcome
+        let drift = |navigation: &NavigationScore| CaseDrift::of(navigation, curves);
+        outcome.drift = navigation.as_ref().map(drift).transpose()?;
+        Ok(outcome)
     }
 
     /// Returns the verdict of a requirement: an error without a summary, inconclusive if it wasn't
@@ -163,14 +182,15 @@ impl RowOutcome {
 }
 
 impl CaseDrift {
-    fn of(navigation: &NavigationScore) -> Self {
+    fn of(navigation: &NavigationScore, curves: &mut CurveWriter) -> io::Result<Self> {
         let radial = &navigation.radial_error_nmi;
         let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
         // Latitude and longitude come first.
         let solution = navigation.errors().into_iter().skip(2);
-        Self {
+        let curve = Curve::of(&navigation.series_hours);
+        Ok(Self {
             solution: solution
-                .filter_map(|(name, unit, score)| Some((format!("{name}, {unit}"), score?.max)))
+                .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
                 .collect(),
             duration_h: navigation.duration_h,
             final_nmi: radial.r#final,
@@ -178,30 +198,7 @@ impl CaseDrift {
             rms_nmi: radial.rms,
             rate_nmi_per_h: radial.rate_per_h,
             marks_nmi: marks.collect(),
-            curve: Curve::of(&navigation.series_hours),
-        }
-    }
-}
-
-impl Curve {
-    /// Interpolates the points of a drift, which differ from case to case, onto a common grid.
-    // One copy, so that the self-test checks the one that reports use.
-    #[inline(never)]
-    pub fn of(series_hours: &[[f64; 3]]) -> Option<Self> {
-        let (first, last) = (series_hours.first()?[0], series_hours.last()?[0]);
-        // A series may begin with the first sample instead of before it.
-        let duration_s = (last - first) * 3600.0;
-        let step_s = STEPS_S.into_iter().find(|step| duration_s / step <= POINTS_MAX)?;
-        // Times are rounded to a millionth of an hour.
-        let points = libm::floor(duration_s / step_s + 0.01);
-        let grid: Vec<f64> = (0..=points as u32)
-            .map(|k| (first + f64::from(k) * step_s / 3600.0).min(last))
-            .collect();
-        let column = |column: usize| {
-            let points: Vec<[f64; 2]> =
-                series_hours.iter().map(|point| [point[0], point[column]]).collect();
-            resampled(&points, &grid)
-        };
-        Some(Self { step_s, latitude_arcmin: column(1)?, longitude_arcmin: column(2)? })
+            curve: curve.map(|curve| curves.push(&curve)).transpose()?,
+        })
     }
 }

@@ -5,8 +5,16 @@ use crate::chain;
 use crate::merge::merged;
 use crate::plan::Plan;
 use crate::results::TABLES;
+use crate::store::CampaignResults;
 use crate::table::{ExistingTable, TableError};
 use std::path::Path;
+
+/// Computes the BLAKE3 of a file, hexadecimal.
+fn hash_of(path: &Path) -> std::io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
 
 /// Lists existing tables with their BLAKE3, and the problems with them. `run` is the number of
 /// cases with a result.
@@ -17,14 +25,15 @@ use std::path::Path;
 pub(super) fn look(
     plan: &Plan,
     folder: &Path,
+    results: &CampaignResults,
     run: usize,
 ) -> Result<(Vec<(String, String)>, Vec<String>), ReportError> {
     let (mut found, mut wrong, mut of_this_plan) = (Vec::new(), Vec::new(), 0);
     for (name, _) in TABLES {
         let path = merged(folder, name);
         let file = format!("{name}.parquet");
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
+        let hash = match hash_of(&path) {
+            Ok(hash) => hash,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
             Err(error) => {
                 wrong.push(format!("{file} can't be read: {error}"));
@@ -46,18 +55,20 @@ pub(super) fn look(
                 }
             }
         }
-        found.push((file, blake3::hash(&bytes).to_hex().to_string()));
+        found.push((file, hash));
     }
     // Unreadable tables, or those of another plan, are reported above.
     if of_this_plan == TABLES.len() {
-        chain::check(plan, folder, |table| merged(folder, table)).map_err(|error| match error {
-            TableError::System { action, path, source } => {
-                ReportError::System { action, path, source }
-            }
-            TableError::Form { path, reason } | TableError::Write { path, reason } => {
-                ReportError::Form { path, reason }
-            }
-        })?;
+        chain::check(plan, results, |table| merged(folder, table)).map_err(
+            |error| match error {
+                TableError::System { action, path, source } => {
+                    ReportError::System { action, path, source }
+                }
+                TableError::Form { path, reason } | TableError::Write { path, reason } => {
+                    ReportError::Form { path, reason }
+                }
+            },
+        )?;
     }
     Ok((found, wrong))
 }

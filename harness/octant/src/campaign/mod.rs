@@ -8,12 +8,11 @@ pub(super) mod run;
 use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand, ValueEnum};
-use octant_base::control::Control;
 use octant_base::number::counted;
-use octant_campaign::case::{self, CaseJob};
-use octant_campaign::execute::{ExecuteError, NOT_KEPT, Shard};
+use octant_campaign::execute::{ExecuteError, Shard};
 use octant_campaign::merge::{self, MergeError};
-use octant_campaign::plan::{FILE_NAME, Plan, PlanError, PlanWritten};
+use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
+use octant_campaign::store::CampaignResults;
 use octant_campaign::table::TableError;
 use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
 use octant_campaign::{emit, status};
@@ -42,7 +41,7 @@ enum Command {
         #[arg(long)]
         extend: bool,
     },
-    /// Run the cases that have no result yet, each in a process of its own.
+    /// Run the cases that have no result yet, in processes of their own.
     Run(run::Arguments),
     /// Print the progress of a campaign, and its failures.
     Status {
@@ -115,9 +114,18 @@ enum Command {
         #[arg(long, value_name = "NAME", default_value = "octant")]
         claim: String,
     },
-    /// Process of one case, started by `run`: reads the case on standard input.
+    /// Print the stored result of one case: the JSON object of its verdict and summary.
+    Result {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Id of the case.
+        #[arg(value_name = "CASE")]
+        case: String,
+    },
+    /// Process that runs cases, started by `run`: reads a case on each line of standard input.
     #[command(hide = true)]
-    One,
+    Work,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -156,7 +164,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             })?;
             Ok(Verdict::Pass)
         }
-        Command::One => one(),
+        Command::Result { folder, case } => result(folder, case),
+        Command::Work => work(),
     }
 }
 
@@ -179,7 +188,9 @@ impl From<ExecuteError> for Failure {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::Foreign { .. } => Self::input(error).failed(),
             ExecuteError::NotKept(_) | ExecuteError::Result(_) => Self::bench(error),
-            ExecuteError::Ended { .. } | ExecuteError::System { .. } => Self::bench(error).failed(),
+            ExecuteError::Ended { .. } | ExecuteError::System { .. } | ExecuteError::Part(_) => {
+                Self::bench(error).failed()
+            }
         }
     }
 }
@@ -325,10 +336,9 @@ struct Traced<'a> {
     unknown: &'a [UnknownRequirement],
 }
 
-/// Runs one case as `octant run` does.
-fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure> {
-    let plan = read(folder)?;
-    let Some(case) = plan.case(id) else {
+/// Finds a case of a plan.
+fn case_of<'a>(plan: &'a Plan, id: &str, action: &str) -> Result<&'a Case, Failure> {
+    plan.case(id).ok_or_else(|| {
         let ids = plan.cases.iter().map(|case| case.id.as_str());
         let near: Vec<&str> = ids.filter(|other| other.starts_with(id)).take(5).collect();
         let known = if near.is_empty() {
@@ -336,10 +346,16 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
         } else {
             format!(", expected one such as {}", near.join(", "))
         };
-        return Err(Failure::input(format!(
-            "failed to run case {id}: found no such case in the plan{known}"
-        )));
-    };
+        Failure::input(format!(
+            "failed to {action} case {id}: found no such case in the plan{known}"
+        ))
+    })
+}
+
+/// Runs one case as `octant run` does.
+fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let case = case_of(&plan, id, "run")?;
     let planned = plan.planned(case)?;
     // Checks that the scenario is the planned one.
     planned.scenario(case)?;
@@ -347,38 +363,28 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
     crate::evidenced::case(&planned.file, case, &out)
 }
 
-/// Runs the process of one case.
-fn one() -> Result<Verdict, Failure> {
-    let job: CaseJob = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
-        Failure::input(format!(
-            "failed to read a case on standard input: {error} (octant campaign run starts this)"
-        ))
-    })?;
-    limit_memory(job.memory_mib)?;
-    let result = case::run(&job.scenario, &job.case, &Control::default())
-        .map_err(|error| Failure::bench(error).failed())?;
-    let json = result.to_json().map_err(|error| Failure::bench(error).failed())?;
-    case::keep(&job.folder, &job.case.id, json.as_bytes()).map_err(|error| {
-        let path = case::file(&job.folder, &job.case.id);
-        let message = format!("failed to write {}: {error}", path.display());
-        Failure { status: NOT_KEPT, message }
-    })?;
+/// Prints the stored result of a case as it is.
+fn result(folder: &Path, id: &str) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let case = case_of(&plan, id, "print the result of")?;
+    let results = CampaignResults::open(folder).map_err(|error| Failure::bench(error).failed())?;
+    let stored = results.bytes(&case.id).map_err(|error| Failure::bench(error).failed())?;
+    let Some(stored) = stored else {
+        return Err(Failure::input(format!(
+            "failed to print the result of case {id}: found none in {}, expected a case that has run: octant \
+             campaign run {} --only {id}",
+            folder.display(),
+            folder.display()
+        )));
+    };
+    print(&String::from_utf8_lossy(&stored.bytes))?;
     Ok(Verdict::Pass)
 }
 
-/// Limits the memory of a case: a process that needs more ends, and leaves other cases undisturbed.
-#[cfg(target_os = "linux")]
-fn limit_memory(mib: u64) -> Result<(), Failure> {
-    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-    let bytes = Some(mib.saturating_mul(1 << 20));
-    let most = getrlimit(Resource::As).maximum;
-    let limit = Rlimit { current: bytes.min(most.or(bytes)), maximum: most };
-    setrlimit(Resource::As, limit).map_err(|error| {
-        Failure::bench(format!("failed to limit the memory to {mib} MiB: {error}"))
-    })
-}
-
-#[cfg(not(target_os = "linux"))]
-fn limit_memory(_: u64) -> Result<(), Failure> {
-    Ok(())
+/// Runs the cases that standard input names.
+fn work() -> Result<Verdict, Failure> {
+    let (input, output) = (std::io::stdin().lock(), std::io::stdout().lock());
+    octant_campaign::work::work(input, output, std::io::stderr())
+        .map_err(|error| Failure::bench(error).failed())?;
+    Ok(Verdict::Pass)
 }

@@ -39,7 +39,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let path = match &arguments.out {
         Some(path) => {
-            write(path, octant_campaign::page::render(&report, false))?;
+            let page = octant_campaign::page::render(&report, false);
+            report.check()?;
+            write(path, page)?;
             path.clone()
         }
         None => {

@@ -13,7 +13,8 @@ use octant_campaign::execute::{
 use octant_campaign::plan::Plan;
 use octant_campaign::selection::CaseSelection;
 use octant_campaign::stop::StopDecision;
-use octant_campaign::{case, merge, results, status};
+use octant_campaign::store::CampaignResults;
+use octant_campaign::{merge, results, status};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
 
@@ -139,11 +140,8 @@ pub(crate) fn in_rounds(
 
 /// Describes a case as it ends; `None` if it passes.
 fn failure(id: &str, done: &CaseDone) -> Option<String> {
-    let differs = done.differs.as_ref().map(|path| {
-        format!(
-            "case {id}: found another result than the stored one, kept beside it in {}",
-            path.display()
-        )
+    let differs = done.differs.as_ref().map(|place| {
+        format!("case {id}: found another result than the stored one, kept beside it in {place}")
     });
     let reason = done.reason.as_deref().unwrap_or("");
     let bad = done.verdict > Verdict::Inconclusive;
@@ -175,9 +173,11 @@ fn conclude(
         _ => plan.cases.len(),
     };
     // With --only, cases that weren't selected may have no result: merging reports them as missing.
+    let stored =
+        CampaignResults::open(&arguments.folder).map_err(|error| Failure::bench(error).failed())?;
     let is_there = |index: &usize| {
         let id = plan.cases.get(*index).map_or("", |case| case.id.as_str());
-        arguments.only.is_empty() || case::file(&arguments.folder, id).exists()
+        arguments.only.is_empty() || stored.has(id)
     };
     let cases = (0..end).filter(|index| shard.has(*index)).filter(is_there);
     results::tables(plan, &arguments.folder, cases, |table| {

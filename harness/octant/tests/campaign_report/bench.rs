@@ -1,6 +1,7 @@
 //! Campaigns whose results are derived from one real result.
 
 use crate::common::program::program;
+use crate::common::results;
 use octant_base::control::Control;
 use octant_campaign::case;
 use octant_campaign::plan::{Case, Plan};
@@ -161,13 +162,11 @@ impl Bench {
 }
 
 pub(crate) fn put(folder: &Path, case: &Case, result: &Value) {
-    let path = case::file(folder, &case.id);
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let mut result = result.clone();
     if !result["summary"].is_null() {
         result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
     }
-    std::fs::write(path, format!("{result}\n")).unwrap();
+    results::put(folder, &case.id, &format!("{result}\n"));
 }
 
 /// Returns a number between 0 and 1 that looks random, no two alike.

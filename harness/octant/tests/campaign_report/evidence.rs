@@ -76,7 +76,7 @@ fn every_change_of_the_folder_is_found() {
     assert!(rerun.contains("campaign.toml --out out && octant campaign run out"), "{rerun}");
     let named: Vec<&str> =
         of("/files").as_array().unwrap().iter().map(|f| f["path"].as_str().unwrap()).collect();
-    assert_eq!(named.iter().filter(|path| path.starts_with("cases/")).count(), 4);
+    assert_eq!(named.iter().filter(|path| path.starts_with("results/")).count(), 1);
     for file in [
         "plan.json",
         "report.html",
@@ -112,10 +112,10 @@ fn every_change_of_the_folder_is_found() {
         std::fs::write(path, bytes).unwrap();
     }
     assert_eq!(verify(Some(&public)).0, 0);
-    std::fs::write(out.join("cases/extra.json"), "{}").unwrap();
+    std::fs::write(out.join("results/extra.json"), "{}").unwrap();
     let (status, said) = verify(Some(&public));
-    assert!(status == 1 && said.contains("cases/extra.json was added"), "{said}");
-    std::fs::remove_file(out.join("cases/extra.json")).unwrap();
+    assert!(status == 1 && said.contains("results/extra.json was added"), "{said}");
+    std::fs::remove_file(out.join("results/extra.json")).unwrap();
     assert_eq!(verify(Some(&other)).0, 1, "a wrong key");
 
     // A disposition is a change, until the report is made again.

@@ -1,17 +1,18 @@
 //! Problems of cases, missing evidence, and files that aren't of the plan.
 
 use super::bench::{Bench, CAMPAIGN, SCENARIO, files, put, synthetic, troubled};
-use octant_campaign::case;
+use crate::common::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::report::CampaignReport;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_requirements::Verdict;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 #[test]
 fn names_are_escaped() {
-    let (bench, ..) = Bench::filled(CAMPAIGN, |_, _, _| {});
+    let (bench, plan, out) = Bench::filled(CAMPAIGN, |_, _, _| {});
     assert_eq!(bench.report().0, 0);
     let page = bench.read("report.html");
     for text in ["T<script>", "short <i>", "amp <b>", "is <far> off", "<b>near</b>"] {
@@ -33,13 +34,17 @@ fn names_are_escaped() {
         let anchor = link.split('"').next().unwrap();
         assert!(page.contains(&format!("id=\"{anchor}\"")), "{anchor}");
     }
-    // The linked files of the cases exist too.
-    let linked: Vec<&str> = page.split("href=\"cases/").skip(1).collect();
-    assert!(linked.len() >= 80);
-    for link in linked {
-        let path = bench.at("out/cases").join(link.split('"').next().unwrap());
-        assert!(path.is_file(), "{}", path.display());
-    }
+    // Each case has the command that shows its result.
+    let shown: BTreeSet<&str> = page.split("title=\"octant campaign result out ").skip(1).collect();
+    let shown: BTreeSet<&str> =
+        shown.into_iter().map(|after| after.split('"').next().unwrap()).collect();
+    assert_eq!(shown, plan.cases.iter().map(|case| case.id.as_str()).collect());
+    let output = bench.octant(&["campaign", "result", "out", &plan.cases[7].id]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(said, results::text(&out, &plan.cases[7].id));
+    let output = bench.octant(&["campaign", "result", "out", &plan.cases[7].id[..5]]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && said.contains(&plan.cases[7].id), "{said}");
     let xml = bench.read("junit.xml");
     assert!(xml.contains("T&lt;script"), "the title is escaped");
     assert_eq!(xml.matches("name=\"verifies\"").count(), 2 * 80 + 2);
@@ -50,9 +55,7 @@ fn names_are_escaped() {
 fn what_is_wrong_with_cases_is_told_with_the_line_that_runs_them_again() {
     let (bench, plan, out) = Bench::filled(CAMPAIGN, troubled);
     // Second result of a case.
-    let path = case::file(&out, &plan.cases[10].id);
-    let other = path.with_file_name(format!("{}.differs-12345678.json", plan.cases[10].id));
-    std::fs::write(other, "{}\n").unwrap();
+    results::put_beside(&out, &plan.cases[10].id, "{}\n");
     assert_eq!(bench.report().0, 4);
     let (page, statistics) = (bench.read("report.html"), bench.statistics());
     for index in [3, 5, 7, 10] {
@@ -117,7 +120,7 @@ fn nothing_looks_like_a_pass_that_is_none() {
 
     // One case is missing among many that pass.
     let (bench, plan, out) = Bench::filled(CAMPAIGN, |_, _, _| {});
-    std::fs::remove_file(case::file(&out, &plan.cases[79].id)).unwrap();
+    results::remove(&out, &plan.cases[79].id);
     assert_eq!(bench.report().0, 3);
     shows(&bench, "1 case has no result");
 
@@ -165,8 +168,7 @@ fn nothing_looks_like_a_pass_that_is_none() {
 #[test]
 fn what_is_not_of_the_plan_is_refused_and_nothing_is_written() {
     let (bench, plan, out) = Bench::filled(CAMPAIGN, |_, _, _| {});
-    let stray = case::file(&out, &plan.cases[0].id).with_file_name("0123456789abcdef.json");
-    std::fs::write(&stray, "{}").unwrap();
+    results::put(&out, "0123456789abcdef", "{}");
     let before = files(&out);
     let (status, said) = bench.report();
     assert!(
@@ -174,8 +176,8 @@ fn what_is_not_of_the_plan_is_refused_and_nothing_is_written() {
         "{said}"
     );
     assert!(files(&out) == before);
-    std::fs::remove_file(stray).unwrap();
-    std::fs::write(case::file(&out, &plan.cases[0].id), "{\"schema\": 1").unwrap();
+    results::remove(&out, "0123456789abcdef");
+    results::put(&out, &plan.cases[0].id, "{\"schema\": 1");
     let (status, said) = bench.report();
     assert!(status == 4 && said.contains("expected the result of a case"), "{said}");
     assert!(!out.join("report.html").exists() && !out.join("manifest.json").exists());

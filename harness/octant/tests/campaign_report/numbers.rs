@@ -1,9 +1,9 @@
 //! Numbers of a report, computed independently and compared with its page.
 
 use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
+use crate::common::results;
 use octant_base::number::significant;
-use octant_campaign::case;
-use octant_campaign::plan::FactorValue;
+use octant_campaign::factor_values::FactorValue;
 use serde_json::{Value, json};
 
 /// Computes a percentile, definition 7 of Hyndman and Fan.
@@ -128,9 +128,9 @@ fn the_numbers_are_those_of_another_path_and_stand_on_the_page() {
             let part: Vec<usize> = mine.iter().filter(takes).copied().collect();
             let x: Vec<f64> = part
                 .iter()
-                .map(|index| match plan.cases[*index].factors[name] {
-                    FactorValue::Number(number) => number,
-                    FactorValue::Text(_) => unreachable!(),
+                .map(|index| match plan.cases[*index].factors.get(name) {
+                    Some(FactorValue::Number(number)) => *number,
+                    _ => unreachable!(),
                 })
                 .collect();
             let y: Vec<f64> = part.iter().map(|index| rate(*index)).collect();
@@ -199,8 +199,7 @@ fn predictions_stand_beside_the_cases() {
         let mut errors = Vec::new();
         for case in bench.plan().cases.iter().filter(|case| case.faults == Some(Vec::new())) {
             if set.iter().all(|one| case.set.iter().any(|other| one == other.as_str())) {
-                let text = std::fs::read_to_string(case::file(&bench.at("out"), &case.id)).unwrap();
-                let result: Value = serde_json::from_str(&text).unwrap();
+                let result = results::value(&bench.at("out"), &case.id);
                 let parameters = &result["summary"]["calibration"]["parameters"];
                 errors.push(parameters["gyro_bias_z"]["error"].as_f64().unwrap());
             }

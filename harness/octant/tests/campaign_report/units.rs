@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, REQUIREMENTS, SCENARIO, drawn, final_nmi, rate};
 use super::numbers::percentile;
 use octant_base::number::significant;
-use octant_campaign::plan::FactorValue;
+use octant_campaign::factor_values::FactorValue;
 use octant_campaign::report::CampaignReport;
 use serde_json::json;
 
@@ -73,9 +73,9 @@ fn a_page_in_other_units_equals_the_conversion_by_hand_and_the_files_keep_theirs
     // Errors over time: each case is converted at its own latitude and height before the percentiles.
     let mut report = CampaignReport::of(&plan, &out).unwrap();
     report.show_in("m".parse().unwrap()).unwrap();
-    let height_m = |index: usize| match plan.cases[index].factors["north"] {
-        FactorValue::Number(height) => height,
-        FactorValue::Text(_) => unreachable!(),
+    let height_m = |index: usize| match plan.cases[index].factors.get("north") {
+        Some(FactorValue::Number(height)) => *height,
+        _ => unreachable!(),
     };
     let metres = |index: usize| minute_of_longitude_m(index % 2 == 1, height_m(index));
     for place in 0..2 {

@@ -5,6 +5,7 @@ pub mod epochs;
 pub mod foreign;
 pub mod instrument;
 pub mod program;
+pub mod results;
 #[cfg(target_os = "linux")]
 pub mod running;
 #[cfg(unix)]

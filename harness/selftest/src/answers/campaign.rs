@@ -2,9 +2,11 @@
 
 use super::numbers::Found;
 use crate::bench::CaseBench;
-use crate::error::{BenchError, CaseSetupError, FileError};
+use crate::error::CaseSetupError;
 use crate::judge::CaseOutcome;
 use crate::scenarios::{ALWAYS, campaign};
+use octant_campaign::case::ResultError;
+use octant_campaign::store::CampaignResults;
 use serde_json::Value;
 use std::path::Path;
 
@@ -40,7 +42,7 @@ fn envelope(
     let envelope = &statistics["combinations"][0]["envelope"];
     let hours = numbers(&envelope["hours"]);
     let end_h = *hours.last().ok_or("find the envelope")?;
-    let runs = summaries(&bench.at("campaign/cases"))?;
+    let runs = summaries(&bench.at("campaign"))?;
     for (column, axis) in [(1, "latitude"), (2, "longitude")] {
         let at_end = |run: &Value| {
             let series = run["summary"]["navigation"]["series_hours"].as_array()?;
@@ -70,19 +72,15 @@ fn numbers(of: &Value) -> Vec<f64> {
     of.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
 }
 
-/// Reads the records of all runs, each in a folder of its own.
-fn summaries(folder: &Path) -> Result<Vec<Value>, BenchError> {
+/// Reads the results of all runs.
+fn summaries(folder: &Path) -> Result<Vec<Value>, CaseSetupError> {
+    let failed = |error: ResultError| format!("failed to {error}");
+    let results = CampaignResults::open(folder).map_err(failed)?;
     let mut all = Vec::new();
-    let read = FileError::of("read", folder);
-    for entry in std::fs::read_dir(folder).map_err(&read)? {
-        let path = entry.map_err(&read)?.path();
-        if path.is_dir() {
-            all.extend(summaries(&path)?);
-        } else {
-            let bytes = std::fs::read(&path).map_err(FileError::of("read", &path))?;
-            // A file that isn't a record leaves a run too few, which moves every place.
-            all.extend(serde_json::from_slice::<Value>(&bytes));
-        }
+    for case in results.ids() {
+        let stored = results.bytes(case).map_err(failed)?;
+        // A result that isn't one leaves a run too few, which moves every place.
+        all.extend(stored.and_then(|stored| serde_json::from_slice::<Value>(&stored.bytes).ok()));
     }
     Ok(all)
 }

@@ -1,0 +1,373 @@
+//! Finds every result in the folder of a campaign, and reads it.
+
+use super::error::{PartError, ResultPlace};
+use super::files;
+use super::frame::{Checksum, RecordKind, first};
+use super::scan::{Found, hex, read_head, read_whole, scan};
+use super::stored::{Stored, StoredRecord, read_file};
+use super::writer::{EXTENSION, FOLDER};
+use crate::case::{CaseResult, ResultError};
+use crate::facts::CaseFacts;
+use crate::plan::{Case, Plan};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// Largest number of parts that stay open.
+const OPEN_MAX: usize = 64;
+
+/// The results in the folder of a campaign, as they were when it was opened.
+#[derive(Debug)]
+pub struct CampaignResults {
+    parts: Vec<Part>,
+    /// Results by the ids of their cases, those of a case in the order in which they count: a list, as a
+    /// campaign can have millions.
+    stored: Vec<(Box<str>, Stored)>,
+    /// Number of cases that have a result.
+    cases: usize,
+}
+
+/// A part file, open if there are few of them.
+#[derive(Debug)]
+struct Part {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+/// Bytes of a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StoredResult {
+    /// Place where it is stored.
+    pub place: ResultPlace,
+    /// The JSON object, with a line end.
+    pub bytes: Vec<u8>,
+    /// BLAKE3 of the bytes, hexadecimal.
+    pub blake3: String,
+}
+
+impl CampaignResults {
+    /// Finds the results in the folder of a campaign.
+    ///
+    /// # Errors
+    /// If a part can't be read or is damaged: file, byte, found and expected. The end of a part that was
+    /// never completed counts as absent.
+    pub fn open(folder: &Path) -> Result<Self, ResultError> {
+        let file = |(case, is_second, place): (String, bool, ResultPlace)| {
+            let path = place.path().to_owned();
+            (case.into_boxed_str(), Stored::File { path, is_second })
+        };
+        let mut stored: Vec<(Box<str>, Stored)> =
+            files::all(folder).into_iter().map(file).collect();
+        let paths = parts(&folder.join(FOLDER))?;
+        let mut parts = Vec::with_capacity(paths.len());
+        let stay_open = paths.len() <= OPEN_MAX;
+        let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
+        for (part, path) in (0..).zip(paths) {
+            let file = File::open(&path).map_err(PartError::system("read", &path))?;
+            scan(&path, &file, |Found { head, offset, own }| {
+                let case = head.case.into_boxed_str();
+                if head.kind == RecordKind::Forgotten {
+                    forgotten.entry(case).or_default().insert(first(&head.blake3));
+                    return;
+                }
+                let record = StoredRecord {
+                    time_ns: head.time_ns,
+                    part,
+                    offset,
+                    has_facts: !head.facts.is_empty(),
+                    blake3: head.blake3,
+                    own,
+                };
+                stored.push((case, Stored::Record(record)));
+            })?;
+            parts.push(Part { path, file: stay_open.then_some(file) });
+        }
+        // The files of a case are in their order already.
+        stored.sort_by(|(a_case, a), (b_case, b)| a_case.cmp(b_case).then_with(|| a.order(b)));
+        let mut found = Self { parts, stored, cases: 0 };
+        found.forget(&forgotten)?;
+        Ok(found)
+    }
+
+    /// Removes what doesn't count any more, and cases of which only second results are left.
+    fn forget(
+        &mut self,
+        forgotten: &BTreeMap<Box<str>, BTreeSet<Checksum>>,
+    ) -> Result<(), ResultError> {
+        let mut gone = BTreeSet::new();
+        for (case, forgotten) in forgotten {
+            let from = self.stored.partition_point(|(other, _)| other < case);
+            for (index, (_, stored)) in self.of(case).iter().enumerate() {
+                if forgotten.contains(&stored.own()?) {
+                    gone.insert(from + index);
+                }
+            }
+        }
+        let mut from = 0;
+        for of_case in self.stored.chunk_by(|(a, _), (b, _)| a == b) {
+            let left = |index: &usize| !gone.contains(&(from + index));
+            let counts = |index: usize| !of_case[index].1.is_beside();
+            if (0..of_case.len()).filter(left).any(counts) {
+                self.cases += 1;
+            } else {
+                gone.extend(from..from + of_case.len());
+            }
+            from += of_case.len();
+        }
+        let mut index = 0;
+        self.stored.retain(|_| {
+            index += 1;
+            !gone.contains(&(index - 1))
+        });
+        self.stored.shrink_to_fit();
+        Ok(())
+    }
+
+    /// Returns the results of a case.
+    fn of(&self, case: &str) -> &[(Box<str>, Stored)] {
+        let from = self.stored.partition_point(|(other, _)| **other < *case);
+        let rest = self.stored.get(from..).unwrap_or_default();
+        let count = rest.iter().take_while(|(other, _)| **other == *case).count();
+        rest.get(..count).unwrap_or_default()
+    }
+
+    /// Returns the cases that have a result, in the order of their ids.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        let cases = self.stored.chunk_by(|(a, _), (b, _)| a == b);
+        cases.filter_map(|of_case| Some(&*of_case.first()?.0))
+    }
+
+    /// Number of cases that have a result.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.cases
+    }
+
+    /// Returns whether no case has a result.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cases == 0
+    }
+
+    /// Returns whether a case has a result.
+    #[must_use]
+    pub fn has(&self, case: &str) -> bool {
+        !self.of(case).is_empty()
+    }
+
+    /// Returns the place of the result of a case.
+    #[must_use]
+    pub fn place(&self, case: &str) -> Option<ResultPlace> {
+        self.main(case).map(|stored| self.place_of(stored, case))
+    }
+
+    /// Returns the place of a second result of a case, which differs from the first.
+    ///
+    /// # Errors
+    /// If a result has to be read to tell, and can't.
+    pub fn differing(&self, case: &str) -> Result<Option<ResultPlace>, ResultError> {
+        let all = self.of(case);
+        let Some(main) = self.main(case).filter(|_| all.len() > 1) else { return Ok(None) };
+        let mut blake3 = None;
+        for (_, stored) in all {
+            // A name is enough, whatever is in the file.
+            if stored.is_beside() {
+                return Ok(Some(self.place_of(stored, case)));
+            }
+            let found = stored.blake3()?;
+            if found != *blake3.get_or_insert(main.blake3()?) {
+                return Ok(Some(self.place_of(stored, case)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Returns the BLAKE3 of every result of a case, hexadecimal.
+    ///
+    /// # Errors
+    /// If a result has to be read for it, and can't.
+    pub fn known(&self, case: &str) -> Result<Vec<String>, ResultError> {
+        self.of(case).iter().map(|(_, stored)| Ok(hex(&stored.blake3()?))).collect()
+    }
+
+    /// Returns the time at which the result of a case was stored.
+    #[must_use]
+    pub fn time(&self, case: &str) -> Option<SystemTime> {
+        match self.main(case)? {
+            Stored::File { path, .. } => std::fs::metadata(path).ok()?.modified().ok(),
+            Stored::Record(record) => UNIX_EPOCH.checked_add(Duration::from_nanos(record.time_ns)),
+        }
+    }
+
+    /// Reads the bytes of the result of a case; `None` if it has none.
+    ///
+    /// # Errors
+    /// If it can't be read, or is damaged.
+    pub fn bytes(&self, case: &str) -> Result<Option<StoredResult>, ResultError> {
+        let read = |stored| Ok(self.read(stored, case)?.0);
+        self.main(case).map(read).transpose()
+    }
+
+    /// Reads the result of a case, with the BLAKE3 of its bytes; `None` if it has none. It is checked
+    /// for consistency: its hashes, and its verdict with its values and limits.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn result(&self, case: &str) -> Result<Option<(CaseResult, String)>, ResultError> {
+        let Some(stored) = self.main(case) else { return Ok(None) };
+        let (StoredResult { place, bytes, blake3 }, facts) = self.read(stored, case)?;
+        let result = CaseResult::from_bytes(&place, &bytes)?;
+        if let Some(facts) = facts {
+            let of_result = facts_of(&result);
+            if facts != of_result {
+                let text = |facts: &[u8]| String::from_utf8_lossy(facts).into_owned();
+                let told = [text(&facts), text(&of_result)];
+                let [facts, of_result] = told;
+                let contradictions =
+                    vec![format!("its facts are {facts}, its result gives {of_result}")];
+                return Err(ResultError::Contradiction { place, contradictions });
+            }
+        }
+        Ok(Some((result, blake3)))
+    }
+
+    /// Reads the result of a planned case as [`CampaignResults::result`] does, and checks that it is that of
+    /// the plan.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn of_plan(
+        &self,
+        plan: &Plan,
+        case: &Case,
+    ) -> Result<Option<(CaseResult, String)>, ResultError> {
+        let found = self.result(&case.id)?;
+        if let (Some((result, _)), Some(place), Ok(planned)) =
+            (&found, self.place(&case.id), plan.planned(case))
+        {
+            result.belongs(&place, planned, case)?;
+        }
+        Ok(found)
+    }
+
+    /// Reads the facts of the result of a planned case; `None` if it has none. They are checked
+    /// against the plan and for consistency; only where they aren't stored, the result is read.
+    ///
+    /// # Errors
+    /// If they can't be read, or aren't those of the case: found and expected.
+    pub fn facts(&self, plan: &Plan, case: &Case) -> Result<Option<CaseFacts>, ResultError> {
+        let Some(Stored::Record(record)) = self.main(&case.id).filter(|stored| stored.has_facts())
+        else {
+            return Ok(self.of_plan(plan, case)?.map(|(result, _)| CaseFacts::of(&result)));
+        };
+        let place = self.place_of(&Stored::Record(*record), &case.id);
+        let head = self.at(record, read_head)?;
+        let form = |source| ResultError::Form { place: place.clone(), source };
+        let facts: CaseFacts = serde_json::from_slice(&head.facts).map_err(form)?;
+        facts.belongs(&place, plan.planned(case).ok(), case)?;
+        Ok(Some(facts))
+    }
+
+    /// Returns the checksums of all results of a case that ended as errors, by which they can be
+    /// forgotten. A result that can't be read is none of them.
+    pub(super) fn errors(&self, case: &str) -> Result<Vec<Checksum>, ResultError> {
+        let all = self.of(case).iter().map(|(_, stored)| stored);
+        all.filter(|stored| self.is_error(stored, case)).map(Stored::own).collect()
+    }
+
+    fn is_error(&self, stored: &Stored, case: &str) -> bool {
+        let read = || -> Result<bool, ResultError> {
+            let (StoredResult { place, bytes, .. }, _) = self.read(stored, case)?;
+            Ok(CaseResult::from_bytes(&place, &bytes)?.error.is_some())
+        };
+        if let Stored::Record(record) = stored
+            && record.has_facts
+            && let Ok(head) = self.at(record, read_head)
+            && let Ok(facts) = serde_json::from_slice::<CaseFacts>(&head.facts)
+        {
+            return facts.error.is_some();
+        }
+        read().unwrap_or(false)
+    }
+
+    /// The result that counts: the first one.
+    fn main(&self, case: &str) -> Option<&Stored> {
+        self.of(case).iter().map(|(_, stored)| stored).find(|stored| !stored.is_beside())
+    }
+
+    fn path(&self, record: &StoredRecord) -> &Path {
+        self.parts.get(record.part as usize).map_or(Path::new(""), |part| part.path.as_path())
+    }
+
+    /// Reads something of a record.
+    fn at<T>(
+        &self,
+        record: &StoredRecord,
+        read: impl Fn(&Path, &File, u64) -> Result<T, PartError>,
+    ) -> Result<T, PartError> {
+        let path = self.path(record);
+        match self.parts.get(record.part as usize).and_then(|part| part.file.as_ref()) {
+            Some(file) => read(path, file, record.offset),
+            None => {
+                let file = File::open(path).map_err(PartError::system("read", path))?;
+                read(path, &file, record.offset)
+            }
+        }
+    }
+
+    fn place_of(&self, stored: &Stored, case: &str) -> ResultPlace {
+        match stored {
+            Stored::File { path, .. } => ResultPlace::File(path.clone()),
+            Stored::Record(record) => ResultPlace::Record {
+                part: self.path(record).to_owned(),
+                offset: record.offset,
+                case: case.to_owned(),
+            },
+        }
+    }
+
+    /// Reads a result with the facts that are stored beside it.
+    fn read(
+        &self,
+        stored: &Stored,
+        case: &str,
+    ) -> Result<(StoredResult, Option<Vec<u8>>), ResultError> {
+        let place = self.place_of(stored, case);
+        let (bytes, facts) = match stored {
+            Stored::File { path, .. } => (read_file(path)?, None),
+            Stored::Record(record) => {
+                let (head, bytes) = self.at(record, read_whole)?;
+                (bytes, Some(head.facts).filter(|facts| !facts.is_empty()))
+            }
+        };
+        let blake3 = blake3::hash(&bytes).to_hex().to_string();
+        Ok((StoredResult { place, bytes, blake3 }, facts))
+    }
+}
+
+/// Returns the bytes of the facts of a result.
+pub(super) fn facts_of(result: &CaseResult) -> Vec<u8> {
+    // Values of these types can always be serialised.
+    serde_json::to_vec(&CaseFacts::of(result)).unwrap_or_default()
+}
+
+/// Lists the part files in a folder, in the order of their names.
+fn parts(folder: &Path) -> Result<Vec<PathBuf>, ResultError> {
+    let system = |source| ResultError::System { path: folder.to_owned(), source };
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(system(error)),
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(system)?.path();
+        if path.extension().is_some_and(|of| of == EXTENSION) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}

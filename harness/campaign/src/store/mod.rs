@@ -1,0 +1,22 @@
+//! Results of the cases of a campaign, stored and read.
+//!
+//! A worker appends results to a part file of its own ([`writer`]): `results/NAME.octres`, whose bytes
+//! are those of `frame`. [`CampaignResults`] reads all parts of a folder, and the files of older
+//! versions, one for each result: `cases/xx/ID.json`. Nothing stored is ever changed: a later record
+//! names a result that doesn't count any more.
+
+pub mod error;
+mod files;
+mod frame;
+mod index;
+mod keep;
+mod scan;
+mod stored;
+pub mod writer;
+
+pub use files::file;
+pub use index::{CampaignResults, StoredResult};
+pub use keep::{StoreOutcome, forget_errors, has_at, keep, keep_in};
+
+#[cfg(test)]
+mod tests;

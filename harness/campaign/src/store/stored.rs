@@ -1,0 +1,70 @@
+//! Results as the index knows them: where each is, and what tells it from others.
+
+use super::frame::{Checksum, first};
+use crate::case::ResultError;
+use std::cmp::Ordering;
+use std::path::{Path, PathBuf};
+
+/// A stored result.
+#[derive(Clone, Debug)]
+pub(super) enum Stored {
+    /// A file of its own.
+    File {
+        path: PathBuf,
+        /// True if its name says that it differs from the first.
+        is_second: bool,
+    },
+    /// A record of a part.
+    Record(StoredRecord),
+}
+
+/// A record with a result, by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct StoredRecord {
+    pub(super) time_ns: u64,
+    pub(super) part: u32,
+    pub(super) offset: u64,
+    pub(super) has_facts: bool,
+    pub(super) blake3: [u8; 32],
+    pub(super) own: Checksum,
+}
+
+impl Stored {
+    /// Order in which the results of a case count: files first, then records by their time.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::File { .. }, Self::File { .. }) => Ordering::Equal,
+            (Self::File { .. }, Self::Record(_)) => Ordering::Less,
+            (Self::Record(_), Self::File { .. }) => Ordering::Greater,
+            (Self::Record(one), Self::Record(another)) => one.cmp(another),
+        }
+    }
+
+    pub(super) fn is_beside(&self) -> bool {
+        matches!(self, Self::File { is_second: true, .. })
+    }
+
+    pub(super) fn has_facts(&self) -> bool {
+        matches!(self, Self::Record(StoredRecord { has_facts: true, .. }))
+    }
+
+    pub(super) fn blake3(&self) -> Result<[u8; 32], ResultError> {
+        match self {
+            Self::File { path, .. } => Ok(*blake3::hash(&read_file(path)?).as_bytes()),
+            Self::Record(record) => Ok(record.blake3),
+        }
+    }
+
+    /// Returns the checksum by which it can be forgotten.
+    pub(super) fn own(&self) -> Result<Checksum, ResultError> {
+        match self {
+            Self::File { .. } => Ok(first(&self.blake3()?)),
+            Self::Record(record) => Ok(record.own),
+        }
+    }
+}
+
+/// Reads a result that has a file of its own.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, ResultError> {
+    std::fs::read(path).map_err(|source| ResultError::System { path: path.to_owned(), source })
+}

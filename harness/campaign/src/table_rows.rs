@@ -1,0 +1,125 @@
+//! Rows of a table by the cases that they belong to, read column by column.
+
+use super::table::{ColumnCursor, ColumnValue, ColumnValues, ExistingTable, TableError};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Rows of a case that follow one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct CaseRows {
+    /// Place of the case in the plan.
+    pub(super) case: usize,
+    /// First row.
+    pub(super) start: usize,
+    /// Number of rows.
+    pub(super) rows: usize,
+}
+
+impl CaseRows {
+    /// Returns each of the rows.
+    pub(super) fn each(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.rows
+    }
+}
+
+/// A table, and where the rows of each case are.
+#[derive(Debug)]
+pub(super) struct CaseTable {
+    pub(super) path: PathBuf,
+    pub(super) table: ExistingTable,
+    /// Rows in the order of the plan.
+    pub(super) runs: Vec<CaseRows>,
+    /// True if the rows are in this order too: each is read once, and none has to be kept.
+    is_in_order: bool,
+}
+
+impl CaseTable {
+    /// Opens a table. `place` are the cases of the plan by their ids.
+    pub(super) fn open(path: &Path, place: &HashMap<&str, usize>) -> Result<Self, TableError> {
+        Self::of(path, ExistingTable::open(path)?, place)
+    }
+
+    /// Finds the rows of each case in a table.
+    pub(super) fn of(
+        path: &Path,
+        table: ExistingTable,
+        place: &HashMap<&str, usize>,
+    ) -> Result<Self, TableError> {
+        let form = |reason: String| TableError::Form { path: path.to_owned(), reason };
+        let Some(mut cases) = table.cursor("case")? else {
+            return Err(form("it has no column case".to_owned()));
+        };
+        let mut runs: Vec<CaseRows> = Vec::new();
+        for row in 0..table.rows {
+            let id = match cases.next()? {
+                Some(ColumnValue::Text(id)) => Some(id),
+                Some(_) => return Err(form("it has no column case".to_owned())),
+                None => None,
+            };
+            let id = id.as_deref().unwrap_or("");
+            let case = place.get(id).copied();
+            let case = case.ok_or_else(|| form(format!("the plan has no case {id}")))?;
+            match runs.last_mut() {
+                Some(run) if run.case == case => run.rows += 1,
+                _ => runs.push(CaseRows { case, start: row, rows: 1 }),
+            }
+        }
+        let is_in_order = runs.is_sorted();
+        runs.sort_unstable();
+        Ok(Self { path: path.to_owned(), table, runs, is_in_order })
+    }
+
+    /// Returns the cases that have rows, in the order of the plan.
+    pub(super) fn cases(&self) -> impl Iterator<Item = usize> {
+        self.runs.chunk_by(|a, b| a.case == b.case).filter_map(|runs| Some(runs.first()?.case))
+    }
+
+    /// Returns the rows of a case.
+    pub(super) fn rows(&self, case: usize) -> &[CaseRows] {
+        let from = self.runs.partition_point(|run| run.case < case);
+        let to = self.runs.partition_point(|run| run.case <= case);
+        &self.runs[from..to]
+    }
+
+    /// Number of rows of a case.
+    pub(super) fn count(&self, case: usize) -> usize {
+        self.rows(case).iter().map(|run| run.rows).sum()
+    }
+
+    /// Returns the values of a column; all are null if there is no such column.
+    pub(super) fn values(&self, column: &str) -> Result<CaseColumn, TableError> {
+        Ok(if self.is_in_order {
+            self.table
+                .cursor(column)?
+                .map(Box::new)
+                .map_or(CaseColumn::Missing, |cursor| CaseColumn::InOrder { cursor, next: 0 })
+        } else {
+            self.table.column(column)?.map_or(CaseColumn::Missing, CaseColumn::Whole)
+        })
+    }
+}
+
+/// Values of a column, of which rows are read in the order of the plan.
+pub(super) enum CaseColumn {
+    /// The rows are in that order.
+    InOrder { cursor: Box<ColumnCursor>, next: usize },
+    /// They aren't.
+    Whole(ColumnValues),
+    /// There is no such column.
+    Missing,
+}
+
+impl CaseColumn {
+    /// Returns the value of a row, which comes after all that were read before.
+    pub(super) fn at(&mut self, row: usize) -> Result<Option<ColumnValue>, TableError> {
+        match self {
+            Self::Missing => Ok(None),
+            Self::Whole(values) => Ok(values.at(row)),
+            Self::InOrder { cursor, next } => {
+                cursor.skip(row.saturating_sub(*next))?;
+                *next = row + 1;
+                cursor.next()
+            }
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! A campaign of many cases: files, processor time and memory of the commands that read all of its results.
+//!
+//! The results are made from one real case, whose drift is different in each. `OCTANT_SCALE=1000,10000,100000`
+//! measures campaigns of these sizes and prints a row of the table of `docs/campaigns.md` for each;
+//! `OCTANT_SCALE_COMMANDS=run,status` measures these commands alone.
+
+use crate::campaign_report::bench::{Bench, drawn};
+use crate::common::program::program;
+use octant_base::control::Control;
+use octant_campaign::case;
+use octant_campaign::plan::Plan;
+use octant_campaign::store::{keep_in, writer::PartWriter};
+use serde_json::Value;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// Short runs: what is measured is the cost of many results, not of long ones.
+const SCENARIO: &str = "schema = 1
+title = \"scale\"
+seed = 1
+[procedure.calibration]
+positions = \"eight\"
+duration = \"24 min\"
+[procedure.navigation]
+duration = \"10 min\"
+[[requirements]]
+id = \"CAL-1\"
+text = \"No parameter is far off.\"
+measure = \"calibration.worst_normalized_error\"
+limit = 50
+";
+
+/// Two latitudes of each instrument.
+fn campaign(cases: usize) -> String {
+    format!(
+        "schema = 1\ntitle = \"scale\"\nreplicates = {}\nrequirements = \"requirements.toml\"\n\
+         [[scenarios]]\nid = \"scale\"\nfile = \"short.toml\"\n\
+         [[factors]]\nname = \"latitude\"\nkey = \"site.latitude\"\nvalues = [\"0 deg\", \"60 deg\"]\n",
+        cases / 2
+    )
+}
+
+/// Multiplies every number of a series of errors.
+fn scale(value: &mut Value, by: f64) {
+    match value {
+        Value::Number(number) => *value = (number.as_f64().unwrap() * by).into(),
+        Value::Array(all) => all.iter_mut().for_each(|one| scale(one, by)),
+        Value::Object(all) => all.values_mut().for_each(|one| scale(one, by)),
+        _ => {}
+    }
+}
+
+/// Makes the results of a plan in parts, as two processes would have written them.
+fn fill(plan: &Plan, folder: &Path) {
+    let first = &plan.cases[0];
+    let result = case::run(plan.planned(first).unwrap(), first, &Control::default()).unwrap();
+    let template: Value = serde_json::from_str(&result.to_json().unwrap()).unwrap();
+    assert_eq!(template["verdict"], "pass", "{}", template["summary"]["reasons"]);
+    let mut writers = ["1-of-2", "2-of-2"].map(|stem| PartWriter::new(folder, stem).unsynced());
+    for (index, case) in plan.cases.iter().enumerate() {
+        let mut result = template.clone();
+        result["case"] = case.id.as_str().into();
+        result["case_blake3"] = case::hash_of(plan.planned(case).unwrap(), case).into();
+        let summary = &mut result["summary"];
+        summary["seed"] = case.seed.into();
+        summary["stream_hash"] = format!("{index:064x}").into();
+        let by = 0.5 + drawn(index) / std::f64::consts::PI;
+        let navigation = &mut summary["navigation"];
+        for part in ["radial_error_nmi", "latitude_error_arcmin", "longitude_error_arcmin"] {
+            scale(&mut navigation[part], by);
+        }
+        for point in navigation["series_hours"].as_array_mut().unwrap() {
+            point.as_array_mut().unwrap()[1..].iter_mut().for_each(|error| scale(error, by));
+        }
+        let max = navigation["radial_error_nmi"]["max"].as_f64().unwrap();
+        for check in summary["requirements"].as_array_mut().unwrap() {
+            if check["id"] == "NAV-1" {
+                check["value"] = max.into();
+                check["margin"] = (check["limit"].as_f64().unwrap() - max).into();
+            }
+        }
+        result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
+        let text = format!("{result}\n");
+        keep_in(&mut writers[index % 2], &case.id, text.as_bytes(), &[]).unwrap();
+    }
+}
+
+/// Cost of a command.
+struct Cost {
+    wall_s: f64,
+    /// Time of processors, s.
+    processor_s: f64,
+    /// Peak of the memory, MiB.
+    mib: f64,
+    said: String,
+}
+
+/// Processor time of a process that runs, s; Linux counts hundredths.
+fn processor_s(id: u32) -> Option<f64> {
+    let text = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |index: usize| fields.get(index)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) / 100.0)
+}
+
+/// Runs a command on the campaign to its end.
+fn cost(bench: &Bench, command: &[&str]) -> Cost {
+    let begun = Instant::now();
+    let mut program = program(command);
+    program.current_dir(bench.at("")).stdout(Stdio::piped()).stderr(Stdio::inherit());
+    let mut child = program.spawn().unwrap();
+    let path = format!("/proc/{}/status", child.id());
+    let (mut kib, mut used_s) = (0.0, 0.0);
+    loop {
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let found = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok());
+        kib = found.unwrap_or(kib);
+        used_s = processor_s(child.id()).unwrap_or(used_s);
+        if child.try_wait().unwrap().is_some() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let wall_s = begun.elapsed().as_secs_f64();
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{command:?}: {:?}: {said}", output.status);
+    Cost { wall_s, processor_s: used_s, mib: kib / 1024.0, said }
+}
+
+/// Makes a campaign, and measures the commands that read its results.
+fn measured(cases: usize, commands: &[&str]) -> Vec<Cost> {
+    let bench = Bench::new(&campaign(cases));
+    std::fs::write(bench.at("short.toml"), SCENARIO).unwrap();
+    let planned = cost(&bench, &["campaign", "plan", "campaign.toml", "--out", "out"]);
+    let (plan, out) = (Plan::read(&bench.at("out/plan.json")).unwrap(), bench.at("out"));
+    assert_eq!(plan.cases.len(), cases);
+    fill(&plan, &out);
+    drop(plan);
+    let parts: Vec<u64> = std::fs::read_dir(out.join("results"))
+        .unwrap()
+        .map(|entry| entry.unwrap().metadata().unwrap().len())
+        .collect();
+    let bytes: u64 = parts.iter().sum();
+    let row = |cost: &Cost| {
+        format!("{:.2} s ({:.2} s), {:.0} MB", cost.processor_s, cost.wall_s, cost.mib)
+    };
+    print!("| {cases} | {} | {:.1} MB | {}", parts.len(), bytes as f64 / 1e6, row(&planned));
+    let mut costs = Vec::new();
+    for command in commands {
+        let arguments = match *command {
+            "verify" => vec!["verify", "out"],
+            command => vec!["campaign", command, "out"],
+        };
+        let cost = cost(&bench, &arguments);
+        print!(" | {command} {}", row(&cost));
+        let expected = match *command {
+            "run" => format!("{cases} with a result already"),
+            "status" => format!("{cases} of {cases} cases have run"),
+            "merge" => format!("{cases} of {cases} cases"),
+            _ => String::new(),
+        };
+        assert!(cost.said.contains(&expected), "{}", cost.said);
+        costs.push(cost);
+    }
+    println!(" |");
+    costs
+}
+
+#[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "memory as Linux tells it")]
+fn many_results_are_read_in_little_memory() {
+    let of = |name: &str, default: &str| std::env::var(name).unwrap_or_else(|_| default.to_owned());
+    let commands = of("OCTANT_SCALE_COMMANDS", "run,status,merge,report,verify");
+    let commands: Vec<&str> = commands.split(',').collect();
+    for cases in of("OCTANT_SCALE", "400").split(',') {
+        let cases: usize = cases.trim().parse().unwrap();
+        // The goal of the documentation, for up to a hundred thousand cases.
+        for (cost, command) in measured(cases, &commands).iter().zip(&commands) {
+            assert!(cost.mib < 300.0, "{command} of {cases} cases: {} MB", cost.mib);
+        }
+    }
+}
