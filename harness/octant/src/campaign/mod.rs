@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_base::number::counted;
+use octant_campaign::emit::SchedulerJob;
 use octant_campaign::execute::{ExecuteError, Shard};
 use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
@@ -102,11 +103,14 @@ enum Command {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// Number of shards of the campaign.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
         shards: u32,
         /// Number of parallel cases of each shard.
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
         jobs: u16,
+        /// Largest number of tasks of an array, for Slurm: the site's MaxArraySize less one.
+        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
+        array: u32,
         /// Image with the program, for Kubernetes.
         #[arg(long, value_name = "IMAGE", default_value = "octant:latest")]
         image: String,
@@ -130,8 +134,10 @@ enum Command {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Scheduler {
-    /// An array script for sbatch.
+    /// A script that submits itself to sbatch as arrays, and the merge after them.
     Slurm,
+    /// A Snakefile.
+    Snakemake,
     /// An indexed job for kubectl.
     K8s,
 }
@@ -155,12 +161,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Report(arguments) => report::command(arguments),
         Command::Countersign { folder } => countersign::command(folder),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
-        Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
+        Command::Emit { scheduler, folder, shards, jobs, array, image, claim } => {
             let plan = read(folder)?;
-            let job = emit::SchedulerJob { plan: &plan, folder, shards: *shards, jobs: *jobs };
+            let job = SchedulerJob::new(&plan, folder, *shards, *jobs).map_err(Failure::input)?;
             print(&match scheduler {
-                Scheduler::Slurm => emit::slurm(&job),
-                Scheduler::K8s => emit::kubernetes(&job, image, claim),
+                Scheduler::Slurm => emit::slurm(&job, *array),
+                Scheduler::Snakemake => emit::snakemake(&job).map_err(Failure::input)?,
+                Scheduler::K8s => emit::kubernetes(&job, image, claim).map_err(Failure::input)?,
             })?;
             Ok(Verdict::Pass)
         }
