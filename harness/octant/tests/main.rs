@@ -9,6 +9,8 @@ mod allan;
 mod architecture;
 mod branches;
 mod campaign;
+#[cfg(unix)]
+mod campaign_emit;
 mod campaign_report;
 mod campaign_scale;
 mod campaign_selection;
