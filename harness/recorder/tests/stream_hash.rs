@@ -9,8 +9,7 @@ fn the_hash_is_blake3_of_the_canonical_bytes_in_order() {
     let mut hash = StreamHash::new();
     let mut bytes = Vec::new();
     for k in 1..5000u64 {
-        let sample =
-            Sample { sequence: k, delta_theta: [k as i32, -1, 7], ..Default::default() };
+        let sample = Sample { sequence: k, delta_theta: [k as i32, -1, 7], ..Default::default() };
         let output = Output { sequence: k, nis: f64::NAN, ..Default::default() };
         let aiding = (k % 200 == 0).then_some(Aiding {
             device_time: DeviceTime::from_ns(k),

@@ -4,21 +4,21 @@
 pub const BUCKETS_MAX: usize = 500;
 
 /// One point: hours, latitude error, longitude error.
-pub type Point = [f64; 3];
+pub type ErrorPoint = [f64; 3];
 
 /// Extremes in a stretch of time.
 #[derive(Clone, Copy, Debug)]
 struct Bucket {
     /// Points with the smallest and largest latitude error, smallest and largest longitude error.
-    extremes: [Point; 4],
+    extremes: [ErrorPoint; 4],
 }
 
 impl Bucket {
-    fn new(point: Point) -> Self {
+    fn new(point: ErrorPoint) -> Self {
         Self { extremes: [point; 4] }
     }
 
-    fn take(&mut self, point: Point) {
+    fn take(&mut self, point: ErrorPoint) {
         for (slot, (column, sign)) in [(1, -1.0), (1, 1.0), (2, -1.0), (2, 1.0)].iter().enumerate()
         {
             if sign * point[*column] > sign * self.extremes[slot][*column] {
@@ -38,8 +38,8 @@ impl Bucket {
 /// Errors over time for plots, in bounded memory.
 #[derive(Clone, Debug)]
 pub struct ErrorSeries {
-    first: Option<Point>,
-    last: Option<Point>,
+    first: Option<ErrorPoint>,
+    last: Option<ErrorPoint>,
     buckets: Vec<Bucket>,
     per_bucket: u64,
     in_last: u64,
@@ -59,7 +59,7 @@ impl ErrorSeries {
     }
 
     /// Takes the next point.
-    pub fn push(&mut self, point: Point) {
+    pub fn push(&mut self, point: ErrorPoint) {
         self.first.get_or_insert(point);
         self.last = Some(point);
         if self.in_last < self.per_bucket
@@ -83,8 +83,8 @@ impl ErrorSeries {
     /// Points in order of time, including the first and the last, rounded to a millionth of an hour and
     /// of an arcminute (2 mm), so that the file of a day stays small.
     #[must_use]
-    pub fn points(&self) -> Vec<Point> {
-        let mut points: Vec<Point> = self.buckets.iter().flat_map(|b| b.extremes).collect();
+    pub fn points(&self) -> Vec<ErrorPoint> {
+        let mut points: Vec<ErrorPoint> = self.buckets.iter().flat_map(|b| b.extremes).collect();
         points.extend(self.first);
         points.extend(self.last);
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
