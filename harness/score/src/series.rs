@@ -45,6 +45,12 @@ pub struct ErrorSeries {
     in_last: u64,
 }
 
+impl Default for ErrorSeries {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl ErrorSeries {
     /// Creates an empty series.
     #[must_use]
