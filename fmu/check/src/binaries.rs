@@ -21,15 +21,24 @@ const NAMED: usize = 6;
 
 /// Platform of a folder of binaries, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Platform {
-    format: BinaryFormat,
-    architecture: Architecture,
-    extension: &'static str,
+pub struct FolderPlatform {
+    /// Format of its libraries.
+    pub format: BinaryFormat,
+    /// Architecture of its processors.
+    pub architecture: Architecture,
+    /// Extension of the names of its libraries.
+    pub extension: &'static str,
 }
 
 /// Finds the platform of a folder; `Err`: the name isn't in the standard, with the platform if it
 /// is in the other standard.
-fn platform(folder: &str, standard: Standard) -> Result<Platform, Option<Platform>> {
+///
+/// # Errors
+/// If the standard has no such name.
+pub fn platform(
+    folder: &str,
+    standard: Standard,
+) -> Result<FolderPlatform, Option<FolderPlatform>> {
     use Architecture::{Aarch64, Arm, I386, PowerPc, PowerPc64, Riscv32, Riscv64, X86_64};
     let of = |system: &str, architecture| {
         let (format, extension) = match system {
@@ -38,7 +47,7 @@ fn platform(folder: &str, standard: Standard) -> Result<Platform, Option<Platfor
             "darwin" => (BinaryFormat::MachO, "dylib"),
             _ => return None,
         };
-        Some(Platform { format, architecture, extension })
+        Some(FolderPlatform { format, architecture, extension })
     };
     let old = match folder {
         "win32" => of("windows", I386),
@@ -154,7 +163,7 @@ fn library(
     model: &Model<'_, '_>,
     archive: &mut Archive,
     entry: &str,
-    platform: Platform,
+    platform: FolderPlatform,
     beside: &BTreeSet<String>,
     findings: &mut Findings,
 ) -> LibraryProperties {
@@ -197,7 +206,7 @@ fn library(
 }
 
 /// Reads the library, out of a fat file of macOS if it is one.
-fn parse(bytes: &[u8], platform: Platform) -> Result<object::File<'_>, String> {
+fn parse(bytes: &[u8], platform: FolderPlatform) -> Result<object::File<'_>, String> {
     use object::read::macho::{FatArch, MachOFatFile32, MachOFatFile64};
     let mut slices: Vec<(Architecture, Result<&[u8], object::Error>)> = Vec::new();
     if let Ok(fat) = MachOFatFile32::parse(bytes) {
@@ -313,7 +322,8 @@ fn libraries(
 }
 
 /// Returns whether every system has a library of this name.
-fn is_usual(format: BinaryFormat, name: &str) -> bool {
+#[must_use]
+pub fn is_usual(format: BinaryFormat, name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     match format {
         BinaryFormat::Elf => {
@@ -335,55 +345,5 @@ fn is_usual(format: BinaryFormat, name: &str) -> bool {
             name.starts_with("/usr/lib/") || name.starts_with("/System/Library/")
         }
         _ => false,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn folders_have_the_names_of_their_standard() {
-        let name = |folder, standard| match platform(folder, standard) {
-            Ok(platform) => format!("{:?} {:?}", platform.format, platform.architecture),
-            Err(Some(_)) => "other".into(),
-            Err(None) => "none".into(),
-        };
-        for (folder, fmi2, fmi3) in [
-            ("linux64", "Elf X86_64", "other"),
-            ("win32", "Pe I386", "other"),
-            ("darwin64", "MachO X86_64", "other"),
-            ("x86_64-linux", "other", "Elf X86_64"),
-            ("x86-windows", "other", "Pe I386"),
-            ("x86_64-windows-msvc140mt", "other", "Pe X86_64"),
-            ("aarch64-linux", "Elf Aarch64", "Elf Aarch64"),
-            ("aarch64-darwin", "MachO Aarch64", "MachO Aarch64"),
-            ("linux", "none", "none"),
-            ("sparc-solaris", "none", "none"),
-            ("x86_64-", "none", "none"),
-        ] {
-            assert_eq!(name(folder, Standard::Fmi2), fmi2, "{folder}");
-            assert_eq!(name(folder, Standard::Fmi3), fmi3, "{folder}");
-        }
-    }
-
-    #[test]
-    fn usual_libraries_are_told_from_others() {
-        for (format, usual, unusual) in [
-            (
-                BinaryFormat::Elf,
-                &["libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "libgcc_s.so.1"][..],
-                &["libfoo.so", "libpython3.11.so.1.0", "libcrypto.so.3"][..],
-            ),
-            (
-                BinaryFormat::Pe,
-                &["KERNEL32.dll", "api-ms-win-crt-math-l1-1-0.dll", "MSVCRT.dll"],
-                &["VCRUNTIME140.dll", "libgcc_s_seh-1.dll"],
-            ),
-            (BinaryFormat::MachO, &["/usr/lib/libSystem.B.dylib"], &["@rpath/libfoo.dylib"]),
-        ] {
-            assert!(usual.iter().all(|name| is_usual(format, name)));
-            assert!(!unusual.iter().any(|name| is_usual(format, name)));
-        }
     }
 }

@@ -129,7 +129,8 @@ pub(super) fn of_file<'a>(entry: &'a str, subject: &'a str) -> Place<'a> {
 }
 
 /// Returns whether a name can be that of a function in C.
-pub(super) fn is_c_identifier(name: &str) -> bool {
+#[must_use]
+pub fn is_c_identifier(name: &str) -> bool {
     const WORDS: [&str; 44] = [
         "auto",
         "break",
@@ -180,17 +181,4 @@ pub(super) fn is_c_identifier(name: &str) -> bool {
     bytes.next().is_some_and(|b| b.is_ascii_alphabetic() || b == b'_')
         && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_')
         && !WORDS.contains(&name)
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn identifiers_are_those_of_c() {
-        for name in ["a", "_", "A_b9"] {
-            assert!(super::is_c_identifier(name), "{name}");
-        }
-        for name in ["", "9a", "a-b", "a.b", "ä", "int", "a b"] {
-            assert!(!super::is_c_identifier(name), "{name}");
-        }
-    }
 }

@@ -10,7 +10,7 @@
 //! | `model` | a description together with the text of its file |
 //! | `head` | interfaces, log categories, default experiment |
 //! | `units` | units, types, enumerations |
-//! | `names` | names and their grammar |
+//! | [`names`] | names and their grammar |
 //! | `variables` | causality, variability, initial, start, limits |
 //! | `references` | aliases, arrays, clocked variables |
 //! | `clocks` | clocks |
@@ -20,7 +20,7 @@
 //! | `files` | documentation, licence, sources |
 //! | [`binaries`] | shared libraries, read without running them |
 //! | `elf` | checks specific to Linux libraries |
-//! | `functions` | functions that the libraries have to export |
+//! | [`functions`] | functions that the libraries have to export |
 //! | [`load`] | the library loaded, an instance made and stepped |
 //! | [`show`] | findings as text |
 
@@ -31,11 +31,11 @@ mod clocks;
 mod elf;
 mod files;
 pub mod finding;
-mod functions;
+pub mod functions;
 mod head;
 pub mod load;
 mod model;
-mod names;
+pub mod names;
 mod references;
 pub mod rules;
 pub mod show;
@@ -44,6 +44,8 @@ mod terminals;
 mod text;
 mod units;
 mod variables;
+
+pub use head::is_c_identifier;
 
 use binaries::LibraryProperties;
 use finding::{Findings, Place, RuleFinding};
@@ -364,6 +366,3 @@ fn xml(
     }
     Some(())
 }
-
-#[cfg(test)]
-mod tests;

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Checks the names.
 pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     let mut lines: BTreeMap<&str, u32> = BTreeMap::new();
-    let mut arrays = Arrays::default();
+    let mut arrays = SingleElements::default();
     for declared in &model.variables {
         let variable = declared.variable;
         let aliases = variable.aliases.iter().map(|alias| alias.name.as_str());
@@ -83,7 +83,10 @@ fn without_description(model: &Model<'_, '_>, findings: &mut Findings) {
 
 /// Checks that a name follows the grammar of structured names; `Err`: the byte at which it
 /// deviates.
-pub(super) fn structured(name: &str) -> Result<(), usize> {
+///
+/// # Errors
+/// If it doesn't follow.
+pub fn structured(name: &str) -> Result<(), usize> {
     let mut reader = Reader { name, at: 0 };
     if name.starts_with("der(") {
         reader.at = 4;
@@ -184,14 +187,15 @@ impl Reader<'_> {
 }
 
 /// Elements of arrays that are separate variables: `a.b[1,2]`.
-#[derive(Default)]
-struct Arrays {
+#[derive(Clone, Debug, Default)]
+pub struct SingleElements {
     /// Indices by the part of the name before the last bracket.
     indices: BTreeMap<String, BTreeSet<Vec<u32>>>,
 }
 
-impl Arrays {
-    fn add(&mut self, name: &str) {
+impl SingleElements {
+    /// Takes the name of a variable; one that is no element is passed over.
+    pub fn add(&mut self, name: &str) {
         let Some((base, rest)) = name.rsplit_once('[') else { return };
         let Some(list) = rest.strip_suffix(']') else { return };
         let indices: Result<Vec<u32>, _> = list.split(',').map(str::parse).collect();
@@ -201,7 +205,8 @@ impl Arrays {
     }
 
     /// Arrays with gaps: name, the first missing indices, number of existing elements.
-    fn gaps(&self) -> Vec<(String, String, usize)> {
+    #[must_use]
+    pub fn gaps(&self) -> Vec<(String, String, usize)> {
         let mut gaps = Vec::new();
         for (base, present) in &self.indices {
             let Some(first) = present.first() else { continue };
@@ -236,69 +241,5 @@ impl Arrays {
             gaps.push((base.clone(), missing.join(","), present.len()));
         }
         gaps
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn structured_names_follow_the_grammar() {
-        for name in [
-            "v_min",
-            "vehicle.engine.speed",
-            "robot.axis.'motor #234'",
-            "der(x)",
-            "der(pipe[3,4].T[14],2)",
-            "a[1].b[2,3]",
-            "'\\''",
-            "_x1",
-            "'a.b[1]'.c",
-        ] {
-            assert_eq!(structured(name), Ok(()), "{name}");
-        }
-        for (name, at) in [
-            ("", 0),
-            ("1a", 0),
-            ("a b", 1),
-            ("a..b", 2),
-            ("a.", 2),
-            ("a[]", 2),
-            ("a[1", 3),
-            ("a[1,]", 4),
-            ("a[i]", 2),
-            ("der(x", 5),
-            ("der(x,)", 6),
-            ("der()", 4),
-            ("''", 1),
-            ("'a", 2),
-            ("'\\x'", 2),
-            ("ä", 0),
-            ("a[-1]", 2),
-            ("a(1)", 1),
-            ("a]", 1),
-        ] {
-            assert_eq!(structured(name), Err(at), "{name}");
-        }
-    }
-
-    #[test]
-    fn gaps_are_found_in_any_rank() {
-        let gaps = |names: &[&str]| {
-            let mut arrays = Arrays::default();
-            names.iter().for_each(|name| arrays.add(name));
-            arrays
-                .gaps()
-                .into_iter()
-                .map(|(base, missing, _)| format!("{base}[{missing}]"))
-                .collect::<Vec<_>>()
-        };
-        assert!(gaps(&["a[1]", "a[2]", "b[0]", "b[1]", "c[1,1]", "c[1,2]", "x"]).is_empty());
-        assert_eq!(gaps(&["a[1]", "a[3]"]), ["a[2]"]);
-        assert_eq!(gaps(&["a[2]", "a[3]"]), ["a[1]"]);
-        assert_eq!(gaps(&["m[1,1]", "m[2,2]", "m[1,2]"]), ["m[2,1]"]);
-        assert_eq!(gaps(&["a[4294967295]"]), ["a[1]"]);
-        assert!(gaps(&["a[1]", "a[1,2]", "a[x]", "a[99999999999]"]).is_empty());
     }
 }

@@ -68,8 +68,10 @@ fn sizes(description: &Description, variable: &Variable) -> Vec<usize> {
     variable.dimensions.iter().copied().map(size).collect()
 }
 
-/// Parses an index such as `2` or `1,3`, counted from 1, row-major.
-fn position(index: &str, sizes: &[usize]) -> Option<usize> {
+/// Returns the place of the element that an index such as `2` or `1,3` names, counted from 0, row-major; `None` if
+/// there is no such element.
+#[must_use]
+pub fn position(index: &str, sizes: &[usize]) -> Option<usize> {
     let parts: Vec<usize> =
         index.split(',').map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
     if parts.len() != sizes.len() {
@@ -116,22 +118,4 @@ pub fn element_names(description: &Description, variable: &Variable) -> Vec<Stri
     let sizes = sizes(description, variable);
     let count: usize = sizes.iter().product();
     (0..count).map(|element| format!("{}[{}]", variable.name, index_of(&sizes, element))).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn elements_are_counted_from_1_rows_first() {
-        assert_eq!(position("2", &[3]), Some(1));
-        assert_eq!(position("2, 3", &[2, 3]), Some(5));
-        for (index, sizes) in [("0", &[3][..]), ("4", &[3]), ("1", &[2, 2]), ("x", &[3]), ("", &[])]
-        {
-            assert_eq!(position(index, sizes), None, "{index}");
-        }
-        for element in 0..6 {
-            assert_eq!(position(&index_of(&[2, 3], element), &[2, 3]), Some(element));
-        }
-    }
 }

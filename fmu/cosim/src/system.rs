@@ -1,7 +1,7 @@
 //! Resolves wires between names to wires between numbers: finds connectors in the descriptions of
 //! the FMUs, with the conversion of values on the way.
 
-pub use super::elements::{element_names, index_of};
+pub use super::elements::{element_names, index_of, position};
 
 use super::convert::{Terminal, WireConversion, WireUnit};
 use super::elements::{Found, element_name, find};

@@ -8,4 +8,5 @@ mod confirm;
 mod continuous;
 mod evaluation;
 mod largest;
+mod measure;
 mod search;

@@ -10,7 +10,7 @@ use octant_recorder::reader::Item;
 const ENCAPSULATION_BYTES: usize = 4;
 
 /// Writes a message as it is recorded; false for an event, which is compared elsewhere.
-pub(crate) fn encode(item: &Item, bytes: &mut Vec<u8>) -> bool {
+pub fn encode(item: &Item, bytes: &mut Vec<u8>) -> bool {
     match item {
         Item::CleanSample(sample) | Item::Sample(sample) => encode_sample(sample, bytes),
         Item::CleanAiding(aiding) => encode_aiding(aiding.as_ref(), bytes),
@@ -26,7 +26,8 @@ pub(crate) fn encode(item: &Item, bytes: &mut Vec<u8>) -> bool {
 }
 
 /// First field of two messages on a topic that differs in a bit: its name and both values.
-pub(crate) fn first_difference(
+#[must_use]
+pub fn first_difference(
     topic: Topic,
     first: &[u8],
     second: &[u8],
@@ -91,43 +92,4 @@ fn value(kind: &str, bytes: &[u8]) -> Option<String> {
         }
         _ => return None,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_sample::{Output, Sample};
-
-    #[test]
-    fn the_first_field_that_differs_is_named() {
-        let mut sample = Sample { sequence: 7, ..Sample::default() };
-        let (mut first, mut second) = (Vec::new(), Vec::new());
-        assert!(encode(&Item::Sample(sample), &mut first));
-        assert!(encode(&Item::Sample(sample), &mut second));
-        assert_eq!(first_difference(Topic::Imu, &first, &second), None);
-        sample.delta_velocity[1] = -3;
-        sample.gimbal.roll = 4;
-        assert!(encode(&Item::Sample(sample), &mut second));
-        let found = first_difference(Topic::Imu, &first, &second).unwrap();
-        assert_eq!(found, ("delta_velocity[1]".to_owned(), "0".to_owned(), "-3".to_owned()));
-    }
-
-    #[test]
-    fn fields_of_an_output_are_found_behind_one_another() {
-        let one = Output::default();
-        let (mut first, mut second) = (Vec::new(), Vec::new());
-        encode(&Item::Output(one), &mut first);
-        for (change, name) in [
-            ((|o| o.navigation.longitude_rad = 0.5) as fn(&mut Output), "longitude_rad"),
-            (|o| o.navigation.q_nb[3] = 0.5, "q_nb[3]"),
-            (|o| o.nis = 2.5, "nis"),
-            (|o| o.stop = 9, "stop"),
-            (|o| o.moving = true, "moving"),
-        ] {
-            let mut other = one;
-            change(&mut other);
-            encode(&Item::Output(other), &mut second);
-            assert_eq!(first_difference(Topic::Output, &first, &second).unwrap().0, name);
-        }
-    }
 }

@@ -5,14 +5,14 @@
 //!
 //! - [`side`] reads a run: its summary, scenario, manifest and recording
 //! - [`settings`] compares the resolved scenarios, key by key
-//! - [`stream`] compares the recordings, message by message, bit for bit
+//! - [`stream`] compares the recordings, message by message, bit for bit; [`fields`] names what differs in a message
 //! - [`scores`] sets the numbers of the summaries side by side
 //! - [`cases`] compares two campaigns over their pairs of cases
 //! - [`text`] and [`page`] render the result for a terminal and as one HTML file
 
 pub mod cases;
 mod error;
-mod fields;
+pub mod fields;
 pub mod page;
 pub mod scores;
 pub mod settings;

@@ -222,27 +222,3 @@ fn parse(text: &str) -> Result<Vec<DispositionEntry>, String> {
     }
     Ok(file.discrepancies)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_text_is_quoted_so_that_toml_reads_it() {
-        assert_eq!(quoted("longitude: found 3"), "\"longitude: found 3\"");
-        assert_eq!(quoted("found \"3\" in C:\\x"), "'found \"3\" in C:\\x'");
-        assert_eq!(quoted("isn't \"3\""), "\"isn't \\\"3\\\"\"");
-        for text in
-            ["", "a\"b", "a'b", "'\"\\", "\t\r\n\u{0}\u{8}\u{1b}\u{7f}\u{85}", "°\u{2028}😀"]
-        {
-            let table: toml::Table = format!("a = {}", quoted(text)).parse().expect(text);
-            assert_eq!(table["a"].as_str(), Some(text));
-        }
-    }
-
-    #[test]
-    fn an_error_names_its_line() {
-        let error = parse("schema = 1\n\n[[discrepancies]]\nid = 3\n").expect_err("id is a text");
-        assert!(error.starts_with("line 4: "), "{error}");
-    }
-}

@@ -190,38 +190,3 @@ fn of_system(document: &Value, inside: &mut Inside) {
         ));
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    fn read(document: &Value) -> Inside {
-        let mut inside = Inside::default();
-        of_system(document, &mut inside);
-        inside
-    }
-
-    #[test]
-    fn a_system_is_no_better_than_its_end_and_its_faults() {
-        let system = |verdict: &str, how: &str, fired: bool| {
-            read(&json!({
-                "system": "two", "verdict": verdict, "ended": { "how": how },
-                "faults": [{ "id": "a", "fired": true }, { "id": "b", "fired": fired }],
-            }))
-        };
-        let whole = system("none", "complete", true);
-        assert_eq!((whole.verdict, whole.contradictions.len()), (Some(Verdict::None), 0));
-        for (how, fired, least) in [
-            ("complete", false, Verdict::Inconclusive),
-            ("interrupted", true, Verdict::Inconclusive),
-            ("failed", true, Verdict::Error),
-        ] {
-            let told = system(least.name(), how, fired);
-            assert_eq!((told.verdict, told.contradictions.len()), (Some(least), 0), "{how}");
-            let better = system("none", how, fired);
-            assert_eq!((better.verdict, better.contradictions.len()), (Some(least), 1), "{how}");
-        }
-        assert_eq!(system("splendid", "complete", true).verdict, Some(Verdict::Error));
-    }
-}

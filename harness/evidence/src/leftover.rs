@@ -88,7 +88,10 @@ fn hidden(folder: &Path) -> impl Iterator<Item = PathBuf> {
 }
 
 /// Renames a folder to a hidden name, which marks it for removal.
-pub(super) fn put_aside(folder: &Path) -> Result<PathBuf, FolderError> {
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn put_aside(folder: &Path) -> Result<PathBuf, FolderError> {
     let aside = hidden(folder).find(|path| fs::symlink_metadata(path).is_err());
     let aside = aside.unwrap_or_else(|| folder.with_extension("octant-replaced"));
     system("rename", folder, fs::rename(folder, &aside))?;

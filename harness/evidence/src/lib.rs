@@ -14,7 +14,7 @@ pub mod folder;
 mod host;
 mod inputs;
 pub mod inside;
-mod leftover;
+pub mod leftover;
 pub mod manifest;
 mod names;
 pub mod signature;

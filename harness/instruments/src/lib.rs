@@ -27,11 +27,13 @@ extern crate std;
 
 pub mod align;
 pub mod any;
+pub mod checksum;
 #[cfg(feature = "dbc")]
 pub mod dbc;
 pub mod framing;
 pub mod novatel;
 pub mod own;
+pub mod rollover;
 pub mod sbg;
 pub mod vectornav;
 pub mod xsens;
@@ -39,11 +41,9 @@ pub mod xsens;
 mod axes;
 mod bytes;
 mod carry;
-mod checksum;
 mod encoding;
 mod facts;
 mod reading;
-mod rollover;
 mod sampler;
 
 pub use any::{AnyDecoder, AnyEncoder, Protocol};

@@ -1,6 +1,9 @@
 //! Tests of the protocols of inertial units, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod align;
+mod axes;
+mod checksum;
 mod common;
 mod damage;
 #[cfg(feature = "dbc")]
@@ -8,5 +11,6 @@ mod dbc;
 mod fuzz_corpus;
 mod manuals;
 mod no_allocation;
+mod rollover;
 mod round_trip;
 mod sampler;

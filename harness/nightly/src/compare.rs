@@ -10,9 +10,8 @@
 //! refused or it ended as an error, is beyond every number there, and counts in the test with the
 //! highest rank.
 
-pub use super::change::{Change, ChangeThresholds, Tested};
+pub use super::change::{Change, ChangeThresholds, Tested, tested};
 
-use super::change::tested;
 use super::night::{CampaignNight, Night, Program};
 use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;

@@ -319,7 +319,3 @@ mod limits {
         false
     }
 }
-
-#[cfg(test)]
-#[path = "host_tests.rs"]
-mod tests;

@@ -1,3 +1,9 @@
 //! Integration tests of clocks and pacing, in one program.
 
+mod host;
+mod latency;
+mod lateness;
 mod no_allocation;
+mod pace;
+mod schedule;
+mod series;

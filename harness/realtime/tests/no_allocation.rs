@@ -30,17 +30,22 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// Number of allocations of this thread.
+pub(crate) fn allocations() -> u64 {
+    ALLOCATIONS.get()
+}
+
 #[test]
 fn frames_allocate_nothing() {
     let pacing = FramePacing { period_ns: 200_000, spin_ns: 20_000, overrun_ns: 50_000 };
     // The first half of the frames is already late, the second is waited for: both paths are tested.
     let start = octant_realtime::clock::MonotonicTime { ns: now().ns - 20 * 200_000 };
     let mut clock = FrameClock::start_at(pacing, start);
-    let before = ALLOCATIONS.get();
+    let before = allocations();
     for _ in 0..40 {
         clock.wait();
     }
-    assert_eq!(ALLOCATIONS.get(), before);
+    assert_eq!(allocations(), before);
     let boxed = Box::new(clock.report());
-    assert!(ALLOCATIONS.get() > before, "the counter counts: {boxed:?}");
+    assert!(allocations() > before, "the counter counts: {boxed:?}");
 }

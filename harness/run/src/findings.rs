@@ -60,7 +60,8 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
 }
 
 /// Lists where the bench was late, lost samples, or did not send them.
-fn too_late(limits: &Realtime, pacing: &PacingRecord) -> Vec<String> {
+#[must_use]
+pub fn too_late(limits: &Realtime, pacing: &PacingRecord) -> Vec<String> {
     let mut reasons = Vec::new();
     if pacing.overruns > limits.overruns {
         reasons.push(format!(
@@ -207,48 +208,4 @@ pub fn broken(primary: &MethodRun, baseline: Option<&MethodRun>) -> Vec<String> 
             Some(format!("after {at_s:.3} s{place}: {error}"))
         })
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_score::summary::LatenessQuantiles;
-    use std::path::Path;
-
-    #[test]
-    fn a_limit_of_the_clock_holds_up_to_its_value() {
-        let limits = |lateness_p99: &str| {
-            let text = format!(
-                "schema = 1\n[procedure.navigation]\nduration = \"4 s\"\n[realtime]\nlateness_p99 = \"{lateness_p99}\"\n"
-            );
-            Scenario::parse(&text, "s", Path::new(""), &[]).unwrap().realtime
-        };
-        let lateness_us = LatenessQuantiles { p99: 500.0, ..LatenessQuantiles::default() };
-        let pacing = PacingRecord {
-            frames: 800,
-            period_us: 5000.0,
-            lateness_us,
-            lateness_histogram_ns: Vec::new(),
-            lateness_over_run: None,
-            overrun_us: 5000.0,
-            overruns: 0,
-            overruns_in_a_row: 0,
-            first_overrun: None,
-            slack_p1_us: 100.0,
-            answer_us: lateness_us,
-            late_answers: 0,
-            missed_answers: 0,
-            not_sent: 0,
-            device_clock: None,
-            dropped_records: 0,
-        };
-        assert_eq!(too_late(&limits("500 us"), &pacing), Vec::<String>::new());
-        let reasons = too_late(&limits("499 us"), &pacing);
-        assert_eq!(
-            reasons,
-            [
-                "the bench was late: the lateness of 99 % of the samples is 500 us, 499 us are allowed"
-            ]
-        );
-    }
 }

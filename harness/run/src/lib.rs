@@ -38,7 +38,7 @@ pub mod raw_counts;
 pub mod realtime;
 mod recording;
 pub mod replayed;
-mod rotation;
+pub mod rotation;
 pub mod scores_text;
 mod solution;
 pub mod stem;

@@ -87,28 +87,3 @@ pub fn happen<E: Endpoint + ?Sized>(
         UnitEvent::RestartWith { offset } => endpoint.restart(Some(offset)),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_recorded_is_read_again() {
-        let offset = Parameters::from_array(&std::array::from_fn(|i| 0.1 + i as f64 * 1e-7));
-        for happened in [
-            UnitEvent::Restart,
-            UnitEvent::PowerOff,
-            UnitEvent::PowerOn,
-            UnitEvent::RestartWith { offset },
-        ] {
-            let json = serde_json::to_string(&event(&happened, 7)).unwrap();
-            let read: Event = serde_json::from_str(&json).unwrap();
-            assert_eq!(of(&read).unwrap(), Some(happened));
-        }
-        let other = Event::Refused { reason: String::new() };
-        assert_eq!(of(&other).unwrap(), None);
-        let unknown = r#"{"kind":"unit","detail":{"action":"melt","sample":1}}"#;
-        let unknown = of(&serde_json::from_str(unknown).unwrap());
-        assert!(unknown.unwrap_err().to_string().contains("melt"));
-    }
-}

@@ -25,7 +25,9 @@ pub enum Claim {
 }
 
 impl Claim {
-    pub(crate) fn of(i: &Improvement) -> Self {
+    /// Judges an improvement by its interval.
+    #[must_use]
+    pub fn of(i: &Improvement) -> Self {
         if i.high < 0.0 {
             Self::Worse
         } else if i.low <= 0.0 {
@@ -52,21 +54,4 @@ pub fn interval(i: &Improvement) -> String {
 #[must_use]
 pub fn percent(fraction: f64) -> String {
     octant_base::number::fixed(100.0 * fraction, 0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_end_of_the_interval_on_its_edge_shows_nothing_more() {
-        let of = |low, value, high| Claim::of(&Improvement { value, low, high, detectable: None });
-        assert_eq!(of(-0.4, -0.2, -0.1), Claim::Worse);
-        assert_eq!(of(-0.4, -0.2, 0.0), Claim::NotShown);
-        assert_eq!(of(0.0, 0.2, 0.4), Claim::NotShown);
-        assert_eq!(of(0.1, 0.2, 0.5), Claim::BetterByLess);
-        assert_eq!(of(0.1, 0.5, 0.6), Claim::Better);
-        assert_eq!(of(0.5, 0.6, 0.7), Claim::Likely);
-        assert_eq!(of(0.51, 0.6, 0.7), Claim::Holds);
-    }
 }

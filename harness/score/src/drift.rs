@@ -3,7 +3,7 @@
 
 use super::attitude::CaseAngles;
 use super::regression::{SecularSlope, Slopes};
-use super::series::Series;
+use super::series::ErrorSeries;
 use super::summary::{ErrorScore, HeightChannel, Mark, NavigationScore, RadialScore, SlopeWindow};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
@@ -116,7 +116,7 @@ pub struct DriftScorer {
     time_square: f64,
     slope: Option<SecularSlope<ERRORS>>,
     marks: BTreeMap<String, Mark>,
-    series: Series,
+    series: ErrorSeries,
     broken: Option<DriftError>,
 }
 
@@ -142,7 +142,7 @@ impl DriftScorer {
             time_square: 0.0,
             slope: None,
             marks: BTreeMap::new(),
-            series: Series::new(),
+            series: ErrorSeries::new(),
             broken: None,
         }
     }

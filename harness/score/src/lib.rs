@@ -35,7 +35,7 @@ pub mod parameters;
 pub mod rederive;
 pub mod reference;
 mod regression;
-mod series;
+pub mod series;
 pub mod summary;
 pub mod trace;
 pub mod verdict;

@@ -1,24 +1,24 @@
 //! A series of bounded length that keeps all of its extremes.
 
 /// Most buckets; when they are full, neighbours are merged. Each gives up to four points.
-const BUCKETS_MAX: usize = 500;
+pub const BUCKETS_MAX: usize = 500;
 
 /// One point: hours, latitude error, longitude error.
-type Point = [f64; 3];
+pub type ErrorPoint = [f64; 3];
 
 /// Extremes in a stretch of time.
 #[derive(Clone, Copy, Debug)]
 struct Bucket {
     /// Points with the smallest and largest latitude error, smallest and largest longitude error.
-    extremes: [Point; 4],
+    extremes: [ErrorPoint; 4],
 }
 
 impl Bucket {
-    fn new(point: Point) -> Self {
+    fn new(point: ErrorPoint) -> Self {
         Self { extremes: [point; 4] }
     }
 
-    fn take(&mut self, point: Point) {
+    fn take(&mut self, point: ErrorPoint) {
         for (slot, (column, sign)) in [(1, -1.0), (1, 1.0), (2, -1.0), (2, 1.0)].iter().enumerate()
         {
             if sign * point[*column] > sign * self.extremes[slot][*column] {
@@ -35,18 +35,26 @@ impl Bucket {
     }
 }
 
-/// Series for plots, in bounded memory.
+/// Errors over time for plots, in bounded memory.
 #[derive(Clone, Debug)]
-pub(super) struct Series {
-    first: Option<Point>,
-    last: Option<Point>,
+pub struct ErrorSeries {
+    first: Option<ErrorPoint>,
+    last: Option<ErrorPoint>,
     buckets: Vec<Bucket>,
     per_bucket: u64,
     in_last: u64,
 }
 
-impl Series {
-    pub(super) fn new() -> Self {
+impl Default for ErrorSeries {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ErrorSeries {
+    /// Creates an empty series.
+    #[must_use]
+    pub fn new() -> Self {
         Self {
             first: None,
             last: None,
@@ -56,7 +64,8 @@ impl Series {
         }
     }
 
-    pub(super) fn push(&mut self, point: Point) {
+    /// Takes the next point.
+    pub fn push(&mut self, point: ErrorPoint) {
         self.first.get_or_insert(point);
         self.last = Some(point);
         if self.in_last < self.per_bucket
@@ -79,8 +88,9 @@ impl Series {
 
     /// Points in order of time, including the first and the last, rounded to a millionth of an hour and
     /// of an arcminute (2 mm), so that the file of a day stays small.
-    pub(super) fn points(&self) -> Vec<Point> {
-        let mut points: Vec<Point> = self.buckets.iter().flat_map(|b| b.extremes).collect();
+    #[must_use]
+    pub fn points(&self) -> Vec<ErrorPoint> {
+        let mut points: Vec<ErrorPoint> = self.buckets.iter().flat_map(|b| b.extremes).collect();
         points.extend(self.first);
         points.extend(self.last);
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -90,48 +100,5 @@ impl Series {
             if x == 0.0 { 0.0 } else { x }
         };
         points.into_iter().map(|p| p.map(rounded)).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_series_of_a_million_points_stays_short_and_keeps_its_extremes() {
-        let mut series = Series::new();
-        for k in 0..1_000_000u32 {
-            let t = f64::from(k) / 3600.0;
-            let spike = if k == 777_777 { 9.0 } else { 0.0 };
-            series.push([t, libm::sin(t), libm::cos(3.0 * t) - spike]);
-        }
-        let points = series.points();
-        assert!(points.len() <= 2002, "{}", points.len());
-        assert_eq!(points[0][0], 0.0);
-        assert_eq!(points[points.len() - 1][0], 277.7775);
-        assert!(points.iter().any(|p| p[2] < -8.0), "the spike is lost");
-        assert!(points.windows(2).all(|w| w[0][0] < w[1][0]));
-    }
-
-    #[test]
-    fn a_short_series_is_kept_whole() {
-        let mut series = Series::new();
-        for k in 0..100u32 {
-            series.push([f64::from(k), 0.0, f64::from(k)]);
-        }
-        assert_eq!(series.points().len(), 100);
-    }
-
-    #[test]
-    fn extremes_of_every_bucket_survive_its_merging() {
-        // The first merge comes with the next point after the last bucket.
-        for extreme in [0, 1, 250, 251, BUCKETS_MAX - 2, BUCKETS_MAX - 1] {
-            let mut series = Series::new();
-            for k in 0..=BUCKETS_MAX {
-                let latitude = if k == extreme { 5.0 } else { 0.0 };
-                series.push([k as f64, latitude, 0.0]);
-            }
-            assert!(series.points().contains(&[extreme as f64, 5.0, 0.0]), "{extreme}");
-        }
     }
 }

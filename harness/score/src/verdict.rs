@@ -215,14 +215,3 @@ pub fn measure(path: &str, summary: &Value) -> Result<f64, MeasureError> {
         _ => Err(MeasureError::NotANumber { place: walked }),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_that_are_left_out_are_counted() {
-        assert_eq!(and_more(0), "");
-        assert_eq!(and_more(3), " and 3 more");
-    }
-}

@@ -265,14 +265,3 @@ fn fifty_nine(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {
     let numbers = needed.map(|needed| ("needed".to_owned(), needed)).into_iter().collect();
     Ok(CaseOutcome { numbers, ..status.into() })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_golden_files_have_what_is_asked_of_them() {
-        assert_eq!(growth().len(), 2 * HOURS.len());
-        assert_eq!(sigmas().len(), 2 * 39);
-    }
-}

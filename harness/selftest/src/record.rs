@@ -184,7 +184,8 @@ impl SelftestRecord {
 }
 
 /// Returns the worst verdict; inconclusive if a case is missing, or if there is none.
-fn verdict(planned: usize, cases: &[CaseRecord]) -> &'static str {
+#[must_use]
+pub fn verdict(planned: usize, cases: &[CaseRecord]) -> &'static str {
     let worst = cases.iter().map(|case| case.verdict).max();
     match worst {
         Some(worst) if worst > CaseVerdict::Pass => worst.name(),
@@ -217,44 +218,4 @@ pub fn write(path: &Path, text: &str) -> Result<(), FileError> {
     new.as_file().sync_data().map_err(&failed)?;
     new.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn case(verdict: CaseVerdict) -> CaseRecord {
-        CaseRecord {
-            id: "one",
-            kind: "must not pass",
-            about: "",
-            expected: String::new(),
-            source: None,
-            found: String::new(),
-            verdict,
-        }
-    }
-
-    #[test]
-    fn an_alarm_is_the_worst_and_nothing_tried_is_no_pass() {
-        use CaseVerdict::{Alarm, Error, Fail, Pass};
-        for (planned, cases, expected) in [
-            (0, &[][..], "inconclusive"),
-            (1, &[], "inconclusive"),
-            (2, &[Pass], "inconclusive"),
-            (2, &[Pass, Pass], "pass"),
-            (3, &[Pass, Fail], "fail"),
-            (3, &[Fail, Error, Pass], "error"),
-            (3, &[Alarm, Error, Fail], "alarm"),
-        ] {
-            let cases: Vec<CaseRecord> = cases.iter().copied().map(case).collect();
-            assert_eq!(verdict(planned, &cases), expected);
-        }
-        let program = std::env::current_exe().unwrap();
-        let now = SystemTime::now();
-        let record = SelftestRecord::new(&program, now, 1, vec![case(Alarm)]).unwrap();
-        assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
-        assert!(record.text().contains("ALARM: what must not pass has passed"));
-        assert_eq!(SelftestRecord::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
-    }
 }

@@ -2,9 +2,12 @@
 #![allow(clippy::unwrap_used)]
 
 mod allan;
+mod cascade;
 mod closed_forms;
 mod cluster;
+mod convergence;
 mod coverage;
+mod distribution;
 mod draws;
 mod multiple;
 mod reference;

@@ -8,9 +8,12 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Type of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum RosType {
+pub enum RosType {
+    /// `sensor_msgs/Imu`.
     Imu,
+    /// `sensor_msgs/NavSatFix`.
     NavSatFix,
+    /// `geometry_msgs/Vector3Stamped`.
     Vector3Stamped,
 }
 
@@ -29,7 +32,9 @@ const NAV_SAT_STATUS: &str = "MSG: sensor_msgs/NavSatStatus\n\
     uint16 SERVICE_GALILEO = 8\nuint16 service\n";
 
 impl RosType {
-    pub(super) const fn name(self) -> &'static str {
+    /// Name of the type in ROS 2.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Imu => "sensor_msgs/msg/Imu",
             Self::NavSatFix => "sensor_msgs/msg/NavSatFix",
@@ -38,7 +43,8 @@ impl RosType {
     }
 
     /// Definition in the form `ros2msg` of MCAP.
-    pub(super) fn definition(self) -> String {
+    #[must_use]
+    pub fn definition(self) -> String {
         let (own, parts) = match self {
             Self::Imu => (
                 "std_msgs/Header header\n\
@@ -70,7 +76,7 @@ impl RosType {
 }
 
 /// Message that is appended to a buffer.
-pub(super) struct RosMessage<'a> {
+pub struct RosMessage<'a> {
     bytes: &'a mut Vec<u8>,
     /// End of the encapsulation, from which alignment counts.
     start: usize,
@@ -81,7 +87,7 @@ const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 impl<'a> RosMessage<'a> {
     /// Begins a message with its header.
-    pub(super) fn new(bytes: &'a mut Vec<u8>, time_ns: u64, frame_id: &str) -> Self {
+    pub fn new(bytes: &'a mut Vec<u8>, time_ns: u64, frame_id: &str) -> Self {
         bytes.extend_from_slice(&ENCAPSULATION);
         let start = bytes.len();
         let mut message = Self { bytes, start };
@@ -96,108 +102,44 @@ impl<'a> RosMessage<'a> {
     }
 
     /// Appends a field at a multiple of its size.
-    pub(super) fn put<const N: usize>(&mut self, field: &[u8; N]) {
+    pub fn put<const N: usize>(&mut self, field: &[u8; N]) {
         let at = (self.bytes.len() - self.start).next_multiple_of(N) + self.start;
         self.bytes.resize(at, 0);
         self.bytes.extend_from_slice(field);
     }
 
-    pub(super) fn numbers(&mut self, values: &[f64]) {
+    /// Appends numbers of eight bytes.
+    pub fn numbers(&mut self, values: &[f64]) {
         values.iter().for_each(|value| self.put(&value.to_le_bytes()));
     }
 }
 
 /// Vector of axes forward, right, down in the axes of REP 103: forward, left, up.
-pub(super) fn flu([x, y, z]: [f64; 3]) -> [f64; 3] {
+#[must_use]
+pub fn flu([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, -y, -z]
 }
 
 /// Vector of axes north, east, down in the axes of REP 103: east, north, up.
-pub(super) fn enu([north, east, down]: [f64; 3]) -> [f64; 3] {
+#[must_use]
+pub fn enu([north, east, down]: [f64; 3]) -> [f64; 3] {
     [east, north, -down]
 }
 
 /// Covariance of a vector of axes north, east, down, by its upper triangle, as the nine elements of that
 /// of axes east, north, up.
-pub(super) fn enu_covariance([nn, ne, nd, ee, ed, dd]: [f64; 6]) -> [f64; 9] {
+#[must_use]
+pub fn enu_covariance([nn, ne, nd, ee, ed, dd]: [f64; 6]) -> [f64; 9] {
     [ee, ne, -ed, ne, nn, -nd, -ed, -nd, dd]
 }
 
 /// Attitude of REP 103, x y z w: takes a vector in forward, left, up into east, north, up.
-pub(super) fn orientation(q_nb: &UnitQuaternion<f64>) -> [f64; 4] {
+#[must_use]
+pub fn orientation(q_nb: &UnitQuaternion<f64>) -> [f64; 4] {
     let half = core::f64::consts::FRAC_1_SQRT_2;
     // Half turns: about the line between north and east, and about the forward axis.
     let enu_of_ned = Quaternion::new(0.0, half, half, 0.0);
     let frd_of_flu = Quaternion::new(0.0, 1.0, 0.0, 0.0);
     let q = enu_of_ned * q_nb.quaternion() * frd_of_flu;
     [q.i, q.j, q.k, q.w]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::Vector3;
-    use octant_earth::rotation::exp;
-
-    /// Message with a header and these numbers, behind another one in the same buffer.
-    fn behind_another(
-        time_ns: u64,
-        frame_id: &str,
-        finish: impl Fn(&mut RosMessage<'_>),
-    ) -> Vec<u8> {
-        let mut bytes = vec![9; 3];
-        finish(&mut RosMessage::new(&mut bytes, time_ns, frame_id));
-        bytes.split_off(3)
-    }
-
-    #[test]
-    fn fields_stand_at_multiples_of_their_size() {
-        // "abc" ends at byte 16 after the encapsulation: sec 4, nanosec 4, length 4, text 4.
-        let bytes = behind_another(1_500_000_007, "abc", |message| {
-            message.numbers(&[1.0]);
-            message.put(&[7u8]);
-            message.put(&3u16.to_le_bytes());
-        });
-        assert_eq!(&bytes[4..12], [1, 0, 0, 0, 0x07, 0x65, 0xcd, 0x1d]);
-        assert_eq!(&bytes[12..20], [4, 0, 0, 0, b'a', b'b', b'c', 0]);
-        assert_eq!(bytes[20..28], 1f64.to_le_bytes());
-        assert_eq!(&bytes[28..], [7, 0, 3, 0]);
-        // A longer name moves the number to the next multiple of eight.
-        let bytes = behind_another(0, "abcd", |message| message.numbers(&[1.0]));
-        assert_eq!(bytes[28..], 1f64.to_le_bytes());
-    }
-
-    #[test]
-    fn a_covariance_turns_as_its_vector() {
-        // The covariance of one vector that is certain is its outer product.
-        let [n, e, d] = [2.0, -3.0, 5.0];
-        let found = enu_covariance([n * n, n * e, n * d, e * e, e * d, d * d]);
-        let turned = enu([n, e, d]);
-        for (i, row) in turned.iter().enumerate() {
-            for (j, column) in turned.iter().enumerate() {
-                assert_eq!(found[3 * i + j], row * column, "{i} {j}");
-            }
-        }
-    }
-
-    #[test]
-    fn heading_north_is_a_quarter_turn_from_east() {
-        let [x, y, z, w] = orientation(&UnitQuaternion::identity());
-        let half = core::f64::consts::FRAC_1_SQRT_2;
-        let sign = w.signum();
-        for (found, wanted) in [(x, 0.0), (y, 0.0), (z, half), (w, half)] {
-            assert!((sign * found - wanted).abs() < 1e-15, "{found} {wanted}");
-        }
-    }
-
-    #[test]
-    fn an_attitude_and_its_vectors_turn_alike() {
-        let q_nb = exp(&Vector3::new(0.4, -0.3, 2.0));
-        let in_b = [0.3, -1.2, 9.0];
-        let in_n: [f64; 3] = (q_nb * Vector3::from(in_b)).into();
-        let [x, y, z, w] = orientation(&q_nb);
-        let turned =
-            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) * Vector3::from(flu(in_b));
-        assert!((turned - Vector3::from(enu(in_n))).norm() < 1e-12);
-    }
 }

@@ -1,4 +1,9 @@
-//! The layouts that are shipped show what recordings and live runs have.
+//! Tests of topics for other tools, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod boundary;
 mod layouts;
+mod ros;
+mod series;
+mod solution;
+mod standard;

@@ -16,7 +16,8 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 const ALIVE: u8 = b'.';
-const FAREWELL: u8 = b'q';
+/// Byte that releases the guard.
+pub const FAREWELL: u8 = b'q';
 /// Limit of the bytes that stop a table; no table needs more.
 const MAX_BYTES: u32 = 65_536;
 
@@ -94,8 +95,12 @@ pub fn run_guard() -> bool {
     guard(io::stdin(), &mut io::stdout()).unwrap_or(false)
 }
 
-/// Runs the guard; true after a farewell.
-fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Result<bool> {
+/// Runs the guard between any input and line; true after a farewell. The input begins with the longest silence in ms
+/// (zero: any) and the number of the bytes that stop the table, 32 bits each, little-endian, and these bytes.
+///
+/// # Errors
+/// If the input ends before the bytes do, or the line can't be written.
+pub fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Result<bool> {
     let mut head = [0; 8];
     input.read_exact(&mut head)?;
     let number =
@@ -132,29 +137,5 @@ fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Re
                 return Ok(false);
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn run(farewell: bool) -> (bool, Vec<u8>) {
-        let mut input = Vec::new();
-        input.extend(0u32.to_le_bytes());
-        input.extend(4u32.to_le_bytes());
-        input.extend(b"STO\n..");
-        if farewell {
-            input.push(FAREWELL);
-        }
-        let mut line = Vec::new();
-        let well = guard(io::Cursor::new(input), &mut line).unwrap();
-        (well, line)
-    }
-
-    #[test]
-    fn it_stops_the_table_unless_it_was_told_farewell() {
-        assert_eq!(run(true), (true, Vec::new()));
-        assert_eq!(run(false), (false, b"STO\nSTO\n".to_vec()));
     }
 }

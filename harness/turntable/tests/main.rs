@@ -7,5 +7,8 @@
 mod common;
 mod drive;
 mod following;
+mod guard;
 mod panic;
+mod set_points;
 mod stop;
+mod track;

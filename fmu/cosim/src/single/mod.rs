@@ -193,6 +193,3 @@ pub fn simulate(
     instance.terminate()?;
     Ok(finished)
 }
-
-#[cfg(test)]
-mod tests;

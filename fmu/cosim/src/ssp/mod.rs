@@ -54,6 +54,3 @@ impl fmt::Display for SspError {
 }
 
 impl std::error::Error for SspError {}
-
-#[cfg(test)]
-mod tests;

@@ -66,7 +66,11 @@ impl FmuEndpoint {
         Self::of_instance(scenario, fmu, config, open::instance(scenario, fmu)?)
     }
 
-    fn of_instance(
+    /// Takes an instance of an FMU in place of the scenario's. Our Calibrator is configured by `config`.
+    ///
+    /// # Errors
+    /// If the scenario's settings don't fit the FMU.
+    pub fn of_instance(
         scenario: &Scenario,
         fmu: &Fmu,
         config: &CoreConfig,
@@ -367,6 +371,3 @@ impl Endpoint for FmuEndpoint {
         Conclusion { refused, ..Conclusion::default() }
     }
 }
-
-#[cfg(test)]
-mod tests;

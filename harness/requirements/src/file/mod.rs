@@ -17,8 +17,7 @@
 mod read;
 mod write;
 
-pub(crate) use read::misfit;
-pub use read::read;
+pub use read::{misfit, read};
 pub use write::write;
 
 use crate::requirement::Limit;

@@ -226,7 +226,8 @@ fn fits(table: &Reader<'_>, name: &str, values: &[String], definitions: &[Defini
 }
 
 /// Text of the expected values, if these don't fit a kind.
-pub(crate) fn misfit(kind: &AttributeKind, values: &[String]) -> Option<String> {
+#[must_use]
+pub fn misfit(kind: &AttributeKind, values: &[String]) -> Option<String> {
     let all = |legal: &dyn Fn(&String) -> bool| values.iter().all(legal);
     let one_of = |options: &[String]| format!("of {}", options.join(", "));
     let (legal, expected) = match kind {
@@ -400,28 +401,4 @@ fn ensemble(table: &Reader<'_>) -> Option<EnsembleRequirement> {
         }
     }
     Some(EnsembleRequirement { pass: pass?, confidence: confidence? })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_attribute_of_one_value_has_exactly_one_that_fits() {
-        for (kind, good, bad) in [
-            (AttributeKind::Integer, "3", "3.5"),
-            (AttributeKind::Real, "3.5", "inf"),
-            (AttributeKind::Boolean, "true", "yes"),
-            (AttributeKind::Date, "2026-11-25", "today"),
-        ] {
-            let misfit = |values: &[&str]| {
-                let values: Vec<String> = values.iter().map(|value| (*value).to_owned()).collect();
-                super::misfit(&kind, &values)
-            };
-            assert_eq!(misfit(&[good]), None, "{kind:?}");
-            assert!(misfit(&[bad]).is_some(), "{kind:?}");
-            assert!(misfit(&[good, good]).is_some(), "{kind:?}");
-            assert!(misfit(&[]).is_some(), "{kind:?}");
-        }
-    }
 }

@@ -12,7 +12,7 @@ mod types;
 mod write;
 mod xhtml;
 
-pub use read::read;
+pub use read::{read, unescape};
 pub use write::write;
 
 /// Namespace of ReqIF 1.0 to 1.2.

@@ -396,7 +396,8 @@ fn id_of(object: &Object) -> String {
 }
 
 /// Reverts the escapes of Python's `unicode_escape`, with which StrictDoc writes strings.
-fn unescape(text: &str) -> String {
+#[must_use]
+pub fn unescape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find('\\') {
@@ -433,15 +434,4 @@ fn unescape(text: &str) -> String {
     }
     out.push_str(rest);
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::unescape;
-
-    #[test]
-    fn escapes_of_python_are_taken_back() {
-        assert_eq!(unescape(r"50 \xb5g, \u221ah\na \\ b"), "50 µg, √h\na \\ b");
-        assert_eq!(unescape(r"\q \x4 \"), r"\q \x4 \");
-    }
 }

@@ -10,7 +10,8 @@ const UNIT_CHARS: usize = 6;
 /// Breaks a text into lines of at most `width` characters: after a comma or a double space where the
 /// line is at least half full, else at a space, else within a path or a dotted name after its mark. A
 /// number keeps its unit. Only a longer piece without any of these is cut.
-pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
+#[must_use]
+pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     let mut rest: Vec<char> = text.trim_end().chars().collect();
@@ -54,7 +55,8 @@ fn is_unit(text: &[char]) -> bool {
 }
 
 /// Leaves out the last words of a text that is longer than `width`, for `…`.
-pub(super) fn elide(text: &str, width: usize) -> String {
+#[must_use]
+pub fn elide(text: &str, width: usize) -> String {
     if text.chars().count() <= width {
         return text.to_owned();
     }
@@ -63,7 +65,8 @@ pub(super) fn elide(text: &str, width: usize) -> String {
 }
 
 /// Leaves out the first folders of a path that is longer than `width`, for `…`.
-pub(super) fn elide_path(path: &str, width: usize) -> String {
+#[must_use]
+pub fn elide_path(path: &str, width: usize) -> String {
     if path.chars().count() <= width {
         return path.to_owned();
     }
@@ -97,7 +100,8 @@ impl PanelRows {
 }
 
 /// Breaks text whose parts have styles: the lines after the first are indented by two columns.
-pub(super) fn wrap_styled(parts: &[(&str, Style)], width: usize) -> Vec<Line<'static>> {
+#[must_use]
+pub fn wrap_styled(parts: &[(&str, Style)], width: usize) -> Vec<Line<'static>> {
     let text: String = parts.iter().map(|(text, _)| *text).collect();
     let mut lines = Vec::new();
     let first = wrap(&text, width).swap_remove(0);
@@ -126,45 +130,4 @@ pub(super) fn wrap_styled(parts: &[(&str, Style)], width: usize) -> Vec<Line<'st
             Line::from(spans)
         })
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_break_between_words_and_a_number_keeps_its_unit() {
-        for (text, width, expected) in [
-            ("short", 10, &["short"][..]),
-            ("", 10, &[""]),
-            ("calibrating, moving", 14, &["calibrating,", "moving"]),
-            ("fired once, until 10.1 s", 22, &["fired once,", "until 10.1 s"]),
-            ("acts since 1 min 30 s", 15, &["acts since", "1 min 30 s"]),
-            ("30.5°  114.4°  0.0 m", 16, &["30.5°  114.4°", "0.0 m"]),
-            ("a.longitude_error.max", 12, &["a.longitude_", "error.max"]),
-            ("indivisible", 5, &["indiv", "isibl", "e"]),
-        ] {
-            assert_eq!(wrap(text, width), expected, "{text}");
-        }
-    }
-
-    #[test]
-    fn what_is_left_out_is_whole_words_or_folders() {
-        assert_eq!(elide("a long title, of many words", 27), "a long title, of many words");
-        assert_eq!(elide("a long title, of many words", 26), "a long title …");
-        assert_eq!(elide_path("runs/night/clock.partial", 24), "runs/night/clock.partial");
-        assert_eq!(elide_path("runs/night/clock.partial", 21), "…/night/clock.partial");
-        assert_eq!(elide_path("runs/night/clock.partial", 20), "…/clock.partial");
-        assert_eq!(elide_path("runs/night/clock.partial", 5), "…");
-    }
-
-    #[test]
-    fn styles_stay_with_their_words() {
-        let red = Style::new().fg(ratatui::style::Color::Red);
-        let lines = wrap_styled(&[("spike-1 ", Style::new()), ("fired once, until 3 s", red)], 16);
-        let texts: Vec<String> = lines.iter().map(ToString::to_string).collect();
-        assert_eq!(texts, ["spike-1 fired", "  once, until", "  3 s"]);
-        assert_eq!(lines[0].spans.last().unwrap().style, red);
-        assert_eq!(lines[2].spans.last().unwrap().content, "3 s");
-    }
 }

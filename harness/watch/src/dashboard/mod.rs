@@ -1,7 +1,7 @@
 //! Shows the state of a run on a terminal.
 
 mod curves;
-mod fit;
+pub mod fit;
 mod overview;
 mod parameters;
 mod stage;

@@ -1,9 +1,12 @@
 //! Each rule is broken by a change of a description, or of an FMU, that breaks no other rule.
 
-use super::rules::{self, RULES};
-use super::*;
 use cases::cases;
 use dll::dll;
+use octant_fmu_check::binaries::LibraryProperties;
+use octant_fmu_check::finding::RuleFinding;
+use octant_fmu_check::rules::{self, RULES, Severity};
+use octant_fmu_check::{CheckReport, check_archive, check_description, show};
+use octant_fmu_host::archive::{Archive, ArchiveLimits};
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
@@ -12,8 +15,8 @@ mod bus;
 mod cases;
 mod dll;
 
-const GOOD2: &str = include_str!("tests/good_fmi2.xml");
-const GOOD3: &str = include_str!("tests/good_fmi3.xml");
+const GOOD2: &str = include_str!("broken_rules/good_fmi2.xml");
+const GOOD3: &str = include_str!("broken_rules/good_fmi3.xml");
 
 /// Edit of a text: the original part, which occurs once, and its replacement.
 type Edit<'a> = (&'a str, &'a str);

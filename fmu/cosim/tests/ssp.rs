@@ -1,10 +1,10 @@
 //! Tests of reading and flattening structures, and of the messages for invalid ones.
 
-use super::package::Package;
-use super::parameters::Transformation;
-use super::structure::{Implementation, SystemStructure};
-use crate::flat::Flat;
-use crate::order::SteppingOrder;
+use octant_cosim::flat::Flat;
+use octant_cosim::order::SteppingOrder;
+use octant_cosim::ssp::package::Package;
+use octant_cosim::ssp::parameters::Transformation;
+use octant_cosim::ssp::structure::{Implementation, SystemStructure};
 use octant_fmu_host::description::VariableType;
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn package(structure: &str, files: &[(&str, &str)]) -> (tempfile::TempDir, Packa
 
 fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure, Flat), String> {
     let (folder, package) = package(structure, files);
-    let shorter = |error: super::SspError| {
+    let shorter = |error: octant_cosim::ssp::SspError| {
         error.to_string().replace(&format!("{}/", folder.path().display()), "")
     };
     let structure = SystemStructure::read(&package).map_err(shorter)?;

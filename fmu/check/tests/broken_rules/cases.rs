@@ -1,7 +1,7 @@
 //! Edits of a good description, and the rule that each breaks.
 
-use super::super::rules::*;
 use super::{Edit, GOOD2, GOOD3};
+use octant_fmu_check::rules::*;
 
 /// Rule, description, edits, and a part of the message.
 pub(super) type Case = (&'static CheckRule, &'static str, Vec<Edit<'static>>, &'static str);

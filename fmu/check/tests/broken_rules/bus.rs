@@ -1,7 +1,7 @@
 //! Each rule of FMI-LS-BUS is broken by a change of an FMU on a bus that breaks no other rule.
 
-use super::super::rules::*;
 use super::{edited, ids, packed, survey};
+use octant_fmu_check::rules::*;
 
 const DESCRIPTION: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="Node" instantiationToken="{1}">

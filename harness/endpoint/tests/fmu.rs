@@ -1,10 +1,14 @@
-use super::*;
+//! FMUs as the core: our own one against the core in process, and one of another shape.
+
+use octant_endpoint::{Endpoint, FmuEndpoint, InProcess};
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu_host::description::{Causality, VariableType};
+use octant_mapping::open::NamedInstance;
 use octant_mapping::testing::{OwnModel, Scripted, With, description, variable};
 use octant_recorder::StreamHash;
-use octant_sample::Mode;
-use octant_scenario::{self as scenario, Method};
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::{Epoch, Mode, Output, Parameters, Reference};
+use octant_scenario::{self as scenario, Fmu, Method, Scenario};
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source};
 use std::path::Path;
@@ -50,7 +54,7 @@ const LOCKSTEP: &str = "[procedure.calibration]\nduration = \"40 s\"\n\
 fn our_calibrator_answers_as_the_core_does_also_after_a_restart() {
     let scenario = scenario(LOCKSTEP);
     let (_, core, _) = configurations(&scenario, Method::Primary, 1).unwrap();
-    let mut inside = super::super::InProcess::new(&core).unwrap();
+    let mut inside = InProcess::new(&core).unwrap();
     let instance = kept(OwnModel::<Calibrator>::boxed());
     let mut fmu = FmuEndpoint::of_instance(&scenario, fmu_of(&scenario), &core, instance).unwrap();
     let expected = hash(&scenario, &mut inside, 12_000);
@@ -70,7 +74,7 @@ fn our_calibrator_answers_as_the_core_does_also_after_a_restart() {
 fn the_end_of_the_source_reaches_our_calibrator() {
     let scenario = scenario(LOCKSTEP);
     let (_, core, _) = configurations(&scenario, Method::Primary, 1).unwrap();
-    let mut inside = super::super::InProcess::new(&core).unwrap();
+    let mut inside = InProcess::new(&core).unwrap();
     let instance = kept(OwnModel::<Calibrator>::boxed());
     let mut fmu = FmuEndpoint::of_instance(&scenario, fmu_of(&scenario), &core, instance).unwrap();
     hash(&scenario, &mut inside, 4000);

@@ -1,4 +1,8 @@
-use super::*;
+//! What a host has for real time, read from a tree of files.
+
+use octant_realtime::host::{Grade, HostFinding, Tree, look};
+use std::fs;
+use std::path::PathBuf;
 
 /// Makes a tree with these files.
 fn tree(files: &[(&str, &str)]) -> (PathBuf, Tree) {

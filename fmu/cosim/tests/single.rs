@@ -1,8 +1,12 @@
-use super::input::{InputFileError, Inputs};
-use super::output::{Outputs, Sink, TOPIC};
-use super::*;
+//! One FMU stepped with inputs from a file.
+
+use octant_base::control::Control;
+use octant_cosim::single::input::{InputFileError, Inputs};
+use octant_cosim::single::output::{Outputs, Sink, TOPIC};
+use octant_cosim::single::{Finished, Span, simulate};
 use octant_fmu_host::description::{Causality, Description, Variability, VariableType};
-use octant_mapping::settings::ValueSettings;
+use octant_fmu_host::instance::Instance;
+use octant_mapping::settings::{Starts, ValueSettings};
 use octant_mapping::testing::{Scripted, With, description, variable};
 use octant_scenario::Set;
 

@@ -1,0 +1,12 @@
+//! Tests of FMUs stepped alone and together, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod convert;
+mod elements;
+mod graph;
+mod order;
+mod single;
+mod solve;
+mod ssp;
+mod ssp_package;
+mod values;

@@ -1,0 +1,5 @@
+//! Tests of comparisons, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod fields;
+mod settings;

@@ -1,0 +1,6 @@
+//! Tests of the nightly regression, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod change;
+mod trend;
+mod units;

@@ -1,0 +1,6 @@
+//! Tests of recordings, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod concluded;
+mod events;
+mod stream_hash;

@@ -1,0 +1,10 @@
+//! Tests of runs, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod at_rest;
+mod findings;
+mod follow;
+mod minimise;
+mod passes;
+mod rotation;
+mod unit;

@@ -1,0 +1,70 @@
+//! JUnit XML as nextest writes it.
+
+use octant_requirements::Verdict;
+use octant_score::junit::{JunitCase, JunitSuite, document};
+
+fn case(verdict: Verdict, message: &str) -> JunitCase {
+    JunitCase {
+        name: format!("{} <&>", verdict.name()),
+        class: "c".to_owned(),
+        properties: Vec::new(),
+        verdict,
+        message: message.to_owned(),
+    }
+}
+
+/// The file is that of the crate quick-junit, version 0.8, for the same cases.
+#[test]
+fn the_file_is_that_of_nextest() {
+    let mut fails = case(Verdict::Fail, "found \"3\"");
+    fails.properties.push(("verifies", "NAV-1".to_owned()));
+    let all = [
+        case(Verdict::Pass, ""),
+        fails,
+        case(Verdict::Inconclusive, "late"),
+        case(Verdict::None, "not checked"),
+    ];
+    let suites = [
+        JunitSuite {
+            name: "s".to_owned(),
+            properties: vec![("seed", "7".to_owned())],
+            cases: all.to_vec(),
+        },
+        JunitSuite { name: "empty".to_owned(), properties: Vec::new(), cases: Vec::new() },
+    ];
+    let expected = r#"<?xml version="1.0" encoding="UTF-8"?>
+<testsuites name="octant" tests="4" skipped="1" failures="1" errors="1">
+    <testsuite name="s" tests="4" skipped="1" errors="1" failures="1">
+        <properties>
+            <property name="seed" value="7"/>
+        </properties>
+        <testcase name="pass &lt;&amp;&gt;" classname="c"/>
+        <testcase name="fail &lt;&amp;&gt;" classname="c">
+            <properties>
+                <property name="verifies" value="NAV-1"/>
+            </properties>
+            <failure message="found &quot;3&quot;" type="fail"/>
+        </testcase>
+        <testcase name="inconclusive &lt;&amp;&gt;" classname="c">
+            <error message="late" type="inconclusive"/>
+        </testcase>
+        <testcase name="none &lt;&amp;&gt;" classname="c">
+            <skipped message="not checked"/>
+        </testcase>
+    </testsuite>
+    <testsuite name="empty" tests="0" skipped="0" errors="0" failures="0"/>
+</testsuites>
+"#;
+    assert_eq!(document("octant", &suites).expect("can be written"), expected);
+}
+
+#[test]
+fn control_characters_are_left_out() {
+    let suite = JunitSuite {
+        name: "a\u{1b}[31m\0\u{ffff}b\t".to_owned(),
+        properties: Vec::new(),
+        cases: Vec::new(),
+    };
+    let xml = document("octant", &[suite]).expect("can be written");
+    assert!(xml.contains("name=\"a[31mb\""), "{xml}");
+}

@@ -1,0 +1,18 @@
+//! Tests of scores, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod alignment;
+mod allan;
+mod attitude;
+mod claim;
+mod compare;
+mod counterfactual;
+mod equipment;
+mod health;
+mod junit;
+mod numerics;
+mod parameters;
+mod series;
+mod trace;
+mod verdict;
+mod work;
