@@ -9,6 +9,7 @@ mod allan;
 mod architecture;
 mod branches;
 mod campaign;
+mod campaign_bundle;
 mod campaign_report;
 mod campaign_scale;
 mod campaign_selection;
