@@ -7,6 +7,7 @@
 
 pub mod against;
 mod besides;
+pub mod bundle;
 pub mod case;
 pub mod chain;
 mod draw;
@@ -22,6 +23,8 @@ mod make;
 pub mod merge;
 pub mod page;
 pub mod plan;
+mod plan_error;
+mod planned;
 pub mod process;
 pub mod reexecute;
 pub mod report;

@@ -105,6 +105,7 @@ impl Plan {
             factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
             requirements: of_file,
             not_by_test,
+            bundled: None,
             scenarios,
             cases,
         };
@@ -231,6 +232,7 @@ fn planned(
         blake3: blake3::hash(&bytes).to_hex().to_string(),
         requirements,
         checks,
+        files: BTreeMap::new(),
     })
 }
 

@@ -3,15 +3,16 @@
 //! A plan never changes after it is made. A campaign that grows makes another plan, in which every
 //! earlier case keeps its id.
 
-use super::factor_values::FactorValues;
+pub use super::plan_error::PlanError;
+pub(crate) use super::plan_error::{short, system};
+pub use super::planned::{Case, INPUTS, PlannedFile, PlannedScenario};
+
 use super::requirements::Planned;
-use octant_requirements::RequirementsError;
 use octant_requirements::requirement::EnsembleRequirement;
-use octant_requirements::verdict::LimitCheck;
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
-use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
@@ -19,8 +20,6 @@ use std::path::{Path, PathBuf};
 pub const SCHEMA: u32 = 1;
 /// Name of a plan in the folder of its campaign.
 pub const FILE_NAME: &str = "plan.json";
-/// Folder with copies of the files from which a campaign was planned, in the folder of the campaign.
-pub const INPUTS: &str = "inputs";
 /// Maximum number of cases of a plan.
 pub const CASES_MAX: u64 = 10_000_000;
 
@@ -47,10 +46,22 @@ pub struct Plan {
     /// Requirements of that file that no run can verify.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_by_test: Vec<String>,
+    /// Files of the campaign, if they came from a bundle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bundled: Option<BundledCampaign>,
     /// The scenarios.
     pub scenarios: Vec<PlannedScenario>,
     /// Cases, in the order in which they are begun.
     pub cases: Vec<Case>,
+}
+
+/// Files of a campaign that came from a bundle, beside those of its scenarios.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BundledCampaign {
+    /// The campaign's own file.
+    pub campaign: PlannedFile,
+    /// File of its requirements, if it names one.
+    pub requirements: Option<PlannedFile>,
 }
 
 /// Content of a plan that makes its id: the plan without names of files, in the same form.
@@ -107,80 +118,6 @@ impl From<StopSpec> for StopRule {
     }
 }
 
-/// A scenario of a plan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlannedScenario {
-    /// Name in the campaign.
-    pub id: String,
-    /// File.
-    pub file: PathBuf,
-    /// BLAKE3 of the file, hexadecimal.
-    pub blake3: String,
-    /// Ids of the requirements that its cases check.
-    pub requirements: Vec<String>,
-    /// Checks of those requirements that the scenario itself doesn't have.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<LimitCheck>,
-}
-
-/// Case: everything that determines its result.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Case {
-    /// First 16 digits of the BLAKE3 over the scenario's BLAKE3, the additional checks, `set`,
-    /// `faults` and `seed`.
-    pub id: String,
-    /// Name of the scenario.
-    pub scenario: String,
-    /// Seed of the run.
-    pub seed: u64,
-    /// Number of the run in its combination, from 0.
-    pub replicate: u32,
-    /// Keys that are set in the scenario, as `KEY=VALUE`.
-    pub set: Vec<String>,
-    /// Faults that are injected; null: all faults of the scenario.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub faults: Option<Vec<String>>,
-    /// Value of each factor, for display and statistics.
-    pub factors: FactorValues,
-}
-
-/// Reasons why there is no plan.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// A file of the campaign isn't valid.
-    #[error(transparent)]
-    File(#[from] ScenarioError),
-    /// The file of requirements isn't valid.
-    #[error(transparent)]
-    Requirements(#[from] RequirementsError),
-    /// A file can't be read or written.
-    #[error("{action} {path}: {source}")]
-    System {
-        /// Action that failed.
-        action: &'static str,
-        /// Path that the action concerned.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
-    /// The campaign contradicts itself.
-    #[error("plan {campaign}: {reason}")]
-    Contradiction {
-        /// The campaign.
-        campaign: PathBuf,
-        /// Reason.
-        reason: String,
-    },
-    /// The file isn't a plan.
-    #[error("read {path}: {reason}")]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// Problem found.
-        reason: String,
-    },
-}
-
 impl Plan {
     /// Reads a plan.
     ///
@@ -198,7 +135,7 @@ impl Plan {
                 if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
             )));
         }
-        let plan: Self = serde_json::from_str(&text)
+        let mut plan: Self = serde_json::from_str(&text)
             .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
         let hash = plan.hash();
         if hash != plan.id {
@@ -208,7 +145,24 @@ impl Plan {
                 short(&plan.id)
             )));
         }
+        if let Some(folder) = system("find", path, std::path::absolute(path))?.parent() {
+            plan.place(folder);
+        }
         Ok(plan)
+    }
+
+    /// Makes the names of files that are relative absolute: they start at the plan's folder.
+    fn place(&mut self, folder: &Path) {
+        let place = |file: &mut PathBuf| *file = folder.join(&*file);
+        place(&mut self.campaign);
+        if let Some(bundled) = &mut self.bundled {
+            place(&mut bundled.campaign.file);
+            bundled.requirements.iter_mut().for_each(|planned| place(&mut planned.file));
+        }
+        for scenario in &mut self.scenarios {
+            place(&mut scenario.file);
+            scenario.files.values_mut().for_each(|planned| place(&mut planned.file));
+        }
     }
 
     /// Writes the plan as `plan.json` into a folder, which is created. An existing plan is kept if
@@ -257,7 +211,7 @@ impl Plan {
         self.cases.iter().map(|case| case.id.as_str())
     }
 
-    fn to_json(&self) -> String {
+    pub(super) fn to_json(&self) -> String {
         // Values of these types can always be serialised.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
@@ -268,6 +222,7 @@ impl Plan {
         let Self { requirements, not_by_test, scenarios, cases, .. } = self;
         let placeless = |scenario: &PlannedScenario| PlannedScenario {
             file: PathBuf::new(),
+            files: BTreeMap::new(),
             ..scenario.clone()
         };
         let content = HashedPlan {
@@ -315,11 +270,15 @@ impl Plan {
         self.requirements.iter().find(|planned| planned.check.id == id)?.ensemble
     }
 
-    /// Checks that the scenarios' files are those that were planned.
+    /// Checks that the scenarios' files, and all that came from a bundle, are those that were planned.
     ///
     /// # Errors
     /// If one can't be read, or was changed.
     pub fn check_files(&self) -> Result<(), PlanError> {
+        if let Some(bundled) = &self.bundled {
+            bundled.campaign.check()?;
+            bundled.requirements.iter().try_for_each(PlannedFile::check)?;
+        }
         self.scenarios.iter().try_for_each(PlannedScenario::check_file)
     }
 
@@ -346,57 +305,6 @@ impl Plan {
     }
 }
 
-impl PlannedScenario {
-    fn check_file(&self) -> Result<(), PlanError> {
-        let bytes = system("read", &self.file, std::fs::read(&self.file))?;
-        let found = blake3::hash(&bytes).to_hex().to_string();
-        if found == self.blake3 {
-            return Ok(());
-        }
-        Err(PlanError::Form {
-            path: self.file.clone(),
-            reason: format!(
-                "it was changed after the campaign was planned: found {}, expected {}",
-                short(&found),
-                short(&self.blake3)
-            ),
-        })
-    }
-
-    /// Returns the scenario of a case, as it is run.
-    ///
-    /// # Errors
-    /// If the file isn't the planned one, or the scenario isn't valid.
-    pub fn scenario(&self, case: &Case) -> Result<Scenario, PlanError> {
-        self.check_file()?;
-        self.with(case)
-    }
-
-    /// Returns this scenario with its copy in the folder of the campaign as its file.
-    #[must_use]
-    pub fn copied(&self, folder: &Path) -> Self {
-        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
-        let file = folder.join(INPUTS).join(format!("{}-{name}", short(&self.blake3)));
-        Self { file, ..self.clone() }
-    }
-
-    fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
-        let mut scenario = Scenario::load(&self.file, &case.set)?;
-        scenario.requirements.extend(self.checks.iter().map(|check| {
-            octant_scenario::RequirementSpec {
-                check: check.clone(),
-                text: String::new(),
-                limit_text: check.limit.to_string(),
-                clause: None,
-            }
-        }));
-        let Some(faults) = &case.faults else { return Ok(scenario) };
-        scenario
-            .with_only(faults)
-            .map_err(|error| PlanError::Form { path: self.file.clone(), reason: error.to_string() })
-    }
-}
-
 /// Outcome of writing a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanWritten {
@@ -411,17 +319,4 @@ pub enum PlanWritten {
 #[derive(Deserialize)]
 struct Version {
     schema: u32,
-}
-
-/// Returns the first digits of a hash, for display.
-pub(crate) fn short(hash: &str) -> &str {
-    hash.get(..12).unwrap_or(hash)
-}
-
-pub(super) fn system<T>(
-    action: &'static str,
-    path: &Path,
-    result: std::io::Result<T>,
-) -> Result<T, PlanError> {
-    result.map_err(|source| PlanError::System { action, path: path.to_owned(), source })
 }

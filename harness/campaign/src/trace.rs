@@ -17,8 +17,11 @@ use std::path::Path;
 /// If the campaign or its file can't be read, or the file was changed after the campaign was
 /// planned.
 pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
-    let campaign = Campaign::load(&plan.campaign)?;
-    let Some(path) = campaign.requirements else {
+    let path = match &plan.bundled {
+        Some(bundled) => bundled.requirements.as_ref().map(|planned| planned.file.clone()),
+        None => Campaign::load(&plan.campaign)?.requirements,
+    };
+    let Some(path) = path else {
         if plan.requirements.is_empty() && plan.not_by_test.is_empty() {
             return Ok(Requirements { title: plan.title.clone(), ..Requirements::default() });
         }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::note;
 use clap::Args;
-use octant_scenario::{UnitDimension, quantity_of};
+use octant_scenario::{FilePlaces, UnitDimension, quantity_of};
 use std::path::{Path, PathBuf};
 
 /// Arguments of every command that takes a scenario.
@@ -37,19 +37,20 @@ pub(crate) fn load(
     arguments: &ScenarioArguments,
     more: &[String],
 ) -> Result<octant_scenario::Scenario, Failure> {
-    read_scenario(&arguments.scenario, &arguments.set, more, &[])
+    let set = [&*arguments.set, more].concat();
+    read_scenario(&arguments.scenario, &set, &[], &FilePlaces::default())
 }
 
-/// Reads a scenario with changes of its keys, and with faults triggered by hand. Warnings go to stderr.
+/// Reads a scenario with changes of its keys, with faults triggered by hand, and with files in other places.
+/// Warnings go to stderr.
 pub(crate) fn read_scenario(
     path: &Path,
     set: &[String],
-    more: &[String],
     fires: &[String],
+    places: &FilePlaces,
 ) -> Result<octant_scenario::Scenario, Failure> {
-    let overrides = [set, more].concat();
     let scenario =
-        octant_scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
+        octant_scenario::Scenario::load_placed(path, set, fires, places).map_err(Failure::input)?;
     for warning in scenario.warnings() {
         note!("octant: {}: {warning}", path.display());
     }

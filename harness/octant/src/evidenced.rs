@@ -15,7 +15,7 @@ use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
 use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{FilePlaces, Method, Scenario};
 use octant_score::junit::junit;
 use octant_source::configure::configurations;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,8 @@ use std::time::SystemTime;
 pub struct RunRequest {
     /// File of the scenario.
     pub scenario: PathBuf,
+    /// Files that the scenario names and that are somewhere else. A text has none.
+    pub places: FilePlaces,
     /// Text of the scenario, in place of the file's content.
     pub text: Option<String>,
     /// Changes of its keys, `KEY=VALUE`.
@@ -153,12 +155,13 @@ impl Asked {
         if request.realtime {
             more.push("realtime.pace=\"clock\"".to_owned());
         }
-        let (path, set) = (&request.scenario, &request.set);
+        let path = &request.scenario;
+        let set = [&*request.set, &*more].concat();
         let mut scenario = match &request.text {
-            None => read_scenario(path, set, &more, &request.fire)?,
+            None => read_scenario(path, &set, &request.fire, &request.places)?,
             Some(text) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                let (name, set) = (path.display().to_string(), [&**set, &*more].concat());
+                let name = path.display().to_string();
                 Scenario::parse_fired(text, &name, folder, &set, &request.fire)
                     .map_err(Failure::input)?
             }
@@ -410,12 +413,13 @@ pub(crate) fn on_recording(
 
 /// Runs a case of a campaign with all the evidence of a run.
 pub(crate) fn case(
-    scenario: &Path,
+    planned: &octant_campaign::plan::PlannedScenario,
     case: &octant_campaign::plan::Case,
     out: &Path,
 ) -> Result<Verdict, Failure> {
     run(&RunRequest {
-        scenario: scenario.to_owned(),
+        scenario: planned.file.clone(),
+        places: planned.places(),
         set: case.set.clone(),
         out: Some(out.to_owned()),
         seed: Some(case.seed),

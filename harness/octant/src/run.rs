@@ -8,6 +8,7 @@ use clap::Args;
 use octant_base::display::UnitChoice;
 use octant_evidence::{Existing, RunFolder};
 use octant_requirements::Verdict;
+use octant_scenario::FilePlaces;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -83,6 +84,7 @@ impl Arguments {
         let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
         RunRequest {
             scenario: self.scenario.scenario.clone(),
+            places: FilePlaces::default(),
             text: None,
             set: [self.scenario.set.clone(), chosen].concat(),
             out: self.out.clone(),

@@ -314,6 +314,7 @@ fn campaign(
         blake3: String::new(),
         requirements: vec!["NAV-1".to_owned()],
         checks: Vec::new(),
+        files: Default::default(),
     };
     let case = |i: usize| Case {
         id: String::new(),
@@ -327,6 +328,7 @@ fn campaign(
     let id = |i: usize| case::hash_of(&planned, &case(i))[..16].to_owned();
     let cases = (0..outcomes.len()).map(|i| Case { id: id(i), ..case(i) });
     let plan = Plan {
+        bundled: None,
         schema: plan::SCHEMA,
         id: String::new(),
         title: "t".to_owned(),

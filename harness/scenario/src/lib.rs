@@ -14,6 +14,7 @@ mod condition;
 mod derive;
 mod document;
 pub mod error;
+mod files;
 mod grades;
 mod keys;
 mod load;
@@ -33,6 +34,7 @@ mod write;
 
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
+pub use files::FilePlaces;
 pub use grades::{FLICKER, GRADES, GradeSheet};
 pub use keys::SCHEMA;
 pub use model::{

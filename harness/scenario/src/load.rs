@@ -3,6 +3,7 @@
 use super::arguments::{fire, override_set};
 use super::complete::complete;
 use super::error::{Place, ScenarioError};
+use super::files::{FilePlaces, put_places};
 use super::model::Scenario;
 use super::{derive, document, keys, other_format, read};
 use std::path::Path;
@@ -16,6 +17,23 @@ impl Scenario {
         Self::load_fired(path, overrides, &[])
     }
 
+    /// Loads as [`Scenario::load_fired`] does, with files read from other places than those that the
+    /// scenario names.
+    ///
+    /// # Errors
+    /// As [`Scenario::load_fired`].
+    pub fn load_placed(
+        path: &Path,
+        overrides: &[String],
+        fires: &[String],
+        places: &FilePlaces,
+    ) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let text = ScenarioError::text_of(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        parse(&text, &file, folder, [overrides, fires], places)
+    }
+
     /// Loads as [`Scenario::load`] does, with `--fire` arguments `ID=TIME` applied: times at which
     /// faults with a manual trigger begin.
     ///
@@ -26,10 +44,7 @@ impl Scenario {
         overrides: &[String],
         fires: &[String],
     ) -> Result<Self, ScenarioError> {
-        let file = path.display().to_string();
-        let text = ScenarioError::text_of(path)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse_fired(&text, &file, folder, overrides, fires)
+        Self::load_placed(path, overrides, fires, &FilePlaces::default())
     }
 
     /// Checks a scenario's text. `file` names it in errors, `folder` is where relative file names
@@ -58,31 +73,43 @@ impl Scenario {
         overrides: &[String],
         fires: &[String],
     ) -> Result<Self, ScenarioError> {
-        other_format::refuse(text, file, "a scenario")?;
-        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-        let mut document = document::parse(text).map_err(with_file)?;
-        let mut problems = Vec::new();
-        for argument in overrides {
-            if let Err(problem) = override_set(&mut document, argument) {
-                problems.push(problem);
-            }
-        }
-        for argument in fires {
-            if let Err(problem) = fire(&mut document, argument) {
-                problems.push(problem);
-            }
-        }
-        derive::derive(&mut document);
-        let start = Place::File { line: 1, column: 1 };
-        complete(&mut document, keys::SCENARIO, "", &start, &mut problems);
-        if problems.is_empty() {
-            problems = derive::refuse_without_effect(&document);
-        }
-        if !problems.is_empty() {
-            return Err(with_file(problems));
-        }
-        let scenario =
-            read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))?;
-        Ok(Self { file: file.to_owned(), ..scenario })
+        parse(text, file, folder, [overrides, fires], &FilePlaces::default())
     }
+}
+
+/// Checks a text; `arguments` are those of `--set` and of `--fire`.
+fn parse(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    arguments: [&[String]; 2],
+    places: &FilePlaces,
+) -> Result<Scenario, ScenarioError> {
+    other_format::refuse(text, file, "a scenario")?;
+    let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+    let mut document = document::parse(text).map_err(with_file)?;
+    let mut problems = Vec::new();
+    let [overrides, fires] = arguments;
+    for argument in overrides {
+        if let Err(problem) = override_set(&mut document, argument) {
+            problems.push(problem);
+        }
+    }
+    for argument in fires {
+        if let Err(problem) = fire(&mut document, argument) {
+            problems.push(problem);
+        }
+    }
+    derive::derive(&mut document);
+    let start = Place::File { line: 1, column: 1 };
+    complete(&mut document, keys::SCENARIO, "", &start, &mut problems);
+    if problems.is_empty() {
+        problems = derive::refuse_without_effect(&document);
+    }
+    if !problems.is_empty() {
+        return Err(with_file(problems));
+    }
+    put_places(&mut document, places);
+    let scenario = read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))?;
+    Ok(Scenario { file: file.to_owned(), ..scenario })
 }

@@ -89,37 +89,7 @@ impl Scenario {
                 folder.join(file).display().to_string()
             }
         };
-        for path in [
-            "source.uri",
-            "endpoint.uri",
-            "source.text.gyro.file",
-            "source.text.accelerometer.file",
-            "source.reference.file",
-            "turntable.drive.dialect",
-            "source.live.database",
-            "source.live.mapping",
-        ] {
-            let Some(DocumentNode { value: DocumentValue::Text(written), .. }) = document.at(path)
-            else {
-                continue;
-            };
-            let resolved = match (path, written.split_once(':')) {
-                ("source.uri" | "endpoint.uri", None) => continue,
-                ("turntable.drive.dialect", _)
-                    if written == octant_turntable::Dialect::BUILT_IN =>
-                {
-                    continue;
-                }
-                // A port, which is no file.
-                ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
-                ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
-                ("source.uri" | "endpoint.uri", Some((scheme, file))) => {
-                    format!("{scheme}:{}", absolute(file))
-                }
-                _ => absolute(written),
-            };
-            document.set_at(path, node(DocumentValue::Text(resolved)));
-        }
+        super::files::replace(document, |file| Some(absolute(file)));
     }
 }
 

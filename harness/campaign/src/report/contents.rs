@@ -286,8 +286,12 @@ impl<'a> CampaignReport<'a> {
         if let Some(chosen) = self.units.chosen() {
             report.extend(["--units".to_owned(), chosen.to_string()]);
         }
+        let first = match self.plan.bundled {
+            Some(_) => line(&["octant", "campaign", "unbundle", "BUNDLE", name]),
+            None => line(&["octant", "campaign", "plan", &campaign, "--out", name]),
+        };
         vec![
-            line(&["octant", "campaign", "plan", &campaign, "--out", name]),
+            first,
             line(&["octant", "campaign", "run", name]),
             line(&["octant", "campaign", "merge", name]),
             report,

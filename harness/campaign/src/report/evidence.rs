@@ -119,8 +119,18 @@ fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportEr
         }
     }
     let folder = folder.join(INPUTS);
+    if let Some(bundled) = &plan.bundled {
+        let own = [
+            (Some(&bundled.campaign), "campaign.toml"),
+            (bundled.requirements.as_ref(), "requirements.toml"),
+        ];
+        for (planned, name) in own {
+            files.extend(
+                planned.filter(|p| p.check().is_ok()).map(|p| (p.file.clone(), folder.join(name))),
+            );
+        }
     // Only if the campaign's plan is still the same.
-    if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
+    } else if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
         files.push((plan.campaign.clone(), folder.join("campaign.toml")));
         let campaign = octant_scenario::campaign::Campaign::load(&plan.campaign).ok();
         if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {

@@ -1,5 +1,6 @@
 //! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
 
+mod bundle;
 mod countersign;
 mod planned;
 mod report;
@@ -94,6 +95,24 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Write the plan of a campaign, with every file that its cases need, as one file.
+    Bundle {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// The bundle, a new file.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Make the folder of a campaign from a bundle, and check every file.
+    Unbundle {
+        /// The bundle.
+        #[arg(value_name = "FILE")]
+        bundle: PathBuf,
+        /// New folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Print the job file with which a scheduler runs a campaign; nothing is submitted.
     Emit {
         /// Scheduler of the job file.
@@ -161,6 +180,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Report(arguments) => report::command(arguments),
         Command::Countersign { folder } => countersign::command(folder),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
+        Command::Bundle { folder, out } => bundle::bundle(folder, out),
+        Command::Unbundle { bundle, folder } => bundle::unbundle(bundle, folder),
         Command::Emit { scheduler, folder, shards, jobs, array, image, claim } => {
             let plan = read(folder)?;
             let job = SchedulerJob::new(&plan, folder, *shards, *jobs).map_err(Failure::input)?;
@@ -367,7 +388,7 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
     // Checks that the scenario is the planned one.
     planned.scenario(case)?;
     let out = out.map_or_else(|| Path::new("runs").join(format!("case-{id}")), Path::to_owned);
-    crate::evidenced::case(&planned.file, case, &out)
+    crate::evidenced::case(planned, case, &out)
 }
 
 /// Prints the stored result of a case as it is.

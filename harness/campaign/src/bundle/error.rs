@@ -1,0 +1,74 @@
+//! Reasons why a bundle can't be made or used.
+
+use crate::plan::PlanError;
+use octant_scenario::{FileNameError, ScenarioError};
+use std::path::PathBuf;
+
+/// Reasons why a bundle can't be made or used. The text fits after "failed to".
+#[derive(Debug, thiserror::Error)]
+pub enum BundleError {
+    /// The plan or one of its files isn't valid.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A scenario isn't valid.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The name of a file can't be expanded.
+    #[error(transparent)]
+    Name(#[from] FileNameError),
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// A scenario names something that can't be bundled.
+    #[error("bundle {path}: {reason}")]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// What it is, and what is expected.
+        reason: String,
+    },
+    /// Something is in the way.
+    #[error("write {path}: {reason}")]
+    Exists {
+        /// The path.
+        path: PathBuf,
+        /// What is there, and what is expected.
+        reason: String,
+    },
+    /// The file is no bundle, or a damaged one.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The bundle.
+        path: PathBuf,
+        /// What was found, and what is expected.
+        reason: String,
+    },
+    /// An entry of the bundle is wrong.
+    #[error("read {path}: its entry {entry:?} {reason}")]
+    Entry {
+        /// The bundle.
+        path: PathBuf,
+        /// Name of the entry.
+        entry: String,
+        /// What was found, and what is expected.
+        reason: String,
+    },
+}
+
+impl BundleError {
+    /// Returns a closure that makes an error of the operating system one of these.
+    pub(super) fn system(
+        action: &'static str,
+        path: impl Into<PathBuf>,
+    ) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::System { action, path, source }
+    }
+}

@@ -1,0 +1,55 @@
+//! Reasons why there is no plan.
+
+use octant_requirements::RequirementsError;
+use octant_scenario::ScenarioError;
+use std::path::{Path, PathBuf};
+
+/// Reasons why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// A file of the campaign isn't valid.
+    #[error(transparent)]
+    File(#[from] ScenarioError),
+    /// The file of requirements isn't valid.
+    #[error(transparent)]
+    Requirements(#[from] RequirementsError),
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The campaign contradicts itself.
+    #[error("plan {campaign}: {reason}")]
+    Contradiction {
+        /// The campaign.
+        campaign: PathBuf,
+        /// Reason.
+        reason: String,
+    },
+    /// The file isn't a plan.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Problem found.
+        reason: String,
+    },
+}
+
+/// Returns the first digits of a hash, for display.
+pub(crate) fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+pub(super) fn system<T>(
+    action: &'static str,
+    path: &Path,
+    result: std::io::Result<T>,
+) -> Result<T, PlanError> {
+    result.map_err(|source| PlanError::System { action, path: path.to_owned(), source })
+}

@@ -1,0 +1,66 @@
+//! `octant campaign bundle` and `unbundle`: a plan with its files, as one file.
+
+use super::planned::read;
+use crate::failure::Failure;
+use crate::terminal::{note, print};
+use octant_base::number::counted;
+use octant_campaign::bundle::contents::BundleContents;
+use octant_campaign::bundle::error::BundleError;
+use octant_campaign::bundle::unpack::unpack;
+use octant_campaign::bundle::write::write;
+use octant_campaign::plan::Plan;
+use octant_requirements::Verdict;
+use std::path::Path;
+
+impl From<BundleError> for Failure {
+    fn from(error: BundleError) -> Self {
+        match error {
+            BundleError::Plan(error) => error.into(),
+            BundleError::Scenario(error) => Self::input(error),
+            BundleError::System { action: "read", .. } => Self::input(error).failed(),
+            BundleError::System { .. } => Self::bench(error).failed(),
+            _ => Self::input(error).failed(),
+        }
+    }
+}
+
+/// Writes the bundle of a campaign.
+pub(super) fn bundle(folder: &Path, out: &Path) -> Result<Verdict, Failure> {
+    let contents = write(read(folder)?, out)?;
+    outside(&contents);
+    told(&contents, out)
+}
+
+/// Makes the folder of a campaign from its bundle.
+pub(super) fn unbundle(bundle: &Path, folder: &Path) -> Result<Verdict, Failure> {
+    let contents = unpack(bundle, folder)?;
+    outside(&contents);
+    if let Some(told) = contents.by_another() {
+        note!("octant: {told}");
+    }
+    told(&contents, folder)
+}
+
+/// Warns if another program made the bundle from which the folder of a plan comes.
+pub(super) fn warn_of_another(plan: &Plan, folder: &Path) -> Result<(), Failure> {
+    let contents = BundleContents::of_folder(folder)?;
+    // A plan that was extended is that of this program.
+    let of_plan = contents.filter(|contents| contents.plan == plan.id);
+    if let Some(told) = of_plan.and_then(|contents| contents.by_another()) {
+        note!("octant: {told}");
+    }
+    Ok(())
+}
+
+fn outside(contents: &BundleContents) {
+    for device in &contents.outside {
+        note!("octant: not in the bundle: {device}");
+    }
+}
+
+fn told(contents: &BundleContents, place: &Path) -> Result<Verdict, Failure> {
+    let bytes: u64 = contents.files.iter().map(|file| file.bytes).sum();
+    let files = counted(contents.files.len(), "file", "files");
+    print(&format!("{files} with {bytes} bytes\n{}\n", place.display()))?;
+    Ok(Verdict::Pass)
+}
