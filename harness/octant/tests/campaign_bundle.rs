@@ -35,6 +35,9 @@ measure = \"navigation.radial_error_nmi.max\"
 limit = \"10 nmi\"
 ";
 
+/// Names and contents of the entries of a bundle.
+type Entries = Vec<(String, Vec<u8>)>;
+
 /// The second scenario has its FMU by an absolute name, set by the campaign.
 fn campaign(core: &Path) -> String {
     format!(
@@ -135,7 +138,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 /// Entries of an archive in their order.
-fn entries(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+fn entries(bytes: &[u8]) -> Entries {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let count = archive.len();
     let one = |index| {
@@ -326,7 +329,7 @@ fn an_edited_bundle_is_refused_with_its_entry() {
     // As it is, packed by another program, it is whole.
     pack(&edited, &whole);
     unpack(&edited, &bench.at("whole")).unwrap();
-    let refusal = |change: &dyn Fn(&mut Vec<(String, Vec<u8>)>)| {
+    let refusal = |change: &dyn Fn(&mut Entries)| {
         let mut entries = whole.clone();
         change(&mut entries);
         pack(&edited, &entries);
