@@ -107,11 +107,12 @@ impl BundleContents {
         }
         let contents: Self = serde_json::from_slice(bytes).map_err(form)?;
         let hash = contents.hash();
-        if hash != contents.blake3 {
+        // Nor may anything be there that isn't read: the bytes are those of this form.
+        if hash != contents.blake3 || contents.to_json().as_bytes() != bytes {
             return Err(wrong(
                 FILE_NAME,
                 format!(
-                    "was changed after it was made: found {}, expected {}",
+                    "was changed after it was made: its contents give {}, expected {} and nothing else",
                     short(&hash),
                     short(&contents.blake3)
                 ),
