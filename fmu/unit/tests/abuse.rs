@@ -127,7 +127,7 @@ fn every_answer_is_the_one_that_the_standard_asks_for() {
     let folder = tempfile::tempdir().unwrap();
     let Some(program) = compile(folder.path()) else { return };
     let mut command = Command::new(program);
-    command.arg(library()).arg("20000");
+    command.arg(library()).arg("10000");
     run(command);
 }
 
