@@ -36,7 +36,7 @@ impl FactorValues {
 }
 
 impl FromIterator<(String, FactorValue)> for FactorValues {
-    /// Of equal names the last one counts.
+    /// The last value of a name counts.
     fn from_iter<I: IntoIterator<Item = (String, FactorValue)>>(values: I) -> Self {
         let all: std::collections::BTreeMap<String, FactorValue> = values.into_iter().collect();
         Self(all.into_iter().map(|(name, value)| (name.into_boxed_str(), value)).collect())

@@ -103,9 +103,9 @@ impl CaseTable {
 pub(super) enum CaseColumn {
     /// The rows are in that order.
     InOrder { cursor: Box<ColumnCursor>, next: usize },
-    /// They aren't.
+    /// The rows are in another order.
     Whole(ColumnValues),
-    /// There is no such column.
+    /// Column that the table lacks.
     Missing,
 }
 

@@ -1,4 +1,4 @@
-//! What the folder of a system says.
+//! Facts that evidence takes from the folder of a system.
 
 use octant_evidence::inside::{Inside, SUMMARY, of_run};
 use octant_evidence::{Manifest, RunFacts};

@@ -91,7 +91,7 @@ fn the_script_for_slurm_submits_itself_in_arrays_and_the_merge() {
     let merge = calls.lines().nth(3).unwrap();
     assert!(merge.contains("|--dependency=afterany:1:2:3|"), "{merge}");
     assert!(bench.at("it's here/logs").is_dir());
-    // What a task and the merge run, by a program that says what it was given.
+    // The commands of a task and of the merge, with a program that prints its arguments.
     executable(&bench.at("told"), "#!/bin/sh\nprintf '<%s>' \"$@\"\n");
     let told = bench.at("told").display().to_string();
     let task = [("OCTANT", told.as_str()), ("OCTANT_FIRST", "3"), ("SLURM_ARRAY_TASK_ID", "2")];
@@ -122,6 +122,7 @@ fn a_snakefile_names_the_tables_of_every_part() {
         "CAMPAIGN = \"a \\\"b\\\"\"",
         "CAMPAIGN + \"/parts/{part}-of-8.cases.parquet\"",
         "for part in range(1, 8 + 1)",
+        "CAMPAIGN + \"/plan.json\"",
         "--shard {wildcards.part}/8 --jobs {threads}",
         "# 3 cases of two words in 8 parts.",
     ] {

@@ -177,7 +177,7 @@ fn many_results_are_read_in_little_memory() {
     let commands: Vec<&str> = commands.split(',').collect();
     for cases in of("OCTANT_SCALE", "400").split(',') {
         let cases: usize = cases.trim().parse().unwrap();
-        // The goal of the documentation, for up to a hundred thousand cases.
+        // A limit that `report` exceeds with a hundred thousand cases: it still grows with them.
         for (cost, command) in measured(cases, &commands).iter().zip(&commands) {
             assert!(cost.mib < 300.0, "{command} of {cases} cases: {} MB", cost.mib);
         }

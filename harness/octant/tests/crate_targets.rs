@@ -1,5 +1,5 @@
-//! What cargo makes of a library for its tests, which is as much work each time as the library itself: it is compiled
-//! again for the unit tests in it, and read again for examples in its documentation. A manifest may say that there
+//! Test targets of libraries. Each costs as much as the library itself: it is compiled again for the unit tests in it, and
+//! read again for examples in its documentation. A manifest may say that there
 //! are none, and then there has to be none, which would never run.
 
 use std::path::{Path, PathBuf};

@@ -4,10 +4,11 @@
 
 use crate::common::program::program;
 use octant_calibration::table::CalibrationTable;
+use octant_campaign::bundle::unpack::unpack;
 use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
-use octant_campaign::store::file;
+use octant_campaign::store::{CampaignResults, file};
 use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
 use octant_campaign::{merge, requirements, status};
 use octant_evidence::manifest::Manifest;
@@ -17,8 +18,12 @@ use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::Campaign;
 use octant_score::summary::Summary;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 const KEY: &str = "key.pub";
 const WRITTEN: [&str; 3] = ["short.toml", "campaign.toml", "requirements.toml"];
@@ -208,6 +213,56 @@ fn a_plan_and_the_results_of_its_cases() {
     assert_refused(&CaseResult::read(&newer).unwrap_err().to_string());
 }
 
+/// The folder was made from the bundle, and has run.
+#[test]
+fn a_bundle_and_results_in_a_part() {
+    let bundle = sample("bundle.zip");
+    let folder = tempfile::tempdir().unwrap();
+    let unpacked = folder.path().join("unpacked");
+    let contents = unpack(&bundle, &unpacked).unwrap();
+    assert_eq!((contents.schema, contents.files.len()), (1, 4));
+    let parts = sample("parts");
+    let plan = Plan::read(&parts.join("plan.json")).unwrap();
+    assert_eq!(Plan::read(&unpacked.join("plan.json")).unwrap().id, plan.id);
+    let stored = CampaignResults::open(&parts).unwrap();
+    for case in &plan.cases {
+        let (result, _) = stored.result(&case.id).unwrap().unwrap();
+        assert_eq!((result.verdict, &result.case), (Verdict::Pass, &case.id));
+        assert_eq!(result.summary.unwrap().seed, case.seed);
+    }
+    let status = status::of(&plan, &parts, Shard::WHOLE).unwrap();
+    assert_eq!((status.cases, status.open, status.verdict()), (4, 0, Verdict::Pass));
+
+    let mut archive = ZipArchive::new(File::open(&bundle).unwrap()).unwrap();
+    let newer = folder.path().join("newer.zip");
+    let mut out = ZipWriter::new(File::create(&newer).unwrap());
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index(index).unwrap();
+        let name = entry.name().unwrap().into_owned();
+        let mut text = String::new();
+        entry.read_to_string(&mut text).unwrap();
+        if name == "bundle.json" {
+            text = text.replacen("\"schema\": 1", "\"schema\": 2", 1);
+        }
+        out.start_file(name, SimpleFileOptions::default()).unwrap();
+        out.write_all(text.as_bytes()).unwrap();
+    }
+    out.finish().unwrap();
+    assert_refused(&unpack(&newer, &folder.path().join("newer")).unwrap_err().to_string());
+
+    // The version of a part follows its magic number, and the first bytes of the hash of both come next.
+    let name =
+        std::fs::read_dir(parts.join("results")).unwrap().next().unwrap().unwrap().file_name();
+    let mut bytes = std::fs::read(parts.join("results").join(&name)).unwrap();
+    bytes[8] = 2;
+    let hash = *blake3::hash(&bytes[..12]).as_bytes();
+    bytes[12..16].copy_from_slice(&hash[..4]);
+    let newer = folder.path().join("newer");
+    std::fs::create_dir_all(newer.join("results")).unwrap();
+    std::fs::write(newer.join("results").join(&name), bytes).unwrap();
+    assert_refused(&CampaignResults::open(&newer).unwrap_err().to_string());
+}
+
 #[test]
 fn tables() {
     let plan = Plan::read(&sample("campaign/plan.json")).unwrap();
@@ -256,6 +311,9 @@ fn make() {
     octant(&["campaign", "plan", "campaign.toml", "--out", "campaign"]);
     octant(&["campaign", "run", "campaign"]);
     octant(&["campaign", "merge", "campaign"]);
+    octant(&["campaign", "bundle", "campaign", "--out", "bundle.zip"]);
+    octant(&["campaign", "unbundle", "bundle.zip", "parts"]);
+    octant(&["campaign", "run", "parts", "--jobs", "1"]);
 
     let run = out.join("run");
     let pair = minisign::KeyPair::generate_unencrypted_keypair().unwrap();

@@ -1,4 +1,4 @@
-//! What a host has for real time, read from a tree of files.
+//! Real-time facilities of a host, read from a tree of files.
 
 use octant_realtime::host::{Grade, HostFinding, Tree, look};
 use std::fs;

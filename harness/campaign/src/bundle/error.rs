@@ -31,7 +31,7 @@ pub enum BundleError {
     Unfit {
         /// The file.
         path: PathBuf,
-        /// What it is, and what is expected.
+        /// Kind of file found and kind expected.
         reason: String,
     },
     /// Something is in the way.
@@ -39,7 +39,7 @@ pub enum BundleError {
     Exists {
         /// The path.
         path: PathBuf,
-        /// What is there, and what is expected.
+        /// Content found there and content expected.
         reason: String,
     },
     /// The file is no bundle, or a damaged one.
@@ -47,7 +47,7 @@ pub enum BundleError {
     Form {
         /// The bundle.
         path: PathBuf,
-        /// What was found, and what is expected.
+        /// Value found and value expected.
         reason: String,
     },
     /// An entry of the bundle is wrong.
@@ -57,9 +57,23 @@ pub enum BundleError {
         path: PathBuf,
         /// Name of the entry.
         entry: String,
-        /// What was found, and what is expected.
+        /// Value found and value expected.
         reason: String,
     },
+}
+
+/// Reasons why an entry may not have its name. The text fits after the name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryNameError {
+    /// An absolute path, of any system.
+    #[error("is an absolute path, expected a name in the bundle's own folder")]
+    Absolute,
+    /// A path that leaves its folder.
+    #[error("leads out of its folder with \"..\", expected a name in it")]
+    Outside,
+    /// Neither a list nor a file under its hash.
+    #[error("is no file of a bundle, expected plan.json or files/BLAKE3/NAME")]
+    Unknown,
 }
 
 impl BundleError {

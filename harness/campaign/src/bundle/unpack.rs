@@ -86,7 +86,7 @@ fn list(bundle: &Path, archive: &mut Archive) -> Result<BundleContents, BundleEr
     let mut names = BTreeSet::new();
     for name in archive.file_names_raw() {
         let name = String::from_utf8_lossy(name).into_owned();
-        check_path(&name).map_err(|reason| wrong(bundle, &name, reason))?;
+        check_path(&name).map_err(|error| wrong(bundle, &name, error.to_string()))?;
         names.insert(name);
     }
     if !names.remove(FILE_NAME) {

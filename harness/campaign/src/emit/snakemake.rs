@@ -38,6 +38,9 @@ rule all:
 
 
 rule part:
+    input:
+        # A plan that has grown has more to run.
+        CAMPAIGN + "/plan.json",
     output:
         CAMPAIGN + "/parts/{{part}}-of-{shards}.cases.parquet",
     log:
