@@ -1,11 +1,12 @@
 //! The list of a bundle, `bundle.json`: version, plan, program, and every file with its BLAKE3.
 
 use super::error::{BundleError, EntryNameError};
-use crate::plan::{FILE_NAME as PLAN, short};
+use crate::plan::{FILE_NAME as PLAN, Plan, PlannedFile, short};
 use octant_evidence::manifest::program_sha256;
 use octant_score::numerics::{NUMERICS, differs};
 use serde::{Deserialize, Serialize};
-use std::path::{Component, Path};
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
 
 /// Version of bundles.
 pub const SCHEMA: u32 = 1;
@@ -142,6 +143,46 @@ impl BundleContents {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(BundleError::system("read", path)(error)),
         }
+    }
+
+    /// Checks that a plan is the one of the list, and that every file that it names is in the list, with its hash;
+    /// `bundle` names the bundle, or the folder made from it, in errors. The files themselves aren't read.
+    ///
+    /// # Errors
+    /// If the plan is another one, or names another file.
+    pub fn check_plan(&self, bundle: &Path, plan: &Plan, folder: &Path) -> Result<(), BundleError> {
+        let wrong = |reason: String| {
+            Err(BundleError::Entry { path: bundle.to_owned(), entry: PLAN.to_owned(), reason })
+        };
+        if plan.id != self.plan {
+            let (found, expected) = (short(&plan.id), short(&self.plan));
+            return wrong(format!("has the id {found}, the list {expected}"));
+        }
+        let folder = std::path::absolute(folder).map_err(BundleError::system("find", folder))?;
+        let known: BTreeMap<PathBuf, &str> =
+            self.files.iter().map(|file| (folder.join(&file.path), &*file.blake3)).collect();
+        let Some(campaign) = &plan.bundled else {
+            return wrong("is not the plan of a bundle".to_owned());
+        };
+        let of_scenarios = plan.scenarios.iter().flat_map(|scenario| scenario.files.values());
+        let placed = campaign.requirements.iter().chain([&campaign.campaign]).chain(of_scenarios);
+        let placed = placed.map(|PlannedFile { file, blake3 }| (file, Some(&**blake3)));
+        // The hashes of these are in the id of the plan.
+        let scenarios = plan.scenarios.iter().map(|scenario| &scenario.file);
+        let planned = scenarios.chain([&plan.campaign]).map(|file| (file, None));
+        for (file, blake3) in placed.chain(planned) {
+            match known.get(file) {
+                None => {
+                    return wrong(format!("names {}, which isn't in the bundle", file.display()));
+                }
+                Some(listed) if blake3.is_some_and(|blake3| blake3 != *listed) => {
+                    let (file, expected) = (file.display(), short(listed));
+                    return wrong(format!("names {file} with another hash, expected {expected}"));
+                }
+                Some(_) => {}
+            }
+        }
+        Ok(())
     }
 
     /// Tells that another program made the bundle, and what that means; `None` if it was this one.

@@ -2,11 +2,11 @@
 
 use super::contents::{BundleContents, BundledFile, FILE_NAME, check_path};
 use super::error::BundleError;
-use crate::plan::{FILE_NAME as PLAN, Plan, PlannedFile, short};
+use crate::plan::{FILE_NAME as PLAN, Plan, short};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -56,7 +56,10 @@ pub fn unpack(bundle: &Path, folder: &Path) -> Result<BundleContents, BundleErro
     }
     let list = new.path().join(FILE_NAME);
     std::fs::write(&list, contents.to_json()).map_err(BundleError::system("write", list))?;
-    check_plan(bundle, &contents, new.path())?;
+    let plan = Plan::read(&new.path().join(PLAN))?;
+    contents.check_plan(bundle, &plan, new.path())?;
+    // The hashes of the plan are those of the files.
+    plan.check_files()?;
     // An empty folder is replaced.
     let _ = std::fs::remove_dir(folder);
     std::fs::rename(new.path(), folder).map_err(BundleError::system("write", folder))?;
@@ -158,31 +161,4 @@ fn extract(
         ));
     }
     file.sync_all().map_err(BundleError::system("write", &path))
-}
-
-/// Checks that the plan is the one of the list, and that every file that it names is there.
-fn check_plan(bundle: &Path, contents: &BundleContents, folder: &Path) -> Result<(), BundleError> {
-    let plan = Plan::read(&folder.join(PLAN))?;
-    if plan.id != contents.plan {
-        let reason = format!("has the id {}, the list {}", short(&plan.id), short(&contents.plan));
-        return Err(wrong(bundle, PLAN, reason));
-    }
-    let folder = std::path::absolute(folder).map_err(BundleError::system("find", folder))?;
-    let known: BTreeSet<PathBuf> =
-        contents.files.iter().map(|file| folder.join(&file.path)).collect();
-    let Some(campaign) = &plan.bundled else {
-        return Err(wrong(bundle, PLAN, "is not the plan of a bundle"));
-    };
-    let of_scenarios = plan.scenarios.iter().flat_map(|scenario| scenario.files.values());
-    let all = campaign.requirements.iter().chain([&campaign.campaign]).chain(of_scenarios);
-    let files = all.map(|PlannedFile { file, .. }| file);
-    let files = files.chain(plan.scenarios.iter().map(|scenario| &scenario.file));
-    match files.chain([&plan.campaign]).find(|file| !known.contains(*file)) {
-        Some(file) => {
-            let reason = format!("names {}, which isn't in the bundle", file.display());
-            Err(wrong(bundle, PLAN, reason))
-        }
-        // The hashes of the plan are those of the files.
-        None => Ok(plan.check_files()?),
-    }
 }

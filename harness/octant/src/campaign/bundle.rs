@@ -41,13 +41,16 @@ pub(super) fn unbundle(bundle: &Path, folder: &Path) -> Result<Verdict, Failure>
     told(&contents, folder)
 }
 
-/// Warns if another program made the bundle from which the folder of a plan comes.
-pub(super) fn warn_of_another(plan: &Plan, folder: &Path) -> Result<(), Failure> {
+/// Checks the plan of a folder against the bundle that the folder comes from, and warns if another program
+/// made that.
+pub(super) fn check_origin(plan: &Plan, folder: &Path) -> Result<(), Failure> {
     let contents = BundleContents::of_folder(folder)?;
     // A plan that was extended is that of this program.
-    let of_plan = contents.filter(|contents| contents.plan == plan.id);
-    if let Some(told) = of_plan.and_then(|contents| contents.by_another()) {
-        note!("octant: {told}");
+    if let Some(contents) = contents.filter(|contents| contents.plan == plan.id) {
+        contents.check_plan(folder, plan, folder)?;
+        if let Some(told) = contents.by_another() {
+            note!("octant: {told}");
+        }
     }
     Ok(())
 }

@@ -8,10 +8,15 @@ use std::path::Path;
 pub(super) fn read(folder: &Path) -> Result<Plan, Failure> {
     let path = folder.join(FILE_NAME);
     if folder.is_file() {
+        let is_zip = folder.extension().is_some_and(|extension| extension == "zip");
         let folder = folder.display();
+        let maker = if is_zip {
+            format!("octant campaign unbundle {folder} DIR")
+        } else {
+            format!("octant campaign plan {folder}")
+        };
         return Err(Failure::input(format!(
-            "found the file {folder}, expected the folder of a campaign: octant campaign plan {folder} \
-             makes one"
+            "found the file {folder}, expected the folder of a campaign: {maker} makes one"
         )));
     }
     if !path.exists() {

@@ -1,6 +1,6 @@
 //! `octant campaign run`: the cases that have no result yet, with progress and live failures.
 
-use super::bundle::warn_of_another;
+use super::bundle::check_origin;
 use super::planned::read;
 use crate::case_progress::CaseBar;
 use crate::failure::Failure;
@@ -47,7 +47,7 @@ pub(super) struct Arguments {
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     watch_interrupts();
     let plan = read(&arguments.folder)?;
-    warn_of_another(&plan, &arguments.folder)?;
+    check_origin(&plan, &arguments.folder)?;
     let shard = match arguments.shard {
         Some(shard) => shard,
         None => Shard::of_scheduler(|name| std::env::var(name).ok()).map_err(Failure::input)?,

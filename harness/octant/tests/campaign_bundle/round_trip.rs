@@ -141,6 +141,8 @@ fn files_are_checked_when_they_are_used_and_another_program_is_told() {
     bench.octant(&["campaign", "unbundle", "cert.zip", "there"], 0);
     let (_, error) = bench.octant(&["campaign", "unbundle", "cert.zip", "there"], 2);
     assert!(error.contains("the folder isn't empty"), "{error}");
+    let (_, error) = bench.octant(&["campaign", "run", "cert.zip"], 2);
+    assert!(error.contains("octant campaign unbundle cert.zip DIR makes one"), "{error}");
     let plan = Plan::read(&bench.at("there/plan.json")).unwrap();
     let bundled = plan.bundled.clone().unwrap();
     let mut files: Vec<PathBuf> =
@@ -159,6 +161,29 @@ fn files_are_checked_when_they_are_used_and_another_program_is_told() {
         assert!(error.contains(&name), "{error}");
         std::fs::write(&file, content).unwrap();
     }
+    // An FMU that somebody put into the plan, whose id says nothing of it.
+    let plan_file = bench.at("there/plan.json");
+    let text = std::fs::read_to_string(&plan_file).unwrap();
+    let core = blake3::hash(b"core").to_hex().to_string();
+    let other = blake3::hash(b"another").to_hex().to_string();
+    assert!(text.contains(&core), "{text}");
+    let placed = bench.at(&format!("there/files/{other}"));
+    std::fs::create_dir(&placed).unwrap();
+    std::fs::write(placed.join("core.fmu"), "another").unwrap();
+    std::fs::write(&plan_file, text.replace(&core, &other)).unwrap();
+    let (_, error) = bench.octant(&["campaign", "run", "there"], 2);
+    assert!(error.contains("plan.json") && error.contains("isn't in the bundle"), "{error}");
+    // Its content in the place of the other, with its hash in the plan.
+    let original = bench.at(&format!("there/files/{core}/core.fmu"));
+    std::fs::write(&original, "another").unwrap();
+    let hash_alone =
+        text.replace(&format!("\"blake3\": \"{core}\""), &format!("\"blake3\": \"{other}\""));
+    assert_ne!(hash_alone, text);
+    std::fs::write(&plan_file, hash_alone).unwrap();
+    let (_, error) = bench.octant(&["campaign", "run", "there"], 2);
+    assert!(error.contains("plan.json") && error.contains("with another hash"), "{error}");
+    std::fs::write(&original, "core").unwrap();
+    std::fs::write(&plan_file, text).unwrap();
     // The same bundle by another program of other numerics.
     let list = bench.at("there/bundle.json");
     let mut contents = BundleContents::of_folder(&bench.at("there")).unwrap().unwrap();
