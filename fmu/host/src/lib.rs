@@ -11,6 +11,7 @@
 
 pub mod archive;
 pub mod description;
+#[cfg(feature = "model-exchange")]
 mod exchange;
 pub mod instance;
 pub mod library;

@@ -152,7 +152,8 @@ fn starved_processors_make_samples_late() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     let starved = fault("host-cpu-starved", "0.3 s", "length = \"300 ms\"");
-    let text = text("1 s", "200 Hz", &starved).replace("overrun = \"10 s\"", "overrun = \"1 ms\"");
+    let text =
+        text("1 s", "200 Hz", &starved).replace("overrun = \"10 s\"", "overrun = \"100 ms\"");
     let (status, said) = run(here, "starved", &text, &["--realtime"]);
     let summary = json(&here.join("starved/summary.json"));
     assert_eq!(summary["faults"][0]["fired"], true);

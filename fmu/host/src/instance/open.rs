@@ -4,6 +4,7 @@ use super::super::archive::{Archive, ArchiveError, Unpacked};
 use super::super::description::{
     self, Description, DescriptionError, Interface, Standard, VariableType,
 };
+#[cfg(feature = "model-exchange")]
 use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
 use super::super::process;
@@ -110,6 +111,14 @@ pub(crate) fn open_here(
     mark: Mark,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     let (exchange, interface) = interface(name, &description, options.interface)?;
+    if exchange && cfg!(not(feature = "model-exchange")) {
+        return Err(InstanceError::unsupported(
+            name,
+            "be run",
+            "it has model exchange and no co-simulation, and this program was built without the solver for that, \
+             expected one built with cargo build --release --features octant/model-exchange",
+        ));
+    }
     if interface.needs_execution_tool {
         return Err(InstanceError::unsupported(
             name,
@@ -158,24 +167,35 @@ pub(crate) fn open_here(
         time_limit: options.time_limit,
         mark,
     };
-    let tells_steps = setup.interface.completed_step_needed;
-    Ok(match (setup.description.standard, exchange) {
-        (Standard::Fmi2, false) => Box::new(CoSimulation::new(fmi2::Component::new(
+    #[cfg(feature = "model-exchange")]
+    if exchange {
+        return exchanged(library, &setup);
+    }
+    Ok(match setup.description.standard {
+        Standard::Fmi2 => Box::new(CoSimulation::new(fmi2::Component::new(
             library,
             &setup,
             octant_fmi::fmi2::CO_SIMULATION,
         )?)),
-        (Standard::Fmi2, true) => Box::new(Exchange::new(
-            fmi2::Component::new(library, &setup, octant_fmi::fmi2::MODEL_EXCHANGE)?,
-            tells_steps,
-        )),
-        (Standard::Fmi3, false) => Box::new(CoSimulation::new(fmi3::Component::new(
+        Standard::Fmi3 => Box::new(CoSimulation::new(fmi3::Component::new(
             library,
             &setup,
             fmi3::Use::CoSimulation,
         )?)),
-        (Standard::Fmi3, true) => Box::new(Exchange::new(
-            fmi3::Component::new(library, &setup, fmi3::Use::ModelExchange)?,
+    })
+}
+
+/// Makes an instance by model exchange, with Octant's solver.
+#[cfg(feature = "model-exchange")]
+fn exchanged(library: Arc<Library>, setup: &Setup) -> Result<Box<dyn Instance>, InstanceError> {
+    let tells_steps = setup.interface.completed_step_needed;
+    Ok(match setup.description.standard {
+        Standard::Fmi2 => Box::new(Exchange::new(
+            fmi2::Component::new(library, setup, octant_fmi::fmi2::MODEL_EXCHANGE)?,
+            tells_steps,
+        )),
+        Standard::Fmi3 => Box::new(Exchange::new(
+            fmi3::Component::new(library, setup, fmi3::Use::ModelExchange)?,
             tells_steps,
         )),
     })

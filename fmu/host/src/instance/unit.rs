@@ -75,6 +75,7 @@ pub(crate) enum Interval {
 
 /// Model exchange. If a value can't be computed (the FMU discards the call), this is no failure but
 /// the answer `false`: the solver tries elsewhere.
+#[cfg_attr(not(feature = "model-exchange"), expect(dead_code, reason = "only the solver needs it"))]
 pub(crate) trait Continuous: Unit {
     /// Numbers of continuous states and of event indicators.
     fn counts(&mut self) -> Result<(usize, usize), InstanceError>;

@@ -3,7 +3,6 @@
 pub mod allocations;
 pub mod epochs;
 pub mod foreign;
-pub mod instrument;
 pub mod program;
 pub mod results;
 #[cfg(target_os = "linux")]

@@ -1,11 +1,11 @@
 //! The filter that models a ship's sway as coloured noise, over the dynamic condition of ISO 8728:
 //! harmonic roll and pitch of 5° with periods from 6 to 15 s, horizontal acceleration of 0.22 m/s².
 
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
-use crate::common::instrument::{Case, base_of};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config::*;
 use octant_calibration::positions::EIGHT;
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::instrument::{InstrumentCase, base_of};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::config::Sinusoid;
@@ -41,7 +41,7 @@ fn ship(seed: u64, period_s: f64) -> plant::Dockside {
 }
 
 fn configured(seed: u64, period_s: f64, sway: SwayNoise) -> (plant::PlantConfig, CoreConfig) {
-    let case = Case::table_1(seed, EIGHT);
+    let case = InstrumentCase::table_1(seed, EIGHT);
     let (mut plant, mut core) = (case.plant(), case.core());
     let ship = ship(seed, period_s);
     core.screening.base = base_of(&ship);

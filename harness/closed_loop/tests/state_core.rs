@@ -1,11 +1,11 @@
 //! A core that was saved and loaded continues bit for bit: at any point of the procedure, with
 //! every estimator, on land and on a ship, with every screen, during faults.
 
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
-use crate::common::instrument::{Case, PERIOD_NS, dockside};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::EIGHT;
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::instrument::{InstrumentCase, PERIOD_NS, dockside};
 use octant_earth::UnitQuaternion;
 use octant_earth::units::*;
 use octant_plant::config as plant;
@@ -17,8 +17,12 @@ use std::time::Instant;
 const SAMPLES: u64 = 12 * 60 * 200;
 const CALIBRATION: u64 = 8 * 60 * 200;
 
-fn case(seed: u64) -> Case {
-    Case { calibration_h: 8.0 / 60.0, navigation_h: 4.0 / 60.0, ..Case::table_1(seed, EIGHT) }
+fn case(seed: u64) -> InstrumentCase {
+    InstrumentCase {
+        calibration_h: 8.0 / 60.0,
+        navigation_h: 4.0 / 60.0,
+        ..InstrumentCase::table_1(seed, EIGHT)
+    }
 }
 
 fn with_estimator(mut config: CoreConfig, estimator: Estimator) -> CoreConfig {

@@ -1,7 +1,5 @@
 //! Plant and core of the reference instrument, put together without a scenario file.
 
-pub mod closed_loop;
-
 use nalgebra::UnitQuaternion;
 use octant_calibration::config::{self as core, *};
 use octant_calibration::positions::{Degrees, SIXTEEN, from_degrees};
@@ -11,22 +9,33 @@ use octant_plant::config as plant;
 use octant_plant::draw::{Draw, ParameterDraws, alignment_error, parameters};
 use octant_sample::Parameters;
 
+/// Sample period, ns: 200 Hz.
 pub const PERIOD_NS: u64 = 5_000_000;
+/// Latitude of the instrument, rad.
 pub const LATITUDE_RAD: f64 = 30.5 * DEG;
 
 /// One method on one seed of the reference instrument.
-pub struct Case {
+pub struct InstrumentCase {
+    /// Seed of the instrument and its noise.
     pub seed: u64,
+    /// Positions, as azimuth and roll.
     pub positions: &'static [Degrees],
+    /// Number of passes through the positions.
     pub passes: u32,
+    /// Length of the calibration, h.
     pub calibration_h: f64,
+    /// Length of the navigation after it, h.
     pub navigation_h: f64,
+    /// Standard deviation of the g-dependent gyro biases, °/h/g.
     pub g_dph_per_g: f64,
+    /// True if the filter has states for them.
     pub g_states: bool,
+    /// Angle random walk, °/√h.
     pub angle_random_walk: f64,
 }
 
-impl Case {
+impl InstrumentCase {
+    /// Four hours of calibration of the instrument of Table 1.
     pub fn table_1(seed: u64, positions: &'static [Degrees]) -> Self {
         Self {
             seed,
@@ -40,6 +49,7 @@ impl Case {
         }
     }
 
+    /// Configuration of the plant.
     pub fn plant(&self) -> plant::PlantConfig {
         let draws = ParameterDraws {
             g_dependent: Draw::Normal { sigma: self.g_dph_per_g * DEG_PER_HOUR_PER_G },
@@ -75,6 +85,7 @@ impl Case {
         }
     }
 
+    /// Configuration of the core.
     pub fn core(&self) -> core::CoreConfig {
         let error = alignment_error(self.seed, 60.0 * ARCSEC, 0.1 * DEG, 0.02);
         let phi = nalgebra::Vector3::from(error.phi_rad);
@@ -161,7 +172,7 @@ fn kalman(config: &mut CoreConfig) -> &mut Kalman {
 
 /// Configures the case on a moored ship: dock position, sway as white noise. The given attitude is
 /// level, unlike the ship's at time 0: the case rolls by up to 3°.
-pub fn dockside(case: &Case) -> (plant::PlantConfig, CoreConfig) {
+pub fn dockside(case: &InstrumentCase) -> (plant::PlantConfig, CoreConfig) {
     let (mut plant, mut core) = (case.plant(), case.core());
     let ship = octant_plant::motion::dockside_default(case.seed);
     core.screening.base = base_of(&ship);

@@ -1,14 +1,14 @@
 //! The core with the plant: forms of the error model, timing, disabled states, determinism, tables,
 //! and the core's reports on damaged input.
 
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
-use crate::common::instrument::{Case, LATITUDE_RAD, PERIOD_NS, dockside};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIX};
 use octant_calibration::state_machine::CalibrationRefusal;
 use octant_calibration::table::CalibrationTable;
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::instrument::{InstrumentCase, LATITUDE_RAD, PERIOD_NS, dockside};
 use octant_earth::frames::phi_of;
 use octant_earth::units::*;
 use octant_plant::config as plant;
@@ -25,8 +25,8 @@ fn kalman(config: &mut CoreConfig) -> &mut Kalman {
 }
 
 /// Makes a short calibration: half an hour of eight positions.
-fn short(seed: u64) -> Case {
-    Case { calibration_h: 0.5, ..Case::table_1(seed, EIGHT) }
+fn short(seed: u64) -> InstrumentCase {
+    InstrumentCase { calibration_h: 0.5, ..InstrumentCase::table_1(seed, EIGHT) }
 }
 
 /// Runs to the last sample before the end, when the filter still exists.
@@ -46,7 +46,7 @@ fn difference(a: &Core, b: &Core) -> (f64, f64) {
 
 #[test]
 fn phi_and_psi_angle_forms_agree() {
-    let case = Case { calibration_h: 1.0, ..Case::table_1(2, EIGHT) };
+    let case = InstrumentCase { calibration_h: 1.0, ..InstrumentCase::table_1(2, EIGHT) };
     let still = (case.plant(), case.core());
     for (name, (plant, phi)) in [("static", still), ("dockside", dockside(&case))] {
         let mut psi = phi.clone();
@@ -95,7 +95,7 @@ fn the_first_motion_is_felt_two_samples_after_the_command() {
 
 #[test]
 fn four_hours_of_eight_positions_keep_their_published_times() {
-    let mut run = ClosedLoop::of(&Case::table_1(1, EIGHT));
+    let mut run = ClosedLoop::of(&InstrumentCase::table_1(1, EIGHT));
     let (mut from, mut until) = (None, None);
     while until.is_none() {
         let output = run.step();
@@ -114,7 +114,7 @@ fn four_hours_of_eight_positions_keep_their_published_times() {
 #[test]
 fn a_state_switched_off_stays_zero() {
     for group in ParameterGroup::ALL {
-        let case = Case { calibration_h: 0.25, ..Case::table_1(3, SIX) };
+        let case = InstrumentCase { calibration_h: 0.25, ..InstrumentCase::table_1(3, SIX) };
         let mut config = case.core();
         kalman(&mut config).estimated[group as usize] = false;
         let run = run_short_of_the_end(ClosedLoop::new(&case.plant(), &config), 0.25);
@@ -178,7 +178,7 @@ fn a_table_that_is_loaded_navigates_as_well_as_the_run_that_made_it() {
 fn clean_runs_raise_no_health_flag() {
     let seeds: Vec<u64> = (1..=20).collect();
     let runs = on_two_threads(&seeds, |seed| {
-        let case = Case { calibration_h: 0.34, ..Case::table_1(*seed, EIGHT) };
+        let case = InstrumentCase { calibration_h: 0.34, ..InstrumentCase::table_1(*seed, EIGHT) };
         let (plant, core) =
             if seed % 2 == 0 { (case.plant(), case.core()) } else { dockside(&case) };
         let mut run = ClosedLoop::new(&plant, &core);
@@ -193,7 +193,7 @@ fn clean_runs_raise_no_health_flag() {
 
 #[test]
 fn static_tuning_under_sway_is_refused() {
-    let case = Case { calibration_h: 0.5, ..Case::table_1(1, EIGHT) };
+    let case = InstrumentCase { calibration_h: 0.5, ..InstrumentCase::table_1(1, EIGHT) };
     let (mut plant, mut core) = dockside(&case);
     plant.aiding.kind = plant::AidingKind::ZeroVelocity { sigma_mps: 1e-3 };
     kalman(&mut core).aiding = AidingMode::Velocity { sigma_mps: 1e-3 };

@@ -1,9 +1,9 @@
 //! Ensembles: the filter is consistent, and the paper's claim holds where physics permits.
 
-use crate::common::instrument::Case;
 use octant_calibration::Core;
 use octant_calibration::covariance::{DV, PARAMETERS, PHI};
 use octant_calibration::positions::EIGHT;
+use octant_closed_loop::instrument::InstrumentCase;
 use octant_earth::frames::phi_of;
 use octant_earth::units::*;
 use octant_plant::Plant;
@@ -16,7 +16,7 @@ use octant_sample::parameters::ParameterGroup;
 const PERIOD_NS: u64 = 50_000_000;
 
 /// Runs to the last sample before the end of the calibration, when the filter still exists.
-fn calibrate(case: &Case) -> (Plant, Core) {
+fn calibrate(case: &InstrumentCase) -> (Plant, Core) {
     let (mut plant, mut core) = (case.plant(), case.core());
     let samples = (case.calibration_h * 3600.0 * 1e9) as u64 / PERIOD_NS;
     (plant.sample_period_ns, core.sample_period_ns) = (PERIOD_NS, PERIOD_NS);
@@ -45,7 +45,7 @@ fn twenty_seeds_are_consistent() {
                     (1..=seeds)
                         .filter(|seed| seed % 2 == half)
                         .map(|seed| {
-                            let case = Case::table_1(seed, EIGHT);
+                            let case = InstrumentCase::table_1(seed, EIGHT);
                             (case.plant().imu.parameters, calibrate(&case))
                         })
                         .collect::<Vec<_>>()

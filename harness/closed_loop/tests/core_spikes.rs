@@ -4,11 +4,12 @@
 //! A point is a calibration of Table 1 in eight positions with one fault, compared with the same
 //! calibration without it. Points are numbered: a number always gives the same point.
 
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
-use crate::common::instrument::{Case, dockside};
 use octant_calibration::config::TurntableRates;
 use octant_calibration::positions::{SEQUENCES, from_degrees, named};
 use octant_calibration::schedule::{Cursor, dwell_s};
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::draws::draws;
+use octant_closed_loop::instrument::{InstrumentCase, dockside};
 use octant_earth::units::*;
 use octant_random::normal::{uniform, words};
 use octant_random::stream::{Phase, key};
@@ -69,9 +70,9 @@ struct Outcome {
 }
 
 fn start(setup: &Setup) -> ClosedLoop {
-    let case = Case {
+    let case = InstrumentCase {
         calibration_h: setup.hours as f64,
-        ..Case::table_1(setup.seed, named(setup.sequence).unwrap())
+        ..InstrumentCase::table_1(setup.seed, named(setup.sequence).unwrap())
     };
     let (mut plant, mut core) =
         if setup.moored { dockside(&case) } else { (case.plant(), case.core()) };
@@ -241,8 +242,9 @@ fn try_all(points: &[Point]) -> Vec<String> {
 
 #[test]
 fn spikes_and_slips_at_random() {
-    let spikes = (0..36).map(|n| draw(n, false, EIGHT));
-    let points: Vec<Point> = spikes.chain((0..24).map(|n| draw(n, true, EIGHT))).collect();
+    let (spikes, slips) = draws((36, 24), (18, 12));
+    let spikes = (0..spikes).map(|n| draw(n, false, EIGHT));
+    let points: Vec<Point> = spikes.chain((0..slips).map(|n| draw(n, true, EIGHT))).collect();
     let failures = try_all(&points);
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
@@ -301,8 +303,9 @@ fn study_of_three_thousand_points() {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn eighty_clean_calibrations_raise_no_alarm() {
-    let setups: Vec<Setup> =
-        (0..80).map(|n| Setup { seed: 1 + n / 12, ..draw(n, false, EIGHT).setup }).collect();
+    let setups: Vec<Setup> = (0..draws(80, 48))
+        .map(|n| Setup { seed: 1 + n / 12, ..draw(n, false, EIGHT).setup })
+        .collect();
     assert_clean(&setups);
 }
 

@@ -5,10 +5,10 @@
 //! against the run without the fault, in posterior σ. Bands of the bare and the gated core come from
 //! an independent filter.
 
-use crate::common::instrument::Case;
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
 use octant_calibration::config::{Recovery, Screening};
 use octant_calibration::positions::EIGHT;
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::instrument::InstrumentCase;
 use octant_earth::units::*;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Health, Sample};
@@ -173,7 +173,7 @@ fn held_arcsec(before: &ClosedLoop, samples: u64) -> f64 {
 fn faults_do_what_an_independent_filter_says_and_widening_recovers() {
     let faults = faults();
     let before: Vec<ClosedLoop> = on_two_threads(&screenings(), |screening| {
-        let case = Case::table_1(1, EIGHT);
+        let case = InstrumentCase::table_1(1, EIGHT);
         let mut config = case.core();
         config.screening = *screening;
         let mut run = ClosedLoop::new(&case.plant(), &config);

@@ -1,11 +1,11 @@
 //! Whole procedures of the core with the plant: perfect sensors, a moored ship, coarse alignment
 //! and the two other estimators.
 
-use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
-use crate::common::instrument::{Case, dockside};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::config::*;
 use octant_calibration::positions::{Degrees, EIGHT, SIX};
+use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
+use octant_closed_loop::instrument::{InstrumentCase, dockside};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
@@ -45,13 +45,17 @@ fn squares(run: &ClosedLoop, truth: &Parameters) -> [(f64, f64); 7] {
 }
 
 fn perfect(dockside: bool) -> ClosedLoop {
-    let case = Case { navigation_h: 24.0, angle_random_walk: 0.0, ..Case::table_1(1, EIGHT) };
+    let case = InstrumentCase {
+        navigation_h: 24.0,
+        angle_random_walk: 0.0,
+        ..InstrumentCase::table_1(1, EIGHT)
+    };
     let (mut plant, mut core) = (case.plant(), case.core());
     plant.imu.parameters = Parameters::default();
     plant.imu.velocity_random_walk = 0.0;
     if dockside {
         let ship = dockside_default(1);
-        core.screening.base = crate::common::instrument::base_of(&ship);
+        core.screening.base = octant_closed_loop::instrument::base_of(&ship);
         plant.motion = plant::Motion::Dockside(ship);
     }
     core.calibration = None;
@@ -94,7 +98,7 @@ fn perfect_sensors_navigate_without_error() {
 fn a_moored_ship_is_calibrated_with_the_position_of_the_dock() {
     let seeds: Vec<u64> = (1..=12).collect();
     let all = on_two_threads(&seeds, |seed| {
-        let case = Case::table_1(*seed, EIGHT);
+        let case = InstrumentCase::table_1(*seed, EIGHT);
         let (plant, core) = dockside(&case);
         let truth = plant.imu.parameters;
         let mut run = ClosedLoop::new(&plant, &core);
@@ -123,7 +127,7 @@ fn a_moored_ship_is_calibrated_with_the_position_of_the_dock() {
 fn a_calibration_from_coarse_alignment_is_consistent() {
     let seeds: Vec<u64> = (1..=8).collect();
     let all = on_two_threads(&seeds, |seed| {
-        let case = Case::table_1(*seed, EIGHT);
+        let case = InstrumentCase::table_1(*seed, EIGHT);
         let mut core = case.core();
         core.alignment = Alignment::Coarse { duration_s: 60.0 };
         let mut run = ClosedLoop::new(&case.plant(), &core);
@@ -168,7 +172,7 @@ fn the_other_estimators_end_in_navigation() {
         })
         .collect();
     let all = on_two_threads(&methods, |(_, positions, estimator)| {
-        let mut case = Case::table_1(1, positions);
+        let mut case = InstrumentCase::table_1(1, positions);
         case.navigation_h = 12.0;
         let (mut plant, mut core) = (case.plant(), case.core());
         if matches!(estimator, Estimator::ExternalTurntable(_)) {

@@ -4,6 +4,7 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::Core;
 use octant_calibration::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
+use octant_closed_loop::draws::draws;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::phi_of;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
@@ -357,6 +358,8 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
         predicted_in.as_secs_f64(),
         began.elapsed().as_secs_f64()
     );
+    // The limits are those of 200 runs; what a figure of fewer runs scatters by grows with the root.
+    let wider = (200.0 / count as f64).sqrt();
     let mut ratios = Vec::new();
     let mut wrong = Vec::new();
     for (i, state) in predicted.states.iter().enumerate() {
@@ -367,14 +370,14 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
             "{:24} {:11.4e} {simulated:11.4e} {ratio:.3} {}",
             state.name, state.sigma, state.unit
         );
-        if !((ratio - 1.0).abs() <= 0.2) {
+        if !((ratio - 1.0).abs() <= 0.2 * wider) {
             wrong.push(format!("{}: {ratio:.3}", state.name));
         }
         ratios.push(ratio);
     }
     let whole = mean(&ratios).unwrap();
     println!("mean ratio of {} states: {whole:.4}", ratios.len());
-    if !((whole - 1.0).abs() <= 0.03) {
+    if !((whole - 1.0).abs() <= 0.03 * wider) {
         wrong.push(format!("mean ratio {whole:.4}"));
     }
     let mut worst = [0.0f64; 6];
@@ -398,7 +401,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
                 runs.iter().map(|run| run.motion[hour - 1][axis] - band.mean).collect();
             let ratio = band.sigma / rms(&about).unwrap();
             motion_worst[axis] = motion_worst[axis].max((ratio - 1.0).abs());
-            if !((ratio - 1.0).abs() <= 0.25) {
+            if !((ratio - 1.0).abs() <= 0.25 * wider) {
                 wrong.push(format!("attitude or velocity {axis} at {hour} h: {ratio:.3}"));
             }
         }
@@ -411,7 +414,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
         for (i, ratio) in found.iter().enumerate() {
             worst[i] = worst[i].max((ratio - 1.0).abs());
             sums[i] += ratio / hours;
-            if !((ratio - 1.0).abs() <= 0.25) {
+            if !((ratio - 1.0).abs() <= 0.25 * wider) {
                 wrong.push(format!("figure {i} at {hour} h: {ratio:.3}"));
             }
         }
@@ -424,12 +427,12 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
 
 #[test]
 #[ignore = "minutes: run by tests/run"]
-fn two_hundred_runs_of_table_1() {
+fn many_runs_of_table_1() {
     let text = format!(
         "[procedure.calibration]\npositions = \"eight\"\n{TABLE_1_CALIBRATION}\
          [procedure.navigation]\nduration = \"72 h\"\n"
     );
-    assert_ensemble(&scenario_at(TABLE_1_RATE, &text), 200, 1..=72);
+    assert_ensemble(&scenario_at(TABLE_1_RATE, &text), draws(200, 100), 1..=72);
 }
 
 #[test]

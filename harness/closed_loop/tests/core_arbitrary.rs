@@ -1,9 +1,10 @@
 //! Arbitrary input: the core doesn't panic, and gives finite numbers or refuses.
 
-use crate::common::instrument::{Case, PERIOD_NS};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIX};
+use octant_closed_loop::draws::draws;
+use octant_closed_loop::instrument::{InstrumentCase, PERIOD_NS};
 use octant_earth::UnitQuaternion;
 use octant_earth::units::*;
 use octant_sample::{
@@ -82,7 +83,7 @@ enum Method {
 }
 
 fn config(method: Method, gate: u8, coarse: bool) -> CoreConfig {
-    let mut case = Case::table_1(1, if coarse { SIX } else { EIGHT });
+    let mut case = InstrumentCase::table_1(1, if coarse { SIX } else { EIGHT });
     case.calibration_h = 0.25;
     case.navigation_h = 0.5;
     let mut config = case.core();
@@ -176,7 +177,7 @@ fn run(mut core: Core, inputs: &[Input]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: draws(200, 100), failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn any_input_is_survived(
         inputs in inputs(),

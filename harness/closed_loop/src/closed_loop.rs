@@ -1,6 +1,6 @@
 //! Plant and core in closed loop, with access to the data that passes between them.
 
-use super::Case;
+use crate::instrument::InstrumentCase;
 use octant_calibration::Core;
 use octant_calibration::config as core;
 use octant_plant::Plant;
@@ -10,15 +10,20 @@ use octant_sample::{Aiding, GimbalCommand, Health, Mode, Output, Sample};
 /// Plant and core, with the core's last output.
 #[derive(Clone)]
 pub struct ClosedLoop {
+    /// Model of the instrument.
     pub plant: Plant,
+    /// Unit under test.
     pub core: Core,
+    /// Command for the next epoch.
     pub command: GimbalCommand,
+    /// Last output.
     pub output: Output,
     /// Number of epochs with each health bit.
     pub health: [u64; 32],
 }
 
 impl ClosedLoop {
+    /// Puts a plant and a core together.
     pub fn new(plant: &plant::PlantConfig, core: &core::CoreConfig) -> Self {
         Self {
             plant: Plant::new(plant).unwrap(),
@@ -29,7 +34,8 @@ impl ClosedLoop {
         }
     }
 
-    pub fn of(case: &Case) -> Self {
+    /// Plant and core of a case.
+    pub fn of(case: &InstrumentCase) -> Self {
         Self::new(&case.plant(), &case.core())
     }
 
@@ -50,6 +56,7 @@ impl ClosedLoop {
         Some(output)
     }
 
+    /// Makes one epoch.
     pub fn step(&mut self) -> Output {
         self.step_altered(|sample, aiding| Some((sample, aiding))).unwrap()
     }

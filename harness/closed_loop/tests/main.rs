@@ -1,0 +1,15 @@
+//! The core in a closed loop with the plant: consistency, faults, states, and the predicted ensembles. One program, with a
+//! module for each subject.
+#![allow(unreachable_pub)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::float_cmp)]
+
+mod coloured_sway;
+mod core_arbitrary;
+mod core_behaviour;
+mod core_consistency;
+mod core_faults;
+mod core_hardened;
+mod core_spikes;
+mod ensemble_prediction;
+mod ensembles;
+mod state_core;
