@@ -4,6 +4,7 @@
 pub use super::execution::{CaseDone, ExecuteError, ExecutionEvent, ExecutionSummary};
 pub use super::shard::{Shard, ShardError};
 
+use super::alike::groups;
 use super::plan::{Case, Plan};
 use super::process::TRIES;
 use super::selection::CaseSelection;
@@ -33,6 +34,8 @@ pub struct ExecuteOptions<'a> {
     pub again: bool,
     /// Cases that may be run, and those that are run although they have a result.
     pub selection: CaseSelection,
+    /// True if cases that begin alike are run together.
+    pub together: bool,
     /// Set to end the execution.
     pub cancel: &'a AtomicBool,
 }
@@ -80,23 +83,40 @@ pub fn execute(
         stem: &stem(options.shard),
         cancel: options.cancel,
     };
+    // A case that is run again is run as it is alone.
+    let (again, new): (Vec<_>, Vec<_>) =
+        open.iter().partition(|(index, _)| options.selection.repeats(*index));
+    let cases: Vec<&Case> = new.iter().map(|(_, case)| *case).collect();
+    let alike = if options.together { groups(&cases, options.jobs) } else { Vec::new() };
+    let alike = alike.into_iter().map(|group| group.into_iter().map(|place| new[place]).collect());
+    let alone = again.iter().chain(new.iter().filter(|_| !options.together));
+    let groups: Vec<Vec<(usize, &Case)>> = alike.chain(alone.map(|one| vec![*one])).collect();
     let work = |worker: &mut Worker<'_>, task: usize| {
-        let (index, case) = open[task];
-        tell(&ExecutionEvent::Begun(index));
-        let known = if options.selection.repeats(index) {
-            results.known(&case.id).map_err(StatusError)?
-        } else {
-            Vec::new()
-        };
-        let Some(done) = one(worker, case, &known)? else { return Ok(None) };
-        let differs = done.differs.clone();
-        tell(&ExecutionEvent::Done(CaseDone { index, ..done }));
-        Ok::<_, ExecuteError>(Some(differs))
+        let mut ended = Vec::new();
+        for (place, (index, case)) in groups[task].iter().copied().enumerate() {
+            if options.cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            tell(&ExecutionEvent::Begun(index));
+            let known = if options.selection.repeats(index) {
+                results.known(&case.id).map_err(StatusError)?
+            } else {
+                Vec::new()
+            };
+            let next: Vec<&Case> = match place {
+                0 => groups[task].iter().skip(1).map(|(_, case)| *case).collect(),
+                _ => Vec::new(),
+            };
+            let Some(done) = one(worker, case, &known, &next)? else { break };
+            ended.push(done.differs.clone());
+            tell(&ExecutionEvent::Done(CaseDone { index, ..done }));
+        }
+        Ok::<_, ExecuteError>(Some(ended))
     };
     let is_cancelled = || options.cancel.load(Ordering::Relaxed);
     let begin = || Worker::of(of);
-    let done = in_order_with(options.jobs, open.len(), is_cancelled, begin, work)?;
-    let done: Vec<_> = done.into_iter().flatten().collect();
+    let done = in_order_with(options.jobs, groups.len(), is_cancelled, begin, work)?;
+    let done: Vec<_> = done.into_iter().flatten().flatten().collect();
     let run = done.len();
     let mut differing: Vec<ResultPlace> = done.into_iter().flatten().collect();
     differing.sort();
@@ -120,19 +140,20 @@ fn clean(folder: &Path) {
 }
 
 /// Runs one case, again if its process is ended from outside; `None` if it was ended by a request.
-/// `known` are the results of a case that is run a second time.
+/// `known` are the results of a case that is run a second time; `alike` are cases that begin alike and come next.
 fn one(
     worker: &mut Worker<'_>,
     case: &Case,
     known: &[String],
+    mut alike: &[&Case],
 ) -> Result<Option<CaseDone>, ExecuteError> {
     let mut by = String::new();
     let mut tries = 0;
     while tries < TRIES {
-        match worker.try_case(case, known)? {
+        match worker.try_case(case, known, alike)? {
             Tried::Done(done) => return Ok(Some(done)),
             Tried::Cancelled => return Ok(None),
-            Tried::InUsed => {}
+            Tried::InUsed => alike = &[],
             Tried::Outside(signal) => {
                 by = signal;
                 tries += 1;

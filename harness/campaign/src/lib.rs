@@ -6,6 +6,7 @@
 //! those of all shards, [`independence`] groups them into independent draws.
 
 pub mod against;
+pub mod alike;
 mod besides;
 pub mod bundle;
 pub mod case;

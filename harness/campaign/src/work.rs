@@ -1,7 +1,8 @@
 //! The work of a process that runs cases: a case on each line of standard input, its outcome on a
 //! line of standard output.
 
-use super::case::{self, CaseResult};
+use super::alike::run_alike;
+use super::case::{self, CaseError, CaseResult, hash_of};
 use super::plan::{Case, PlannedScenario};
 use super::process::limit_memory;
 use super::store::error::ResultPlace;
@@ -11,6 +12,7 @@ use octant_base::child::SEPARATOR;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};
 use std::path::PathBuf;
 
@@ -32,6 +34,9 @@ pub struct CaseJob {
     pub stem: String,
     /// BLAKE3 of the results that the case has already, if it is run a second time.
     pub known: Vec<String>,
+    /// Cases of the same scenario that begin alike and that this process is asked for next: they are run together with
+    /// this one, and wait here.
+    pub alike: Vec<Case>,
 }
 
 /// A line on standard output.
@@ -95,6 +100,7 @@ pub fn work(
     mut messages: impl Write,
 ) -> Result<(), WorkError> {
     let mut writer: Option<PartWriter> = None;
+    let mut waiting = BTreeMap::new();
     let mut tell = |reply: &WorkReply| -> Result<(), WorkError> {
         let mut line = serde_json::to_vec(reply)?;
         line.push(b'\n');
@@ -109,7 +115,7 @@ pub fn work(
         let job: CaseJob = serde_json::from_str(&line)?;
         let mib = job.memory_mib;
         limit_memory(mib).map_err(|source| WorkError::Memory { mib, source })?;
-        let (result, json) = outcome(&job);
+        let (result, json) = outcome(&job, &mut waiting);
         let not_kept = |error: &dyn std::fmt::Display| WorkReply::NotKept {
             message: format!("failed to {error}"),
         };
@@ -145,8 +151,9 @@ pub fn work(
     Ok(())
 }
 
-/// Runs a case. A case that can't be run is an error with the reason.
-fn outcome(job: &CaseJob) -> (CaseResult, String) {
+/// Runs a case, and those that begin alike; or takes its result, if it was one of those. A case that can't be run is
+/// an error with the reason.
+fn outcome(job: &CaseJob, waiting: &mut BTreeMap<String, CaseResult>) -> (CaseResult, String) {
     let broken = |error: &dyn std::fmt::Display| {
         let message = format!("failed to {error}");
         let result = CaseResult::broken(&job.case.id, cut(said(&message)).to_owned());
@@ -154,13 +161,32 @@ fn outcome(job: &CaseJob) -> (CaseResult, String) {
         let json = result.to_json().unwrap_or_default();
         (result, json)
     };
-    match case::run(&job.scenario, &job.case, &Control::default()) {
+    let run = match waiting.remove(&hash_of(&job.scenario, &job.case)) {
+        Some(result) => Ok(result),
+        None if job.alike.is_empty() => case::run(&job.scenario, &job.case, &Control::default()),
+        None => together(job, waiting),
+    };
+    match run {
         Err(error) => broken(&error),
         Ok(result) => match result.to_json() {
             Ok(json) => (result, json),
             Err(error) => broken(&error),
         },
     }
+}
+
+/// Runs a case and those that begin alike; their results wait. One that has none runs alone when it is asked for.
+fn together(
+    job: &CaseJob,
+    waiting: &mut BTreeMap<String, CaseResult>,
+) -> Result<CaseResult, CaseError> {
+    let cases: Vec<&Case> = std::iter::once(&job.case).chain(&job.alike).collect();
+    let mut results = run_alike(&job.scenario, &cases).into_iter();
+    let first = results.next();
+    let others = job.alike.iter().zip(results);
+    let others = others.filter_map(|(case, result)| Some((case, result.ok()?)));
+    waiting.extend(others.map(|(case, result)| (hash_of(&job.scenario, case), result)));
+    first.unwrap_or_else(|| case::run(&job.scenario, &job.case, &Control::default()))
 }
 
 /// Returns the message of a process, without the name of the program.

@@ -54,7 +54,8 @@ pub(super) enum Tried {
     Cancelled,
     /// The process was ended from outside.
     Outside(String),
-    /// A process that had run other cases has crashed: a new one tells whether the case is to blame.
+    /// A process that had run other cases, or ran others together with this one, has crashed or taken too long: a new
+    /// one tells whether the case is to blame.
     InUsed,
 }
 
@@ -64,11 +65,12 @@ impl<'a> Worker<'a> {
     }
 
     /// Runs a case. `known` are the results of a case that is run a second time: one that is the same
-    /// isn't stored again.
+    /// isn't stored again. `alike` are those that are tried next and begin alike.
     pub(super) fn try_case(
         &mut self,
         case: &Case,
         known: &[String],
+        alike: &[&Case],
     ) -> Result<Tried, ExecuteError> {
         let WorkerOf { plan, folder, program, stem, cancel } = self.of;
         let system =
@@ -80,6 +82,7 @@ impl<'a> Worker<'a> {
             folder: folder.to_owned(),
             stem: stem.to_owned(),
             known: known.to_vec(),
+            alike: alike.iter().map(|case| (*case).clone()).collect(),
         };
         let job = serde_json::to_vec(&job)
             .map_err(|error| system("describe the case to", error.into()))?;
@@ -95,7 +98,8 @@ impl<'a> Worker<'a> {
         process.record = None;
         process.child.ask(job);
         // A limit that isn't a number counts as no limit.
-        let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
+        let limit_s = plan.limits.time_s * (1 + alike.len()) as f64;
+        let limit = Duration::try_from_secs_f64(limit_s).unwrap_or(Duration::MAX);
         let (ended, words) = loop {
             let reply = process.child.reply(limit, cancel);
             match reply.map_err(|error| system("wait for", error))? {
@@ -133,6 +137,9 @@ impl<'a> Worker<'a> {
         let error = match ended {
             ChildEnded::Outside(by) => return Ok(Tried::Outside(by)),
             ChildEnded::Status(_) if is_used => return Ok(Tried::InUsed),
+            ChildEnded::Status(_) | ChildEnded::TooLong if !alike.is_empty() => {
+                return Ok(Tried::InUsed);
+            }
             ChildEnded::Status(status) => failure(status, &words, plan.limits.memory_mib),
             ChildEnded::TooLong => format!("it took more than its {} s", plan.limits.time_s),
             ChildEnded::Cancelled => return Ok(Tried::Cancelled),

@@ -407,6 +407,7 @@ fn run_all(
             end: plan.cases.len(),
             again: false,
             selection: CaseSelection::default(),
+            together: true,
             cancel,
         };
         let id = |index: usize| plan.cases[index].id.clone();
@@ -456,6 +457,7 @@ fn conclude(
         end: 1,
         again: false,
         selection: CaseSelection::default(),
+        together: true,
         cancel,
     };
     execute(plan, &options, &|_| {})?;

@@ -110,6 +110,7 @@ fn begin(
         end: plan.cases.len(),
         again,
         selection: CaseSelection::default(),
+        together: true,
         cancel,
     };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
@@ -152,6 +153,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
             end: plan.cases.len(),
             again: false,
             selection: CaseSelection::default(),
+            together: true,
             cancel: &cancel,
         };
         let tell = |event: &ExecutionEvent| {
@@ -275,6 +277,7 @@ fn an_error_that_is_forgotten_and_comes_again_is_stored_again() {
         end: plan.cases.len(),
         again: false,
         selection: CaseSelection::of(&plan, &["other".to_owned()]).unwrap(),
+        together: true,
         cancel: &never,
     };
     assert_eq!(execute(&plan, &options, &|_| {}).unwrap().run, 1);
@@ -444,6 +447,7 @@ fn every_case_is_told_once() {
         end: plan.cases.len(),
         again: false,
         selection: CaseSelection::default(),
+        together: true,
         cancel: &cancel,
     };
     let tell = |event: &ExecutionEvent| match event {

@@ -9,6 +9,7 @@ mod allan;
 mod architecture;
 mod branches;
 mod campaign;
+mod campaign_alike;
 mod campaign_bundle;
 #[cfg(unix)]
 mod campaign_emit;

@@ -42,6 +42,10 @@ pub(super) struct Arguments {
     /// to the same result again.
     #[arg(long)]
     failed: bool,
+    /// Run every case from its beginning. By default cases of one scenario and seed that differ by their
+    /// faults alone share what comes before the first fault; the results are the same.
+    #[arg(long)]
+    undivided: bool,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -71,6 +75,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         end: plan.cases.len(),
         again: arguments.again || arguments.failed,
         selection,
+        together: !arguments.undivided,
         cancel: interrupt::flag(),
     };
     let bar = CaseBar::new("", mine, options.jobs, may_stop);
