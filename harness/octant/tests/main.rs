@@ -17,6 +17,7 @@ mod campaign_scale;
 mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
+mod case_progress;
 mod chain;
 mod coloured_sway;
 mod compare_refused;
@@ -75,6 +76,7 @@ mod messages;
 mod new_scenario;
 mod nightly;
 mod own_sequences;
+mod progress_bar;
 mod qualification;
 mod real_chain;
 mod real_recording;
@@ -96,9 +98,11 @@ mod scenario_schema;
 mod score;
 mod selftest;
 mod solution;
+mod source_uri;
 mod state_core;
 mod system;
 mod system_foreign;
+mod terminal;
 mod text_source;
 mod trace_verdicts;
 #[cfg(unix)]
