@@ -5,6 +5,7 @@
 //! - [`wire`]: messages across a port, and counts of losses.
 //! - [`harness`]: the harness end: sends samples and receives outputs.
 //! - [`device`]: the device end: steps a core once for each sample, never twice.
+//! - [`asking`]: when an unanswered request is sent again.
 //! - [`clock`]: offset and drift of the other end's clock.
 //! - [`fault`]: faults injected on a wire.
 //! - [`load`]: whether a line or bus carries a sample rate, before anything is sent.
@@ -12,7 +13,7 @@
 //! In lock-step no step is lost: an unanswered request is repeated. So the outputs are bit-identical
 //! over every line, however bad it is.
 
-mod asking;
+pub mod asking;
 pub mod clock;
 pub mod device;
 pub mod fault;

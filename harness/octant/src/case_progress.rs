@@ -17,7 +17,7 @@ const ENDED_LEAST: usize = 3;
 
 /// Progress of cases, with the time given by the caller.
 #[derive(Debug)]
-pub(crate) struct CaseProgress {
+pub struct CaseProgress {
     /// What is run: the start of the line.
     stage: String,
     /// Cases of this work, and whether a stopping rule may leave some out.
@@ -40,8 +40,10 @@ pub(crate) struct CaseProgress {
 }
 
 impl CaseProgress {
-    /// Begins the progress of `total` cases.
-    fn new(stage: &str, total: usize, jobs: usize, may_stop: bool, begun: Instant) -> Self {
+    /// Begins the progress of `total` cases, `jobs` of them at a time; a stopping rule may leave some out
+    /// where `may_stop` is true.
+    #[must_use]
+    pub fn new(stage: &str, total: usize, jobs: usize, may_stop: bool, begun: Instant) -> Self {
         Self {
             stage: stage.to_owned(),
             total,
@@ -58,8 +60,18 @@ impl CaseProgress {
         }
     }
 
-    /// Notes the end of a case.
-    fn ended(&mut self, index: Option<usize>, has_failed: bool, now: Instant) {
+    /// Counts cases that have results already.
+    pub fn there(&mut self, count: usize) {
+        self.before += count;
+    }
+
+    /// Notes that a case has begun, by its place.
+    pub fn begun(&mut self, index: usize, now: Instant) {
+        self.running.insert(index, (now, false));
+    }
+
+    /// Notes the end of a case; its place is unknown where its beginning wasn't noted.
+    pub fn ended(&mut self, index: Option<usize>, has_failed: bool, now: Instant) {
         self.ended += 1;
         self.failed += usize::from(has_failed);
         if let Some((begun, _)) = index.and_then(|index| self.running.remove(&index)) {
@@ -82,7 +94,8 @@ impl CaseProgress {
 
     /// Time until the end, s, from the mean time of a case. `None` while no case of this work has
     /// ended, or if the last cases take longer than any before.
-    fn left_s(&self, now: Instant) -> Option<f64> {
+    #[must_use]
+    pub fn left_s(&self, now: Instant) -> Option<f64> {
         let mean_s = self.mean_s(now)?;
         let waiting =
             self.total.saturating_sub(self.before + self.ended + self.running.len()) as f64;
@@ -103,7 +116,8 @@ impl CaseProgress {
     }
 
     /// Renders the words after the bar.
-    fn words(&self, now: Instant) -> String {
+    #[must_use]
+    pub fn words(&self, now: Instant) -> String {
         let done = self.before + self.ended;
         let mut words = format!("{done} of {} cases", self.total);
         if !self.stage.is_empty() {
@@ -131,7 +145,7 @@ impl CaseProgress {
     }
 
     /// Lists the cases that have become slow since the last call: place and time, s.
-    fn slow(&mut self, now: Instant) -> Vec<(usize, f64)> {
+    pub fn slow(&mut self, now: Instant) -> Vec<(usize, f64)> {
         let Some(mean_s) = self.mean_s(now).filter(|_| self.ended >= ENDED_LEAST) else {
             return Vec::new();
         };
@@ -148,7 +162,8 @@ impl CaseProgress {
 }
 
 /// Writes a time for people, rounded up: never "0 s".
-pub(crate) fn duration(seconds: f64) -> String {
+#[must_use]
+pub fn duration(seconds: f64) -> String {
     let whole = seconds.max(0.0).ceil().max(1.0) as u64;
     let minutes = whole.div_ceil(60);
     match whole {
@@ -205,12 +220,12 @@ impl CaseBar {
 
     /// Counts cases that have results already.
     pub(crate) fn there(&self, count: usize) {
-        self.change(|progress, _| progress.before += count);
+        self.change(|progress, _| progress.there(count));
     }
 
     /// Notes that a case has begun.
     pub(crate) fn begun(&self, index: usize) {
-        self.change(|progress, now| _ = progress.running.insert(index, (now, false)));
+        self.change(|progress, now| progress.begun(index, now));
     }
 
     /// Notes that a case has ended; its place is unknown where its beginning wasn't noted.
@@ -240,75 +255,5 @@ impl CaseBar {
             bar.done = done as u64;
             bar.message = message;
         });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Runs cases in pairs, each `took_s` long, until `ended` have ended; returns the time.
-    fn pairs(progress: &mut CaseProgress, took_s: u64, ended: usize) -> Instant {
-        let mut now = progress.begun;
-        for pair in 0..ended / 2 {
-            for case in [2 * pair, 2 * pair + 1] {
-                progress.running.insert(case, (now, false));
-            }
-            now += Duration::from_secs(took_s);
-            progress.ended(Some(2 * pair), false, now);
-            progress.ended(Some(2 * pair + 1), false, now);
-        }
-        now
-    }
-
-    #[test]
-    fn the_time_left_is_right_from_the_first_case_on() {
-        let mut progress = CaseProgress::new("", 10, 2, false, Instant::now());
-        let begun = progress.begun;
-        progress.running.insert(0, (begun, false));
-        progress.running.insert(1, (begun, false));
-        assert_eq!(
-            progress.words(begun + Duration::from_secs(3)),
-            "0 of 10 cases, time left unknown"
-        );
-        let now = begun + Duration::from_secs(6);
-        progress.ended(Some(0), false, now);
-        // Eight wait, and one is about to end: 8 x 6 s on two processors.
-        assert_eq!(progress.left_s(now), Some(24.0));
-        assert_eq!(progress.words(now), "1 of 10 cases, 10.0 per minute, 24 s left");
-    }
-
-    #[test]
-    fn results_from_before_are_no_speed() {
-        let mut progress = CaseProgress::new("", 1000, 2, true, Instant::now());
-        progress.before = 990;
-        let begun = progress.begun;
-        assert_eq!(progress.words(begun), "990 of 1000 cases, time left unknown");
-        let now = pairs(&mut progress, 100, 2);
-        assert_eq!(progress.words(now), "992 of 1000 cases, 1.2 per minute, at most 7 min left");
-    }
-
-    #[test]
-    fn the_last_case_is_not_promised_for_now() {
-        let mut progress = CaseProgress::new("night", 5, 2, false, Instant::now());
-        let now = pairs(&mut progress, 10, 4);
-        progress.running.insert(4, (now, false));
-        assert_eq!(progress.left_s(now + Duration::from_secs(4)), Some(6.0));
-        let late = now + Duration::from_secs(15);
-        assert_eq!(progress.words(late), "night: 4 of 5 cases, 6.9 per minute, time left unknown");
-        assert!(progress.slow(late).is_empty());
-        let slow = now + Duration::from_secs(41);
-        assert_eq!(progress.slow(slow), [(4, 41.0)]);
-        assert!(progress.slow(slow).is_empty(), "told once");
-        progress.ended(Some(4), true, slow);
-        assert_eq!(progress.words(slow), "night: 5 of 5 cases, 1 failed");
-    }
-
-    #[test]
-    fn times_are_rounded_up() {
-        let words = [0.0, 0.2, 59.1, 99.0, 99.5, 120.0, 5940.0, 5941.0, 86_400.0].map(duration);
-        let expected =
-            ["1 s", "1 s", "60 s", "99 s", "2 min", "2 min", "99 min", "1 h 40 min", "24 h 00 min"];
-        assert_eq!(words, expected);
     }
 }

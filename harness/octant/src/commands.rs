@@ -27,7 +27,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Write a commented scenario, from flags and from questions on a terminal.
-    New(new::Arguments),
+    New(new::NewArguments),
     /// Run a scenario or a system of FMUs: calibrate, navigate, score, and write a folder of evidence.
     Run(run::Arguments),
     /// Compare two methods over many seeds, on the same instruments with the same noise.

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::live::Live;
 use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
+use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
@@ -428,34 +429,4 @@ pub(crate) fn case(
         require: true,
         ..RunRequest::default()
     })
-}
-
-/// Makes the file of a source absolute: a name on the command line is relative to the current
-/// folder, one in a scenario to the scenario's.
-fn from_here(uri: &str) -> Result<String, Failure> {
-    match uri.split_once(':') {
-        Some((kind @ ("replay" | "text" | "fmu"), file))
-            if !file.is_empty() && !file.starts_with("${") =>
-        {
-            let file = std::path::absolute(file)
-                .map_err(|error| Failure::input(format!("failed to find {file}: {error}")))?;
-            Ok(format!("{kind}:{}", file.display()))
-        }
-        _ => Ok(uri.to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_source_on_the_command_line_starts_at_the_current_folder() {
-        let here = std::env::current_dir().unwrap();
-        let found = from_here("replay:a/b.mcap").unwrap();
-        assert_eq!(found, format!("replay:{}", here.join("a/b.mcap").display()));
-        for same in ["plant", "text:/c/d.txt", "text:${OCTANT_RECORDINGS}/e.txt", "replay:"] {
-            assert_eq!(from_here(same).unwrap(), same);
-        }
-    }
 }

@@ -9,44 +9,45 @@ use octant_scenario::{FLICKER, Scenario};
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-#[derive(Debug, Args)]
-pub(super) struct Arguments {
+/// Arguments of `octant new`.
+#[derive(Clone, Debug, Args)]
+pub struct NewArguments {
     /// File of the new scenario.
     #[arg(value_name = "FILE")]
-    file: PathBuf,
+    pub file: PathBuf,
     /// Instrument, by its grade.
     #[arg(long, value_enum, value_name = "GRADE")]
-    instrument: Option<InstrumentGrade>,
+    pub instrument: Option<InstrumentGrade>,
     /// Motion of the case.
     #[arg(long, value_enum, value_name = "MOTION")]
-    motion: Option<NewMotion>,
+    pub motion: Option<NewMotion>,
     /// Position sequence, such as six, eight or twenty-four.
     #[arg(long, value_name = "NAME")]
-    positions: Option<String>,
+    pub positions: Option<String>,
     /// Duration of the calibration, such as "4 h".
     #[arg(long, value_name = "TIME")]
-    calibration: Option<String>,
+    pub calibration: Option<String>,
     /// Duration of the free navigation after it, such as "24 h".
     #[arg(long, value_name = "TIME")]
-    navigation: Option<String>,
+    pub navigation: Option<String>,
     /// Largest radial error that a requirement allows in navigation, such as "1 nmi"; without it nothing
     /// is required.
     #[arg(long, value_name = "LENGTH")]
-    limit: Option<String>,
+    pub limit: Option<String>,
     /// Title, by default the name of the file.
     #[arg(long, value_name = "TEXT")]
-    title: Option<String>,
+    pub title: Option<String>,
     /// Ask nothing: what isn't given has its default.
     #[arg(long)]
-    defaults: bool,
+    pub defaults: bool,
     /// Replace the file if it is there already.
     #[arg(long)]
-    force: bool,
+    pub force: bool,
 }
 
 /// Motion of the case.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum NewMotion {
+pub enum NewMotion {
     /// Fixed to the ground.
     Static,
     /// On a moored ship that sways.
@@ -54,17 +55,25 @@ enum NewMotion {
 }
 
 /// Answers from which a scenario is written.
-struct Answers {
-    title: String,
-    instrument: InstrumentGrade,
-    motion: NewMotion,
-    positions: String,
-    calibration: String,
-    navigation: String,
-    limit: Option<String>,
+#[derive(Clone, Debug)]
+pub struct NewAnswers {
+    /// Title of the scenario.
+    pub title: String,
+    /// Instrument, by its grade.
+    pub instrument: InstrumentGrade,
+    /// Motion of the case.
+    pub motion: NewMotion,
+    /// Name of the position sequence.
+    pub positions: String,
+    /// Duration of the calibration, with its unit.
+    pub calibration: String,
+    /// Duration of the free navigation after it, with its unit.
+    pub navigation: String,
+    /// Largest radial error that a requirement allows, with its unit.
+    pub limit: Option<String>,
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+pub(super) fn command(arguments: &NewArguments) -> Result<Verdict, Failure> {
     let file = &arguments.file;
     if file.exists() && !arguments.force {
         return Err(Failure::input(format!(
@@ -85,8 +94,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(Verdict::Pass)
 }
 
-/// Collects the answers: flags, questions for the rest if there is someone to ask, and defaults.
-fn answers(arguments: &Arguments, mut input: Option<impl BufRead>) -> Result<Answers, Failure> {
+/// Collects the answers: flags, questions for the rest if there is an input that answers them, and defaults.
+///
+/// # Errors
+/// If a flag has no meaning, or the input ends before it has answered.
+pub fn answers(
+    arguments: &NewArguments,
+    mut input: Option<impl BufRead>,
+) -> Result<NewAnswers, Failure> {
     let mut text = |name: &str, given: &Option<String>, default: &str| match given {
         Some(given) => Ok(given.clone()),
         None => ask(input.as_mut(), name, default, |text| Ok::<_, String>(text.to_owned())),
@@ -107,7 +122,7 @@ fn answers(arguments: &Arguments, mut input: Option<impl BufRead>) -> Result<Ans
         None => ask(input.as_mut(), &choice::<NewMotion>("motion"), "static", named)?,
     };
     let limit = Some(limit).filter(|limit| limit != "none");
-    Ok(Answers { title, instrument, motion, positions, calibration, navigation, limit })
+    Ok(NewAnswers { title, instrument, motion, positions, calibration, navigation, limit })
 }
 
 /// Question with its possible answers.
@@ -159,7 +174,8 @@ fn quoted(text: &str) -> String {
 }
 
 /// Renders a scenario with its comments.
-fn scenario(answers: &Answers) -> String {
+#[must_use]
+pub fn scenario(answers: &NewAnswers) -> String {
     let sheet = answers.instrument.sheet();
     let motion = match answers.motion {
         NewMotion::Static => "static",
@@ -221,52 +237,4 @@ fn scenario(answers: &Answers) -> String {
         }
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn arguments() -> Arguments {
-        Arguments {
-            file: PathBuf::from("bench.toml"),
-            instrument: None,
-            motion: None,
-            positions: None,
-            calibration: Some("2 h".to_owned()),
-            navigation: None,
-            limit: None,
-            title: None,
-            defaults: false,
-            force: false,
-        }
-    }
-
-    #[test]
-    fn what_is_not_given_is_asked_until_it_is_a_known_name() {
-        let lines = "my bench\n\n6 h\n0.5 nmi\nmems\ntactical-mems\n\n";
-        let found = answers(&arguments(), Some(lines.as_bytes())).expect("has all answers");
-        assert_eq!((found.title.as_str(), found.positions.as_str()), ("my bench", "eight"));
-        assert_eq!((found.calibration.as_str(), found.navigation.as_str()), ("2 h", "6 h"));
-        assert_eq!(found.instrument, InstrumentGrade::TacticalMems);
-        assert_eq!(found.limit.as_deref(), Some("0.5 nmi"));
-        let ended = answers(&arguments(), Some("a\n".as_bytes()));
-        assert!(ended.is_err_and(|failure| failure.message.contains("end of the input")));
-    }
-
-    #[test]
-    fn every_grade_gives_a_scenario() {
-        for grade in InstrumentGrade::value_variants() {
-            for motion in [NewMotion::Static, NewMotion::Dockside] {
-                let given =
-                    Arguments { instrument: Some(*grade), motion: Some(motion), ..arguments() };
-                let found = answers(&given, None::<&[u8]>).expect("defaults");
-                let text = scenario(&found);
-                let parsed = Scenario::parse(&text, "new.toml", Path::new(""), &[]);
-                let parsed = parsed.unwrap_or_else(|error| panic!("{grade:?}: {error}\n{text}"));
-                assert!(parsed.requirements.is_empty() && parsed.baseline.is_none());
-                assert!(text.contains("# Source: "), "{text}");
-            }
-        }
-    }
 }

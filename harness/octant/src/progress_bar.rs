@@ -22,16 +22,15 @@ pub(crate) struct Progress {
     drawn: Option<Instant>,
 }
 
-impl Progress {
-    /// Renders a line of at most this many columns: the bar, and the words after it.
-    fn line(&self, words: &str, columns: usize) -> String {
-        let words: String = printable(words).chars().take(columns).collect();
-        let room = columns.saturating_sub(words.chars().count() + 1);
-        let (Some(total), 1..) = (self.total, room) else { return words };
-        let share = self.done.min(total) as f64 / total.max(1) as f64;
-        let full = (share * room as f64) as usize;
-        format!("{}{} {words}", "█".repeat(full), "░".repeat(room - full))
-    }
+/// Renders a line of at most this many columns: the bar, if the total is known, and the words after it.
+#[must_use]
+pub fn bar_line(done: u64, total: Option<u64>, words: &str, columns: usize) -> String {
+    let words: String = printable(words).chars().take(columns).collect();
+    let room = columns.saturating_sub(words.chars().count() + 1);
+    let (Some(total), 1..) = (total, room) else { return words };
+    let share = done.min(total) as f64 / total.max(1) as f64;
+    let full = (share * room as f64) as usize;
+    format!("{}{} {words}", "█".repeat(full), "░".repeat(room - full))
 }
 
 /// A bar that threads may share.
@@ -81,7 +80,8 @@ impl ProgressBar {
     fn draw(&self, progress: &mut Progress) {
         // The last column stays free: some terminals break the line after it.
         let columns = columns().saturating_sub(1);
-        let line = progress.line(&(self.words)(progress), columns);
+        let words = (self.words)(progress);
+        let line = bar_line(progress.done, progress.total, &words, columns);
         progress.drawn = Some(Instant::now());
         write(&format!("\r{line:columns$}"));
     }
@@ -112,25 +112,4 @@ fn columns() -> usize {
 #[cfg(not(target_os = "linux"))]
 fn columns() -> usize {
     COLUMNS
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn progress(done: u64, total: Option<u64>) -> Progress {
-        Progress { done, total, message: String::new(), drawn: None }
-    }
-
-    #[test]
-    fn a_line_has_the_share_that_is_done_and_fits() {
-        let line = |done, total, columns| progress(done, total).line("1 of 4", columns);
-        assert_eq!(line(1, Some(4), 15), "██░░░░░░ 1 of 4");
-        assert_eq!(line(4, Some(4), 15), "████████ 1 of 4");
-        assert_eq!(line(9, Some(4), 15), "████████ 1 of 4");
-        assert_eq!(line(0, Some(0), 9), "░░ 1 of 4");
-        assert_eq!(line(1, None, 15), "1 of 4");
-        assert_eq!(line(1, Some(4), 3), "1 o");
-        assert_eq!(progress(1, Some(4)).line("a\u{1b}b", 40).matches('\u{1b}').count(), 0);
-    }
 }

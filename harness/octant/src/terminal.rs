@@ -38,15 +38,14 @@ pub(crate) fn shows_styles(stream: &impl std::io::IsTerminal) -> bool {
 }
 
 /// Sets off the headings of help, where the stream shows styles.
-pub(crate) fn styled<'a>(
-    help: &'a str,
-    stream: &impl std::io::IsTerminal,
-) -> std::borrow::Cow<'a, str> {
+#[must_use]
+pub fn styled<'a>(help: &'a str, stream: &impl std::io::IsTerminal) -> std::borrow::Cow<'a, str> {
     if shows_styles(stream) { with_headings(help).into() } else { help.into() }
 }
 
 /// Underlines headings, and makes the word before an error red.
-fn with_headings(help: &str) -> String {
+#[must_use]
+pub fn with_headings(help: &str) -> String {
     let line = |line: &str| {
         let (text, end) = line.split_at(line.trim_end().len());
         let is_heading = !text.starts_with(' ') && text.ends_with(':');
@@ -88,26 +87,4 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::bench(format!("failed to write the result as JSON: {error}")))?;
     print(&(text + "\n"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_headings_are_set_off() {
-        let help = "Runs.\n\nUsage: octant run\n\nOptions:\n  -h  a: b\n  note:\n";
-        let styled = with_headings(help);
-        let plain = styled.replace("\u{1b}[1;4m", "").replace("\u{1b}[0m", "");
-        assert_eq!(plain, help);
-        assert_eq!(styled.matches("\u{1b}[1;4m").count(), 2);
-        assert!(styled.contains("\u{1b}[1;4mUsage:\u{1b}[0m octant run\n"), "{styled:?}");
-        assert!(with_headings("error: no\n").starts_with("\u{1b}[1;31merror:\u{1b}[0m no"));
-    }
-
-    #[test]
-    fn what_is_no_terminal_shows_no_styles() {
-        let file = std::fs::File::open(env!("CARGO_MANIFEST_DIR")).expect("is there");
-        assert_eq!(styled("Usage: a", &file), "Usage: a");
-    }
 }

@@ -39,6 +39,69 @@ fn any(folder: &Path, has: fn(&str) -> bool) -> bool {
     })
 }
 
+/// Number of programs that cargo makes of a crate's tests: the library's own, those of its other programs, those
+/// with a section of their own, and the files of `tests` where nothing else is said.
+fn programs(folder: &Path, manifest: &toml::Table) -> usize {
+    let is_on = |table: &toml::Table, key: &str| {
+        table.get(key).is_none_or(|value| value.as_bool().unwrap())
+    };
+    let section = |name: &str| manifest.get(name).and_then(toml::Value::as_table);
+    let sections = |name: &str| {
+        let all = manifest.get(name).and_then(toml::Value::as_array);
+        all.into_iter().flatten().map(|one| one.as_table().unwrap())
+    };
+    let library = folder.join("src/lib.rs").exists()
+        && section("lib").is_none_or(|library| is_on(library, "test"));
+    let main = folder.join("src/main.rs").exists() && sections("bin").count() == 0;
+    let others = sections("bin").filter(|program| is_on(program, "test")).count();
+    let found = if section("package").is_none_or(|package| is_on(package, "autotests")) {
+        let files = std::fs::read_dir(folder.join("tests")).into_iter().flatten();
+        files
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| {
+                path.extension().is_some_and(|end| end == "rs") || path.join("main.rs").exists()
+            })
+            .count()
+    } else {
+        sections("test").count()
+    };
+    usize::from(library) + usize::from(main) + others + found
+}
+
+#[test]
+fn programs_of_tests_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let count = |text: &str| programs(folder.path(), &text.parse().unwrap());
+    assert_eq!(count("[package]"), 0);
+    for file in ["src/lib.rs", "src/main.rs", "tests/a.rs", "tests/b/main.rs", "tests/c/mod.rs"] {
+        let path = folder.path().join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, "").unwrap();
+    }
+    assert_eq!(count("[package]"), 4);
+    assert_eq!(count("[package]\n[lib]\ntest = false\n[[bin]]\nname = \"a\""), 3);
+    let one =
+        "[package]\nautotests = false\n[lib]\ntest = false\n[[bin]]\ntest = false\n[[test]]\n";
+    assert_eq!(count(one), 1);
+}
+
+/// A second program costs the time to link it, and unit tests beside a program in `tests` the compilation of the
+/// crate too.
+#[test]
+fn each_crate_has_one_program_of_tests_at_most() {
+    let workspace = manifest(&root());
+    let mut all = 0;
+    for folder in workspace["workspace"]["members"].as_array().unwrap() {
+        let folder = root().join(folder.as_str().unwrap());
+        let count = programs(&folder, &manifest(&folder));
+        assert!(count <= 1, "{} has {count} programs of tests", folder.display());
+        all += count;
+    }
+    let page = std::fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let said = format!("Each crate has one test program, {all} in all.");
+    assert!(page.contains(&said), "CONTRIBUTING.md: {said:?} is expected");
+}
+
 #[test]
 fn an_example_is_found() {
     assert!(has_example("/// One.\n/// ```\n/// assert!(true);\n/// ```\n"));

@@ -18,6 +18,7 @@ mod campaign_scale;
 mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
+mod case_progress;
 mod chain;
 mod compare_refused;
 mod completions;
@@ -67,6 +68,7 @@ mod messages;
 mod new_scenario;
 mod nightly;
 mod own_sequences;
+mod progress_bar;
 mod qualification;
 mod real_chain;
 mod real_recording;
@@ -88,8 +90,10 @@ mod scenario_schema;
 mod score;
 mod selftest;
 mod solution;
+mod source_uri;
 mod system;
 mod system_foreign;
+mod terminal;
 mod text_source;
 mod trace_verdicts;
 #[cfg(unix)]

@@ -77,3 +77,22 @@ fn the_text_names_units_and_conditions() {
     assert!(line("navigation.marks.24h.radial_nmi").contains("24h]"));
     assert!(said.lines().all(|line| line.trim_end() == line), "no line ends in spaces");
 }
+
+#[test]
+fn the_text_has_each_table_of_parameters_once() {
+    let (text, _) = ends(&["requirements", "measures"], 0);
+    let line = |name: &str| {
+        let mut found = text.lines().filter(|line| line.split_whitespace().next() == Some(name));
+        let line = found.next().unwrap_or_else(|| panic!("no {name} in {text}")).to_owned();
+        assert_eq!(found.next(), None, "{name}");
+        line
+    };
+    assert!(line("calibration.parameters.NAME.error").contains("of NAME"));
+    assert!(line("calibration.parameters.NAME.error").ends_with(", ± [calibration, truth]"));
+    assert!(line("calibration.nees.GROUP").ends_with("[calibration, truth, sigma]"));
+    assert!(line("navigation.radial_error_nmi.rate_per_h").contains(" nmi/h "));
+    assert!(!text.lines().any(|line| line.starts_with("baseline.")));
+    assert!(text.contains(
+        "The second method has the measures of alignment, calibration, counterfactual, done"
+    ));
+}

@@ -1,7 +1,67 @@
 //! `octant new`: scenarios that are valid, commented, and never replace another.
 
 use crate::common::program::{ended, octant_in};
-use octant_scenario::Scenario;
+use clap::ValueEnum;
+use octant::grades::InstrumentGrade;
+use octant::new::{NewArguments, NewMotion, answers, scenario};
+use octant_scenario::{GRADES, Scenario};
+use std::path::{Path, PathBuf};
+
+fn arguments() -> NewArguments {
+    NewArguments {
+        file: PathBuf::from("bench.toml"),
+        instrument: None,
+        motion: None,
+        positions: None,
+        calibration: Some("2 h".to_owned()),
+        navigation: None,
+        limit: None,
+        title: None,
+        defaults: false,
+        force: false,
+    }
+}
+
+#[test]
+fn every_choice_has_the_sheet_of_its_name() {
+    let names: Vec<String> = InstrumentGrade::value_variants()
+        .iter()
+        .filter_map(ValueEnum::to_possible_value)
+        .map(|value| value.get_name().to_owned())
+        .collect();
+    assert_eq!(names, GRADES.map(|sheet| sheet.name));
+    for (grade, sheet) in InstrumentGrade::value_variants().iter().zip(GRADES) {
+        assert_eq!(grade.sheet().name, sheet.name);
+    }
+}
+
+#[test]
+fn what_is_not_given_is_asked_until_it_is_a_known_name() {
+    let lines = "my bench\n\n6 h\n0.5 nmi\nmems\ntactical-mems\n\n";
+    let found = answers(&arguments(), Some(lines.as_bytes())).expect("has all answers");
+    assert_eq!((found.title.as_str(), found.positions.as_str()), ("my bench", "eight"));
+    assert_eq!((found.calibration.as_str(), found.navigation.as_str()), ("2 h", "6 h"));
+    assert_eq!(found.instrument, InstrumentGrade::TacticalMems);
+    assert_eq!(found.limit.as_deref(), Some("0.5 nmi"));
+    let ended = answers(&arguments(), Some("a\n".as_bytes()));
+    assert!(ended.is_err_and(|failure| failure.to_string().contains("end of the input")));
+}
+
+#[test]
+fn every_grade_gives_a_scenario() {
+    for grade in InstrumentGrade::value_variants() {
+        for motion in [NewMotion::Static, NewMotion::Dockside] {
+            let given =
+                NewArguments { instrument: Some(*grade), motion: Some(motion), ..arguments() };
+            let found = answers(&given, None::<&[u8]>).expect("defaults");
+            let text = scenario(&found);
+            let parsed = Scenario::parse(&text, "new.toml", Path::new(""), &[]);
+            let parsed = parsed.unwrap_or_else(|error| panic!("{grade:?}: {error}\n{text}"));
+            assert!(parsed.requirements.is_empty() && parsed.baseline.is_none());
+            assert!(text.contains("# Source: "), "{text}");
+        }
+    }
+}
 
 #[test]
 fn a_new_scenario_is_valid_and_needs_force_to_be_replaced() {

@@ -10,8 +10,8 @@ mod numbers;
 mod ticks;
 
 pub use model::{Band, Chart, ChartLine, ChartRole};
-pub(crate) use numbers::text as json_text;
-pub use ticks::{multiples_of, nice_ticks, round, span, thinned};
+pub use numbers::{base64, text as json_text};
+pub use ticks::{decades, exponents, hour_ticks, multiples_of, nice_ticks, round, span, thinned};
 
 use frame::Frame;
 use maud::{Markup, PreEscaped, html};
@@ -74,31 +74,5 @@ impl Chart {
                 }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::frame::{Frame, LEFT};
-    use super::*;
-
-    #[test]
-    fn long_labels_have_room() {
-        let mut chart = Chart::new("Small", "h", "y");
-        let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
-        for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
-            chart.lines =
-                vec![ChartLine { label: String::new(), role: ChartRole::Primary, points: line(y) }];
-            let frame = Frame::of(&chart).unwrap();
-            let longest = frame.y_ticks.iter().map(|tick| tick.1.chars().count()).max().unwrap();
-            assert!(frame.left - 7.0 >= 6.5 * longest as f64, "{:?}", frame.y_ticks);
-            assert_eq!(frame.left > LEFT, moves, "{:?}", frame.y_ticks);
-        }
-    }
-
-    #[test]
-    fn a_chart_without_points_says_so() {
-        let text = Chart::new("Nothing", "h", "y").render().into_string();
-        assert!(text.contains("no data"), "{text}");
     }
 }

@@ -76,7 +76,8 @@ fn plot(data: &ReportData, column: usize) -> Option<Markup> {
 }
 
 /// Range of y that shows everything but the beginning; `None` where all of it is alike.
-fn scale(chart: &Chart) -> Option<[f64; 2]> {
+#[must_use]
+pub fn scale(chart: &Chart) -> Option<[f64; 2]> {
     let lines = || chart.lines.iter().flat_map(|line| line.points.iter().copied());
     let bands = || chart.bands.iter().flat_map(|band| band.points.iter().map(|p| [p[0], p[2]]));
     let all = || lines().chain(bands()).filter(|p| p[1].is_finite());
@@ -87,27 +88,4 @@ fn scale(chart: &Chart) -> Option<[f64; 2]> {
         |least: f64| all().filter(|p| p[0] >= least).map(|p| p[1].abs()).fold(0.0, f64::max);
     let (later, whole) = (reach(begins), reach(from));
     (later > 0.0 && whole > 1.5 * later).then_some([-1.25 * later, 1.25 * later])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_beginning_does_not_set_the_scale() {
-        let mut chart = Chart::new("Heading error", "h", "y");
-        let sigma = |hours: f64, sigma: f64| [hours, -sigma, sigma];
-        chart.bands = vec![Band {
-            label: String::new(),
-            role: ChartRole::Primary,
-            points: vec![sigma(0.0, 6.0), sigma(0.3, 2.0), sigma(0.5, 1.0), sigma(4.0, 0.2)],
-        }];
-        assert_eq!(scale(&chart), Some([-1.25, 1.25]));
-        // An error outside of the band is in sight.
-        let points = vec![[1.0, 0.1], [2.0, -1.6]];
-        chart.lines = vec![ChartLine { label: String::new(), role: ChartRole::Primary, points }];
-        assert_eq!(scale(&chart), Some([-2.0, 2.0]));
-        chart.bands[0].points[0] = sigma(0.0, 2.0);
-        assert_eq!(scale(&chart), None, "the chart's own choice");
-    }
 }

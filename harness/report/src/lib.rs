@@ -6,6 +6,8 @@
 //!   reader's width and range, with one cursor for all of them
 //! - [`page`] is the frame of every page: style, script, contents
 //! - [`series`] collects errors of any number of samples in bounded memory
+//! - [`filtered`], [`innovations`] and [`marks`] have what the page of a run derives for its plots: scales,
+//!   statistics, moves and stops
 
 mod allan;
 mod calibration;
@@ -17,10 +19,10 @@ pub mod counterfactual;
 mod data;
 pub mod discrepancies;
 mod drift;
-mod filtered;
+pub mod filtered;
 mod gimbals;
-mod innovations;
-mod marks;
+pub mod innovations;
+pub mod marks;
 mod pacing;
 pub mod page;
 mod parameters;

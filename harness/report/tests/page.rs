@@ -1,7 +1,5 @@
 //! Content of the page of a run: contents, series for the script, requirements with units, plots.
 
-#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
-
 use octant_report::{
     GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance,
     SolutionSeries, run,

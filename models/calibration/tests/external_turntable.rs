@@ -1,7 +1,7 @@
 //! The external turntable as the reference: all thirty parameters, including the isotropic part of
 //! G.
 
-use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
+use super::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
 use octant_calibration::config::{ExternalTurntable, Noise};
 use octant_calibration::external_turntable::ExternalTurntableEstimator;
 use octant_calibration::least_squares::{Adjustment, AdjustmentRefusal};

@@ -1,6 +1,6 @@
 //! The least-squares estimator on samples made from the error model with known parameters.
 
-use crate::instrument::{self, EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
+use super::instrument::{self, EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
 use octant_calibration::config::{GyroReference, LeastSquares, StaticIntervals};
 use octant_calibration::least_squares::{Adjustment, AdjustmentRefusal, LeastSquaresEstimator};
 use octant_sample::Parameters;

@@ -1,6 +1,6 @@
 //! The attitude of the last standstill after least squares: its σ, and what doesn't fit a base at rest.
 
-use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
+use super::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3};
 use octant_calibration::alignment::attitude_of;
 use octant_calibration::compensation::Compensation;

@@ -2,7 +2,7 @@
 //!
 //! A test in the harness, with the plant, checks that a core continues bit for bit.
 
-use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
+use super::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{SIXTEEN, from_degrees};

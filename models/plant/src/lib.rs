@@ -44,3 +44,11 @@ mod window;
 pub use octant_sample::Truth;
 pub use plant::{Plant, PlantStep, STATE_FORMAT};
 pub use validate::PlantConfigError;
+
+// The tests name the crate as its users do. They are a part of it because what they look at is
+// private: inlined where samples pass, and in no interface.
+#[cfg(test)]
+extern crate self as octant_plant;
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

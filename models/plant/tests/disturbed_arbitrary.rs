@@ -1,7 +1,7 @@
 //! Any disturbances in any order: no panic, bounded work, and a clone, or a plant that was saved
 //! and loaded, continues as the original.
 
-use crate::common::*;
+use super::common::*;
 use octant_plant::config::Motion;
 use octant_plant::{Plant, motion};
 use octant_sample::disturbance::*;

@@ -1,8 +1,8 @@
 //! A perfect strapdown that integrates the samples agrees with truth during any disturbance by
 //! faults and after it: gyros and accelerometers feel one motion.
 
-use crate::common::strapdown::Strapdown;
-use crate::common::*;
+use super::common::strapdown::Strapdown;
+use super::common::*;
 use octant_earth::units::DEG;
 use octant_plant::config::*;
 use octant_plant::{Plant, motion};

@@ -1,8 +1,8 @@
 //! Kinds of faults of motion and environment against independent closed forms of their
 //! documentation.
 
-use crate::common::bench::*;
-use crate::common::*;
+use super::common::bench::*;
+use super::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G, PPM, STANDARD_GRAVITY_MPS2};
 use octant_faults::catalogue::Dimension::*;

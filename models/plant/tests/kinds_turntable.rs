@@ -1,8 +1,8 @@
 //! Kinds of faults of gimbals, drives and encoders against independent closed forms of their
 //! documentation.
 
-use crate::common::bench::*;
-use crate::common::*;
+use super::common::bench::*;
+use super::common::*;
 use octant_earth::units::{ARCSEC, DEG};
 use octant_faults::Value;
 use octant_faults::catalogue::Dimension::*;

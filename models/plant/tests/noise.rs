@@ -1,6 +1,6 @@
 //! Noise of the streams: size, slopes of the Allan deviation, independence.
 
-use crate::common::*;
+use super::common::*;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G};
 use octant_plant::config::*;
 use octant_plant::{Plant, PlantStep};

@@ -1,6 +1,6 @@
 //! The error model and every extension against closed forms.
 
-use crate::common::*;
+use super::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
 use octant_plant::config::*;

@@ -1,7 +1,7 @@
 //! The state of a plant as bytes: a plant that was saved and loaded continues bit for bit, with
 //! everything that can be under way; other bytes are refused.
 
-use crate::common::*;
+use super::common::*;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G, PPM};
 use octant_plant::config::*;
 use octant_plant::course::{Course, CoursePoint};

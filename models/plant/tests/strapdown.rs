@@ -1,8 +1,8 @@
 //! A perfect strapdown integrates the plant's counts and must arrive at the plant's truth:
 //! increments, Coriolis, transport rate, curvature and gravity are then consistent with the motion.
 
-use crate::common::strapdown::Strapdown;
-use crate::common::*;
+use super::common::strapdown::Strapdown;
+use super::common::*;
 use octant_plant::config::*;
 use octant_plant::{Plant, motion};
 

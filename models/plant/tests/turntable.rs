@@ -1,6 +1,6 @@
 //! The turntable: durations, limits, timing of commands, encoder and play.
 
-use crate::common::*;
+use super::common::*;
 use octant_earth::units::{ARCSEC, DEG};
 use octant_plant::Plant;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, GIMBAL_LSB_RAD};

@@ -2,14 +2,15 @@
 
 #![allow(unsafe_code, reason = "pointers of the importer are written")]
 
-use super::instance::{Instance, Options};
-use super::log::{Message, Outlet};
+use super::instance::{Instance, InstanceOptions};
+use super::log::{Callback, Message, Outlet};
 use super::mode::{Mode, Refusal, ServedStandard};
 use super::models::{self, Maker};
 use super::registry::{INSTANCES_MAX, NoInstance, Registry};
 use core::ffi::c_void;
 use core::panic::AssertUnwindSafe;
 use octant_fmi::fmi2::{DISCARD, ERROR, FATAL, OK, Status};
+use octant_fmi::fmi3::LogMessage;
 use std::ffi::CString;
 use std::panic::catch_unwind;
 
@@ -103,7 +104,7 @@ pub(super) fn instantiate(
     function: &'static str,
     name: Option<String>,
     token: Option<String>,
-    options: Options,
+    options: InstanceOptions,
     mut outlet: Outlet,
     logging: bool,
 ) -> *mut c_void {
@@ -134,6 +135,22 @@ fn model(
     models::find(standard, &token).ok_or_else(|| {
         format!("this library isn't the one that the description with the token {token} is of")
     })
+}
+
+/// Makes an instance of a model that the library doesn't list, and returns its handle for the functions of
+/// its standard; `None`: there are too many instances. The environment goes to the callbacks.
+#[must_use]
+pub fn instance_of(
+    maker: &'static Maker,
+    standard: ServedStandard,
+    options: InstanceOptions,
+    callback: Option<LogMessage>,
+    environment: *mut c_void,
+    logging: bool,
+) -> Option<*mut c_void> {
+    let callback = callback.map(Callback::Fmi3);
+    let outlet = Outlet { name: CString::default(), callback, environment };
+    insert(Instance::new(standard, maker, options, outlet, logging)).ok()
 }
 
 /// Registers an instance and returns its handle.

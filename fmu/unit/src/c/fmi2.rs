@@ -5,7 +5,7 @@
 
 use super::access::Arrays;
 use super::call::{call, free, instantiate, no_instance, ok, put};
-use super::instance::{Instance, Options};
+use super::instance::{Instance, InstanceOptions};
 use super::log::{self, Callback, Outlet};
 use super::mode::{self, Modes, Refusal, ServedStandard};
 use super::types::{BooleanOf, Integer2, Real2, Type};
@@ -105,7 +105,7 @@ export! {
         }
         // SAFETY: null, or strings.
         let (name, guid) = unsafe { (log::string(name), log::string(guid)) };
-        let options = Options::default();
+        let options = InstanceOptions::default();
         instantiate(ServedStandard::Fmi2, function, name, guid, options, outlet, logging != FALSE)
     }
 

@@ -14,7 +14,7 @@ pub use types::*;
 pub use unsupported::*;
 
 use super::call::{free, instantiate, no_instance, ok, put};
-use super::instance::Options;
+use super::instance::InstanceOptions;
 use super::log::{self, Callback, Outlet};
 use super::mode::{self, Mode, Refusal, ServedStandard};
 use core::ffi::{CStr, c_void};
@@ -79,7 +79,7 @@ export! {
         }
         // SAFETY: null, or strings.
         let (name, token) = unsafe { (log::string(name), log::string(token)) };
-        let options = Options {
+        let options = InstanceOptions {
             event_mode_used: event_mode_used != FALSE,
             early_return_allowed: early_return_allowed != FALSE,
             intermediate_update,

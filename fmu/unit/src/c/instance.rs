@@ -14,8 +14,10 @@ const TIME: usize = 0;
 
 /// Options of FMI 3.0 at instantiation.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Options {
+pub struct InstanceOptions {
+    /// The importer handles events.
     pub event_mode_used: bool,
+    /// A step may end before its time.
     pub early_return_allowed: bool,
     /// Callback between the periods of a step that has several.
     pub intermediate_update: Option<IntermediateUpdate>,
@@ -27,7 +29,7 @@ pub(super) struct Instance {
     standard: ServedStandard,
     maker: &'static Maker,
     layout: &'static Layout,
-    pub(super) options: Options,
+    pub(super) options: InstanceOptions,
     pub(super) outlet: Outlet,
     pub(super) log: Log,
     pub(super) run: Run,
@@ -40,7 +42,7 @@ impl Instance {
     pub(super) fn new(
         standard: ServedStandard,
         maker: &'static Maker,
-        options: Options,
+        options: InstanceOptions,
         outlet: Outlet,
         logging: bool,
     ) -> Self {

@@ -172,32 +172,3 @@ pub(super) fn name(model: &Model, slot: usize) -> String {
     }
     "time".to_owned()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::calibrator::table::MODEL;
-
-    #[test]
-    fn slots_are_those_of_the_table() {
-        let layout = Layout::of(&MODEL);
-        assert_eq!(layout.slots.len(), MODEL.slots());
-        let slot = MODEL.slot("gyro.delta_theta");
-        assert_eq!(layout.slots[slot].elements, 3);
-        assert_eq!(layout.slots[slot + 1].elements, 0);
-        assert_eq!(layout.slots[slot].settable, Settable::Always);
-        assert_eq!(name(&MODEL, slot + 1), "gyro.delta_theta[2]");
-        assert_eq!(name(&MODEL, MODEL.slot("mode")), "mode");
-        assert_eq!(layout.slots[MODEL.slot("mode")].settable, Settable::Never);
-        assert_eq!(layout.slots[MODEL.slot("site.latitude")].settable, Settable::Fixed);
-        assert!(layout.slots[MODEL.slot("reference.height")].any);
-        assert_eq!(layout.slots[0].elements, 1);
-        let outputs: usize = MODEL
-            .variables
-            .iter()
-            .filter(|variable| variable.causality == DeclaredCausality::Output)
-            .map(crate::table::DeclaredVariable::slots)
-            .sum();
-        assert_eq!(layout.outputs.len(), outputs);
-    }
-}

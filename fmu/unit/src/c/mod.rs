@@ -158,13 +158,18 @@ mod run;
 mod snapshots;
 mod state;
 mod step;
-#[cfg(test)]
-#[allow(unsafe_code, reason = "C functions are called")]
-mod tests;
 mod ticks;
 mod token;
 mod types;
 
 pub use log::CATEGORIES;
 pub use mode::ServedStandard;
-pub use token::token;
+pub use token::{fnv_1a, token};
+
+// For tests with a model of their own, which the library doesn't list.
+#[doc(hidden)]
+pub use call::instance_of;
+#[doc(hidden)]
+pub use instance::InstanceOptions;
+#[doc(hidden)]
+pub use models::Maker;

@@ -71,16 +71,18 @@ fn boxed<C: ModelComponent>(made: Result<C, C::Error>) -> Made {
 
 /// Factory of the components of a model.
 #[derive(Debug)]
-pub(super) struct Maker {
-    pub model: &'static Model,
-    pub initialize: fn(&mut CellValues) -> Made,
-    pub load: fn(&[u8], &CellValues) -> Made,
+pub struct Maker {
+    pub(super) model: &'static Model,
+    pub(super) initialize: fn(&mut CellValues) -> Made,
+    pub(super) load: fn(&[u8], &CellValues) -> Made,
     layout: OnceLock<Layout>,
     tokens: OnceLock<[String; 2]>,
 }
 
 impl Maker {
-    pub(super) const fn of<C: ModelComponent>() -> Self {
+    /// Makes the factory of a type of components.
+    #[must_use]
+    pub const fn of<C: ModelComponent>() -> Self {
         Self {
             model: C::MODEL,
             initialize: |values| with_room(|| boxed(C::initialize(values))),

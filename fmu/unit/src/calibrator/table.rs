@@ -3,7 +3,8 @@
 mod enumerations;
 mod parameters;
 mod ports;
-pub(crate) mod slot;
+#[doc(hidden)]
+pub mod slot;
 
 pub use enumerations::*;
 pub(crate) use parameters::PARAMETERS;
@@ -26,36 +27,3 @@ pub static MODEL: Model = Model {
     variables: &VARIABLES,
     periods_per_step: (1, 1),
 };
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_sample::parameters::ParameterGroup;
-
-    #[test]
-    fn every_variable_is_described_once_and_starts_within_its_range() {
-        crate::table::check(&MODEL);
-    }
-
-    #[test]
-    fn groups_of_parameters_lie_one_after_another() {
-        for group in ParameterGroup::ALL {
-            let range = group.range();
-            for (prefix, first) in [
-                ("parameters", slot::PARAMETERS),
-                ("sigma", slot::SIGMA),
-                ("initial_parameters", slot::INITIAL_PARAMETERS),
-            ] {
-                let (slot, variable) = MODEL.find(&format!("{prefix}.{}", group.name())).unwrap();
-                assert_eq!(slot, first + range.start);
-                assert_eq!(variable.slots(), range.len());
-            }
-            for (prefix, first) in
-                [("estimated", slot::ESTIMATED), ("prior", slot::PRIOR_PARAMETERS)]
-            {
-                let name = format!("procedure.calibration.{prefix}.{}", group.name());
-                assert_eq!(MODEL.find(&name).unwrap().0, first + group as usize);
-            }
-        }
-    }
-}

@@ -1,6 +1,7 @@
 //! Table of the Calibrator on CAN: the bus, the core's outputs, and its parameters.
 
-pub(super) mod slot;
+#[doc(hidden)]
+pub mod slot;
 
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
@@ -118,35 +119,3 @@ pub(super) const OUTPUT_SLOTS: usize = {
     }
     slots
 };
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Outputs are copied as one range of cells.
-    #[test]
-    fn outputs_stand_in_the_order_of_the_calibrator() {
-        assert_eq!(calibrator::OUTPUTS[0].name, "gimbal_command.azimuth");
-        for variable in &calibrator::OUTPUTS {
-            let (here, there) = (MODEL.slot(variable.name), calibrator::MODEL.slot(variable.name));
-            assert_eq!(here - slot::OUTPUTS, there - slot::CALIBRATOR_OUTPUTS, "{}", variable.name);
-        }
-    }
-
-    /// Every parameter of the core, except stamps, is a parameter of the device.
-    #[test]
-    fn the_core_is_configured_by_the_same_parameters() {
-        for variable in &calibrator::PARAMETERS {
-            let found = MODEL.find(variable.name).map(|(_, found)| found);
-            match variable.name {
-                "imu.external_stamps" => assert!(found.is_none()),
-                name => {
-                    let found = found.unwrap_or_else(|| panic!("{name} is missing"));
-                    assert_eq!(found.kind, variable.kind, "{name}");
-                    assert_eq!(found.start, variable.start, "{name}");
-                    assert_eq!((found.min, found.max), (variable.min, variable.max), "{name}");
-                }
-            }
-        }
-    }
-}

@@ -9,8 +9,6 @@ mod error;
 mod faults;
 mod outputs;
 pub mod table;
-#[cfg(test)]
-mod tests;
 
 pub use config::config;
 pub use error::{FaultError, Misplaced, PlantFailure, PlantValueError, PutError, Unplaced};

@@ -4,7 +4,8 @@ mod enumerations;
 mod faults;
 mod instrument;
 mod ports;
-pub(crate) mod slot;
+#[doc(hidden)]
+pub mod slot;
 mod world;
 
 pub(crate) use enumerations::acts_in_plant;
@@ -38,64 +39,3 @@ pub static MODEL: Model = Model {
     variables: &VARIABLES,
     periods_per_step: (1, 1),
 };
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::table::DeclaredCausality;
-
-    #[test]
-    fn every_variable_is_described_once_and_starts_within_its_range() {
-        crate::table::check(&MODEL);
-    }
-
-    /// A tool connects both models by name: each output of the plant has the type of the core's
-    /// input.
-    #[test]
-    fn outputs_are_the_inputs_of_the_calibrator_and_its_command_is_the_input() {
-        let of = |model: &'static Model, causality| {
-            model.variables.iter().filter(move |variable| variable.causality == causality)
-        };
-        let calibrator = &crate::calibrator::table::MODEL;
-        for input in of(calibrator, DeclaredCausality::Input) {
-            let (_, output) = MODEL.find(input.name).unwrap();
-            assert_eq!(output.causality, DeclaredCausality::Output, "{}", input.name);
-            assert_eq!(
-                (output.kind, output.elements, output.quantity),
-                (input.kind, input.elements, input.quantity),
-                "{}",
-                input.name
-            );
-        }
-        for input in
-            of(&MODEL, DeclaredCausality::Input).filter(|input| !input.name.starts_with("fault"))
-        {
-            let (_, output) = calibrator.find(input.name).unwrap();
-            assert_eq!((output.kind, output.elements), (input.kind, input.elements));
-            assert_eq!(output.quantity, input.quantity);
-        }
-    }
-
-    #[test]
-    fn what_comes_several_times_has_equal_strides() {
-        for fault in 1..=FAULT_SLOTS {
-            let at = |name: &str| MODEL.slot(&format!("fault[{fault}].{name}"));
-            let behind = fault - 1;
-            assert_eq!(at("kind"), slot::FAULT_KIND + behind * slot::FAULT_STRIDE);
-            assert_eq!(at("values"), slot::FAULT_VALUES + behind * slot::FAULT_STRIDE);
-            assert_eq!(at("armed"), slot::FAULT_ARMED + behind * slot::RECEIPT_STRIDE);
-            assert_eq!(at("samples_altered"), slot::FAULT_ALTERED + behind * slot::RECEIPT_STRIDE);
-            assert_eq!(at("fire"), slot::FAULT_FIRE + behind);
-        }
-        for (index, motion) in
-            ["roll", "pitch", "yaw", "surge", "sway", "heave"].into_iter().enumerate()
-        {
-            let count = MODEL.slot(&format!("motion.{motion}.count"));
-            assert_eq!(count, slot::ROLL_COUNT + index * slot::MOTION_STRIDE);
-            for (place, part) in ["amplitude", "period", "phase"].into_iter().enumerate() {
-                let slot = MODEL.slot(&format!("motion.{motion}.{part}"));
-                assert_eq!(slot, count + 1 + place * SINUSOIDS_MAX);
-            }
-        }
-    }
-}

@@ -16,7 +16,9 @@ pub struct HeardFrame {
 }
 
 impl HeardFrame {
-    pub(super) fn new(id: u32, extended: bool, data: &[u8]) -> Self {
+    /// Creates a frame with at most 64 data bytes; more are left out.
+    #[must_use]
+    pub fn new(id: u32, extended: bool, data: &[u8]) -> Self {
         let mut bytes = [0; 64];
         let length = data.len().min(64);
         bytes[..length].copy_from_slice(&data[..length]);

@@ -9,7 +9,8 @@ mod tcp;
 mod udp;
 
 #[cfg(all(target_os = "linux", feature = "can"))]
-mod socket_can;
+#[doc(hidden)]
+pub mod socket_can;
 
 pub use exec::{ExecPort, StdioPort};
 pub use listen::{HeardFrame, Listener};

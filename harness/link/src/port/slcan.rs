@@ -100,7 +100,7 @@ impl SlcanPort {
     ///
     /// # Errors
     /// If the port is gone.
-    pub(super) fn hear(&mut self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
+    pub fn hear(&mut self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
         let begun = Instant::now();
         loop {
             while self.from < self.to {
@@ -331,80 +331,4 @@ fn identified(digits: usize, rest: &[u8]) -> Option<HeardFrame> {
 
 fn digit(byte: u8) -> Option<u8> {
     (byte as char).to_digit(16).map(|digit| digit as u8)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn read(text: &[u8]) -> Vec<BusEvent> {
-        let mut lines = Lines::default();
-        text.iter().filter_map(|byte| lines.push(*byte)).collect()
-    }
-
-    fn line(frame: &BusFrame) -> Vec<u8> {
-        let mut line = [0; LINE_MAX + 1];
-        let count = write_line(frame, &mut line);
-        line[..count].to_vec()
-    }
-
-    #[test]
-    fn frames_are_the_lines_that_the_protocol_has() {
-        let classic = BusFrame::new(0x123, CanVersion::Classic, &[0x11, 0x22, 0xAF]).unwrap();
-        assert_eq!(line(&classic), b"t12331122AF\r");
-        let fd = BusFrame::new(0x5A0, CanVersion::Fd, &[0xFF; 12]).unwrap();
-        assert_eq!(line(&fd), b"b5A09FFFFFFFFFFFFFFFFFFFFFFFF\r");
-        assert_eq!(read(b"t12331122af\r"), [BusEvent::Frame(classic)]);
-    }
-
-    #[test]
-    fn what_is_no_frame_of_ours_is_told_or_passed_over() {
-        let foreign = BusEvent::Trouble(BusTrouble::Foreign);
-        for text in [
-            &b"T0000012381122334455667788\r"[..],
-            b"r1230\r",
-            b"t12\r",
-            b"t1239\r",
-            b"t123411\r",
-            b"t12G0\r",
-            b"tFFF0\r",
-        ] {
-            assert_eq!(read(text), [foreign], "{}", String::from_utf8_lossy(text));
-        }
-        assert_eq!(read(&[b"t".as_slice(), &[b'0'; 500], b"\rt0000\r"].concat()).len(), 2);
-        assert!(read(b"\r\rz\rV1013\rN1234\rF00\r").is_empty());
-        assert_eq!(read(b"\x07"), [BusEvent::Trouble(BusTrouble::Overrun)]);
-        assert_eq!(read(b"F20\rF04\r").len(), 2);
-    }
-
-    #[test]
-    fn who_listens_hears_frames_of_any_identifier() {
-        let mut lines = Lines::default();
-        let text = b"t12331122AF\rT18FF00A12BEEF\rtFFF0\rT200000000\rr1230\r\x07D0000012390102030405060708090A0B0C\rt12390102030405060708090A0B0C\r";
-        let heard: Vec<HeardFrame> = text.iter().filter_map(|byte| lines.heard(*byte)).collect();
-        assert_eq!(
-            heard,
-            [
-                HeardFrame::new(0x123, false, &[0x11, 0x22, 0xAF]),
-                HeardFrame::new(0x18FF_00A1, true, &[0xBE, 0xEF]),
-                HeardFrame::new(0x123, true, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]),
-            ]
-        );
-    }
-
-    proptest! {
-        #[test]
-        fn every_frame_comes_back(id in 0..0x800u16, fd: bool, code in 0..16usize, fill: u8) {
-            let format = if fd { CanVersion::Fd } else { CanVersion::Classic };
-            let data = vec![fill; LENGTHS[code].min(format.room())];
-            let frame = BusFrame::new(id, format, &data).unwrap();
-            prop_assert_eq!(read(&line(&frame)), [BusEvent::Frame(frame)]);
-        }
-
-        #[test]
-        fn any_bytes_are_taken(bytes: Vec<u8>) {
-            read(&bytes);
-        }
-    }
 }

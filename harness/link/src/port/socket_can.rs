@@ -81,7 +81,7 @@ impl SocketCan {
                     .to_owned(),
             ));
         }
-        compare(can, interface_bus(&can.interface, can.format)).map_err(refused)?;
+        compare(can, interface_bus(&can.interface, can.format))?;
         let socket =
             CanFdSocket::open(&can.interface).map_err(|error| refused(error.to_string()))?;
         let set_up = || {
@@ -162,8 +162,11 @@ pub fn interface_bus(interface: &str, format: CanVersion) -> Option<Bus> {
     Some(Bus { nominal_bps, data_bps })
 }
 
-/// Checks that the interface has the rates that the URI says.
-fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
+/// Checks that the interface has the rates that the URI says; an interface without rates has them.
+///
+/// # Errors
+/// If a rate is another one.
+pub fn compare(can: &Can, found: Option<Bus>) -> Result<(), PortError> {
     let Some(found) = found else { return Ok(()) };
     let pairs = [
         ("bitrate", can.bitrate, Some(found.nominal_bps)),
@@ -173,14 +176,16 @@ fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
         if let (Some(said), Some(found)) = (said, found)
             && said != found
         {
-            return Err(format!("the interface has {option} {found}, expected {said}"));
+            let reason = format!("the interface has {option} {found}, expected {said}");
+            return Err(PortError::open(Uri::Can(can.clone()), reason));
         }
     }
     Ok(())
 }
 
 /// Kernel filters of a role: it receives the messages of the other roles.
-fn filters(role: EndRole, format: CanVersion) -> Vec<CanFilter> {
+#[must_use]
+pub fn filters(role: EndRole, format: CanVersion) -> Vec<CanFilter> {
     let heard = |sender: EndRole| (sender == EndRole::Harness) != (role == EndRole::Harness);
     Slot::ALL
         .iter()
@@ -191,7 +196,8 @@ fn filters(role: EndRole, format: CanVersion) -> Vec<CanFilter> {
 
 /// Problem that an error frame reports. Drivers combine several bits in one frame: the worst one
 /// counts.
-fn trouble(frame: &CanErrorFrame) -> BusTrouble {
+#[must_use]
+pub fn trouble(frame: &CanErrorFrame) -> BusTrouble {
     let bits = frame.error_bits();
     let controller =
         if bits & error::CONTROLLER != 0 { frame.data().get(1).copied().unwrap_or(0) } else { 0 };
@@ -215,7 +221,8 @@ fn trouble(frame: &CanErrorFrame) -> BusTrouble {
 }
 
 /// Converts a frame of the kernel to a frame of this protocol.
-fn event(frame: &CanAnyFrame) -> BusEvent {
+#[must_use]
+pub fn event(frame: &CanAnyFrame) -> BusEvent {
     let ours = |id: Id, format: CanVersion, data: &[u8]| match id {
         Id::Standard(id) => BusFrame::new(id.as_raw(), format, data),
         Id::Extended(_) => None,
@@ -294,68 +301,5 @@ impl Frames for SocketCan {
     fn reopen(&mut self) -> Result<(), PortError> {
         *self = Self::open(&self.can, self.role)?;
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn error_frame(bits: u32, controller: u8) -> BusTrouble {
-        let frame = CanErrorFrame::new_error(bits, &[0, controller, 0, 0, 0, 0, 0, 0]).unwrap();
-        trouble(&frame)
-    }
-
-    #[test]
-    fn an_error_frame_is_the_worst_that_it_says() {
-        assert_eq!(error_frame(0x40, 0), BusTrouble::Off);
-        assert_eq!(error_frame(0x04, 0x20), BusTrouble::Passive);
-        // Error frames as the sja1000 driver reports them: protocol violation, bus error and controller
-        // in one frame.
-        assert_eq!(error_frame(0x8C, 0x10), BusTrouble::Passive);
-        assert_eq!(error_frame(0x8C, 0x08), BusTrouble::Warning);
-        assert_eq!(error_frame(0x88, 0x10), BusTrouble::ErrorFrame);
-        assert_eq!(error_frame(0x02, 0), BusTrouble::ArbitrationLost);
-        assert_eq!(error_frame(0x20, 0), BusTrouble::NotAcknowledged);
-        assert_eq!(error_frame(0x100, 0), BusTrouble::Restarted);
-        assert_eq!(error_frame(0x04, 0x01), BusTrouble::Overrun);
-    }
-
-    #[test]
-    fn a_frame_becomes_the_kernel_s_and_is_itself_again() {
-        let id = StandardId::new(0x2C3).unwrap();
-        let classic = CanAnyFrame::Normal(CanDataFrame::new(id, &[1, 2, 3]).unwrap());
-        let expected = BusFrame::new(0x2C3, CanVersion::Classic, &[1, 2, 3]).unwrap();
-        assert_eq!(event(&classic), BusEvent::Frame(expected));
-        let fd = CanAnyFrame::Fd(CanFdFrame::new(id, &[7; 12]).unwrap());
-        let expected = BusFrame::new(0x2C3, CanVersion::Fd, &[7; 12]).unwrap();
-        assert_eq!(event(&fd), BusEvent::Frame(expected));
-        let extended = socketcan::ExtendedId::new(0x2C3).unwrap();
-        let foreign = CanAnyFrame::Normal(CanDataFrame::new(extended, &[1]).unwrap());
-        assert_eq!(event(&foreign), BusEvent::Trouble(BusTrouble::Foreign));
-    }
-
-    #[test]
-    fn rates_that_differ_are_told() {
-        let uri: Uri = "can:can0?bitrate=500000".parse().unwrap();
-        let Uri::Can(can) = uri else { panic!() };
-        assert!(compare(&can, None).is_ok());
-        assert!(compare(&can, Some(Bus::classic(500_000))).is_ok());
-        let told = compare(&can, Some(Bus::classic(250_000))).unwrap_err();
-        assert_eq!(told, "the interface has bitrate 250000, expected 500000");
-    }
-
-    #[test]
-    fn each_end_hears_the_other() {
-        let heard = |role| filters(role, CanVersion::Classic).len();
-        assert_eq!(heard(EndRole::Device), 8);
-        assert_eq!(heard(EndRole::Harness), Slot::ALL.len() - 8);
-    }
-
-    #[test]
-    fn an_interface_that_isn_t_there_is_named() {
-        let Uri::Can(can) = "can:octant9".parse().unwrap() else { panic!() };
-        let error = SocketCan::open(&can, EndRole::Harness).unwrap_err().to_string();
-        assert!(error.contains("can:octant9") && error.contains("no such interface"), "{error}");
     }
 }

@@ -89,7 +89,8 @@ impl Columns {
 
 /// Encodes bytes in base64 without padding. A tilde stands for N, so that no column can read as "NaN",
 /// which pages are searched for.
-fn base64(bytes: &[u8]) -> String {
+#[must_use]
+pub fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLM~OPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
@@ -103,7 +104,8 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 /// Writes text as a JSON string without characters that mean something in HTML.
-pub(crate) fn text(text: &str) -> String {
+#[must_use]
+pub fn text(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
         match c {
@@ -119,25 +121,4 @@ pub(crate) fn text(text: &str) -> String {
     }
     quoted.push('"');
     quoted
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn base64_is_that_of_the_standard_but_for_the_tilde() {
-        // RFC 4648, section 10, without padding.
-        for (plain, coded) in
-            [("", ""), ("f", "Zg"), ("fo", "Zm8"), ("foo", "Zm9v"), ("foob", "Zm9vYg")]
-        {
-            assert_eq!(base64(plain.as_bytes()), coded);
-        }
-        assert_eq!(base64(&[0x35, 0xa3, 0x5a]), "~a~a");
-    }
-
-    #[test]
-    fn text_can_not_end_the_script_element() {
-        assert_eq!(text("a</script>\"\\\n"), r#""a\u003c/script\u003e\"\\\u000a""#);
-    }
 }

@@ -71,7 +71,7 @@ pub(super) fn whole_ticks(range: [f64; 2]) -> Vec<f64> {
 }
 
 /// Chooses ticks of an axis in hours.
-pub(super) fn hour_ticks(range: [f64; 2], count: f64) -> Vec<f64> {
+pub fn hour_ticks(range: [f64; 2], count: f64) -> Vec<f64> {
     let raw = (range[1] - range[0]) / count;
     let step = [1.0 / 6.0, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0, 48.0, 96.0]
         .into_iter()
@@ -90,7 +90,7 @@ fn multiples(range: [f64; 2], step: f64) -> Vec<f64> {
 }
 
 /// Chooses whole decades around a range, with one tick each.
-pub(super) fn decades(range: [f64; 2]) -> ([f64; 2], Vec<f64>) {
+pub fn decades(range: [f64; 2]) -> ([f64; 2], Vec<f64>) {
     let low = libm::floor(libm::log10(range[0]) + 1e-9);
     let high = libm::ceil(libm::log10(range[1]) - 1e-9).max(low + 1.0);
     let ticks = (0..=(high - low) as u32).map(|k| libm::pow(10.0, low + f64::from(k))).collect();
@@ -98,31 +98,6 @@ pub(super) fn decades(range: [f64; 2]) -> ([f64; 2], Vec<f64>) {
 }
 
 /// Chooses the exponents of the powers of ten within a range of exponents.
-pub(super) fn exponents(range: [f64; 2]) -> Vec<f64> {
+pub fn exponents(range: [f64; 2]) -> Vec<f64> {
     multiples(range, 1.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        assert_eq!(nice_ticks([-0.3, 1.1], 5, None), [0.0, 0.5, 1.0]);
-        assert_eq!(
-            hour_ticks([0.0, 72.0], 12.0),
-            (0..=12).map(|k| 6.0 * f64::from(k)).collect::<Vec<_>>()
-        );
-        assert_eq!(decades([0.02, 3.0]).0[1], 10.0);
-        assert_eq!(exponents([-2.3, 1.2]), [-2.0, -1.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn thinning_keeps_a_lone_spike() {
-        let mut points: Vec<[f64; 2]> = (0..100_000).map(|k| [f64::from(k), 0.0]).collect();
-        points[54_321][1] = 7.0;
-        let thin = thinned(&points, 900);
-        assert!(thin.len() <= 3600);
-        assert!(thin.contains(&[54_321.0, 7.0]));
-    }
 }

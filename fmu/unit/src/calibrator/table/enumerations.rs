@@ -84,25 +84,3 @@ enumerations! {
         1 moving "On a ship, which moves at most as the bounds say.";
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_calibration::positions::SEQUENCES;
-    use octant_sample::Mode;
-
-    #[test]
-    fn modes_are_those_of_the_core() {
-        for mode in Mode::ALL {
-            let item = MODE.items.iter().find(|item| item.0 == mode as i32).unwrap();
-            assert_eq!(item.1, mode.name());
-        }
-        assert_eq!(MODE.items.len(), Mode::ALL.len());
-    }
-
-    #[test]
-    fn every_published_sequence_has_a_name() {
-        let names = POSITIONS.items.iter().skip(1).map(|item| item.1.replace('_', "-"));
-        assert!(names.eq(SEQUENCES.iter().map(|sequence| sequence.0)));
-    }
-}

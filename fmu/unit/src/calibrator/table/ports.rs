@@ -117,21 +117,3 @@ const SOLUTION: [DeclaredVariable; 16] = variables! {
 
 pub(crate) const OUTPUTS: [DeclaredVariable; SOLUTION.len() + 2 * 7] =
     crate::table::concatenated(&[&SOLUTION, &ESTIMATES, &SIGMAS]);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_sample::{Health, Status};
-
-    #[test]
-    fn flags_are_described_with_their_values() {
-        let find = |name| INPUTS.iter().chain(&OUTPUTS).find(|v| v.name == name).unwrap();
-        for bit in Health::all().iter() {
-            assert!(find("health").description.contains(&format!(" {}: ", bit.bits())), "{bit:?}");
-        }
-        for bit in Status::all().iter() {
-            let text = find("imu.status").description;
-            assert!(text.contains(&format!(" {}: ", bit.bits())), "{bit:?}");
-        }
-    }
-}

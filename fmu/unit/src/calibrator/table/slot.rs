@@ -4,7 +4,7 @@ use super::MODEL;
 
 macro_rules! slots {
     ($($constant:ident $name:literal;)*) => {
-        $(pub(crate) const $constant: usize = MODEL.slot($name);)*
+        $(pub const $constant: usize = MODEL.slot($name);)*
     };
 }
 

@@ -84,30 +84,3 @@ const fn items() -> [(i32, &'static str, &'static str); COUNT] {
     }
     items
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_faults::kinds;
-
-    #[test]
-    fn the_items_are_the_kinds_that_can_act_by_their_places() {
-        let all: Vec<_> = kinds::all().collect();
-        for (value, name, summary) in &ITEMS[1..] {
-            let kind = all[*value as usize - 1];
-            assert_eq!((kind.name, kind.summary), (*name, *summary));
-        }
-        let mut left: Vec<_> = all
-            .iter()
-            // Inside an FMU there is no wire, and no harness.
-            .filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host))
-            .filter(|kind| !ITEMS.iter().any(|item| item.1 == kind.name))
-            .map(|kind| kind.name)
-            .collect();
-        left.sort_unstable();
-        assert_eq!(
-            left,
-            ["brown-out", "duplicate", "late-delivery", "reorder", "restart", "stale-table"]
-        );
-    }
-}

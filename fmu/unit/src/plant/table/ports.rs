@@ -73,17 +73,3 @@ pub(super) const OUTPUTS: [DeclaredVariable; 21] = variables! {
     output("truth.gimbal.roll", Real) of(&q::ANGLE) nominal(1.0):
         "True angle of the outer gimbal at the end of the step, without encoder error.";
 };
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use octant_sample::Status;
-
-    #[test]
-    fn flags_are_described_with_their_values() {
-        let status = OUTPUTS.iter().find(|output| output.name == "imu.status").unwrap();
-        for bit in Status::all().iter() {
-            assert!(status.description.contains(&format!(" {}: ", bit.bits())), "{bit:?}");
-        }
-    }
-}

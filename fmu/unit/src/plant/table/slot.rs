@@ -4,7 +4,7 @@ use super::MODEL;
 
 macro_rules! slots {
     ($($constant:ident $name:literal;)*) => {
-        $(pub(crate) const $constant: usize = MODEL.slot($name);)*
+        $(pub const $constant: usize = MODEL.slot($name);)*
     };
 }
 
@@ -103,8 +103,8 @@ slots! {
 }
 
 /// Distance from one fault's parameters to the next one's.
-pub(crate) const FAULT_STRIDE: usize = NEXT_FAULT_KIND - FAULT_KIND;
+pub const FAULT_STRIDE: usize = NEXT_FAULT_KIND - FAULT_KIND;
 /// Distance from one fault's outputs to the next one's.
-pub(crate) const RECEIPT_STRIDE: usize = NEXT_FAULT_ARMED - FAULT_ARMED;
+pub const RECEIPT_STRIDE: usize = NEXT_FAULT_ARMED - FAULT_ARMED;
 /// Distance from the sinusoids of one motion to those of the next.
-pub(crate) const MOTION_STRIDE: usize = PITCH_COUNT - ROLL_COUNT;
+pub const MOTION_STRIDE: usize = PITCH_COUNT - ROLL_COUNT;

@@ -1,11 +1,11 @@
 //! The plant as a component: outputs at the start, faults by hand, refusals, and its state. A test
 //! in the harness compares its outputs with those of the plant in one process.
 
-use super::table::{FAULT_KIND, FAULT_NUMBERS, MODEL, slot};
-use super::{PlantFmu, numbers};
-use crate::component::ModelComponent;
-use crate::values::CellValues;
 use octant_faults::kinds;
+use octant_fmu::component::ModelComponent;
+use octant_fmu::plant::table::{FAULT_KIND, FAULT_NUMBERS, MODEL, slot};
+use octant_fmu::plant::{PlantFmu, faults, numbers};
+use octant_fmu::values::CellValues;
 
 fn at(name: &str) -> usize {
     let (name, element) = match name.rsplit_once('@') {
@@ -36,7 +36,7 @@ fn refused(change: impl FnOnce(&mut CellValues)) -> String {
     let mut values = CellValues::new(&MODEL);
     change(&mut values);
     match PlantFmu::initialize(&mut values) {
-        Ok(_) => panic!("it was taken: {:?}", super::faults(&values)),
+        Ok(_) => panic!("it was taken: {:?}", faults(&values)),
         Err(error) => error.to_string(),
     }
 }

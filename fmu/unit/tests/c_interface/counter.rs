@@ -1,9 +1,9 @@
 //! A model that panics, fails and makes several periods on demand.
 
-use crate::c::models::Maker;
-use crate::component::ModelComponent;
-use crate::table::{DeclaredEnumeration, DeclaredVariable, ElementType, Model};
-use crate::values::CellValues;
+use octant_fmu::c::Maker;
+use octant_fmu::component::ModelComponent;
+use octant_fmu::table::{DeclaredEnumeration, DeclaredVariable, ElementType, Model};
+use octant_fmu::values::CellValues;
 
 static LEVEL: DeclaredEnumeration = DeclaredEnumeration {
     name: "Level",

@@ -1,19 +1,16 @@
 //! The interface with a model that panics, fails and makes several periods on demand.
+#![allow(unsafe_code, reason = "C functions are called")]
 
 mod counter;
 
-use super::call::insert;
-use super::fmi2::*;
-use super::fmi3::*;
-use super::instance::{Instance, Options};
-use super::log::{Callback, Outlet};
-use super::mode::ServedStandard;
 use core::ffi::{CStr, c_char, c_void};
 use core::ptr::{from_mut, null, null_mut};
 use counter::*;
 use octant_fmi::fmi2::{DISCARD, ERROR, FATAL, OK, WARNING};
-use octant_fmi::fmi3::IntermediateUpdate;
-use std::ffi::CString;
+use octant_fmi::fmi3::{IntermediateUpdate, LogMessage};
+use octant_fmu::c::fmi2::*;
+use octant_fmu::c::fmi3::*;
+use octant_fmu::c::{InstanceOptions, ServedStandard, instance_of};
 use std::sync::Mutex;
 
 /// Messages as (status, category, text).
@@ -32,10 +29,13 @@ unsafe extern "C" fn hear(
     heard.lock().unwrap().push((status, owned(category), owned(text)));
 }
 
-fn new(standard: ServedStandard, options: Options, environment: *mut c_void) -> *mut c_void {
-    let callback = Some(Callback::Fmi3(hear)).filter(|_| !environment.is_null());
-    let outlet = Outlet { name: CString::default(), callback, environment };
-    insert(Instance::new(standard, &MAKER, options, outlet, true)).unwrap()
+fn new(
+    standard: ServedStandard,
+    options: InstanceOptions,
+    environment: *mut c_void,
+) -> *mut c_void {
+    let callback = Some(hear as LogMessage).filter(|_| !environment.is_null());
+    instance_of(&MAKER, standard, options, callback, environment, true).unwrap()
 }
 
 fn environment(heard: &Heard) -> *mut c_void {
@@ -43,7 +43,7 @@ fn environment(heard: &Heard) -> *mut c_void {
 }
 
 fn stepping2() -> *mut c_void {
-    let c = new(ServedStandard::Fmi2, Options::default(), null_mut());
+    let c = new(ServedStandard::Fmi2, InstanceOptions::default(), null_mut());
     // SAFETY: a handle and no pointers.
     unsafe {
         assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), OK);
@@ -53,7 +53,7 @@ fn stepping2() -> *mut c_void {
     c
 }
 
-fn stepping3(options: Options, environment: *mut c_void) -> *mut c_void {
+fn stepping3(options: InstanceOptions, environment: *mut c_void) -> *mut c_void {
     let i = new(ServedStandard::Fmi3, options, environment);
     // SAFETY: a handle and no pointers.
     unsafe {
@@ -99,8 +99,8 @@ fn set_trouble3(i: *mut c_void, value: i32) {
 #[test]
 fn a_panic_ends_its_instance_alone() {
     let heard = Heard::default();
-    let i = stepping3(Options::default(), environment(&heard));
-    let other = stepping3(Options::default(), null_mut());
+    let i = stepping3(InstanceOptions::default(), environment(&heard));
+    let other = stepping3(InstanceOptions::default(), null_mut());
     set_trouble3(i, 1);
     assert_eq!(step3(i, 0.0, PERIOD_S).0, FATAL);
     let messages = std::mem::take(&mut *heard.lock().unwrap());
@@ -190,7 +190,7 @@ fn a_discarded_step_says_how_far_it_came() {
 #[test]
 fn fmi_3_discards_what_was_not_begun_and_returns_early_from_what_was() {
     let heard = Heard::default();
-    let i = stepping3(Options::default(), environment(&heard));
+    let i = stepping3(InstanceOptions::default(), environment(&heard));
     set_trouble3(i, 2);
     assert_eq!(step3(i, 0.0, 4.0 * PERIOD_S).0, DISCARD);
     // The instance is unchanged: another step can be tried.
@@ -198,7 +198,7 @@ fn fmi_3_discards_what_was_not_begun_and_returns_early_from_what_was() {
     assert_eq!(step3(i, 0.0, 4.0 * PERIOD_S), (OK, 0, 0, 4.0 * PERIOD_S));
     set_trouble3(i, 3);
     assert_eq!(step3(i, 0.04, 4.0 * PERIOD_S).0, ERROR, "one period was done");
-    let options = Options { early_return_allowed: true, ..Options::default() };
+    let options = InstanceOptions { early_return_allowed: true, ..InstanceOptions::default() };
     let early = stepping3(options, environment(&heard));
     set_trouble3(early, 3);
     assert_eq!(step3(early, 0.0, 4.0 * PERIOD_S), (WARNING, 0, 1, PERIOD_S));
@@ -251,17 +251,13 @@ unsafe extern "C" fn between(
 }
 
 fn with_callback(between_periods: &mut Between) -> *mut c_void {
-    let options = Options {
+    let options = InstanceOptions {
         early_return_allowed: true,
         intermediate_update: Some(between as IntermediateUpdate),
         event_mode_used: false,
     };
-    let outlet = Outlet {
-        name: CString::default(),
-        callback: None,
-        environment: from_mut(between_periods).cast(),
-    };
-    let i = insert(Instance::new(ServedStandard::Fmi3, &MAKER, options, outlet, false)).unwrap();
+    let environment = from_mut(between_periods).cast();
+    let i = instance_of(&MAKER, ServedStandard::Fmi3, options, None, environment, false).unwrap();
     between_periods.instance = i;
     // SAFETY: a handle.
     unsafe {
@@ -319,7 +315,7 @@ fn a_callback_that_does_what_it_must_not_ends_the_step() {
 
 #[test]
 fn outputs_that_change_are_events_where_the_importer_handles_them() {
-    let options = Options { event_mode_used: true, ..Options::default() };
+    let options = InstanceOptions { event_mode_used: true, ..InstanceOptions::default() };
     let i = stepping3(options, null_mut());
     assert_eq!(step3(i, 0.0, PERIOD_S), (OK, 1, 0, PERIOD_S));
     let (mut flags, mut next_s) = ([9u8; 5], f64::NAN);
@@ -329,7 +325,7 @@ fn outputs_that_change_are_events_where_the_importer_handles_them() {
         assert_eq!(fmi3EnterEventMode(i), ERROR, "it is there already");
         assert_eq!(fmi3Reset(i), OK);
         fmi3FreeInstance(i);
-        let i = stepping3(Options { early_return_allowed: true, ..options }, null_mut());
+        let i = stepping3(InstanceOptions { early_return_allowed: true, ..options }, null_mut());
         // An event in the first of four periods ends the step.
         assert_eq!(step3(i, 0.0, 4.0 * PERIOD_S), (OK, 1, 1, PERIOD_S));
         assert_eq!(fmi3EnterEventMode(i), OK);
@@ -341,7 +337,7 @@ fn outputs_that_change_are_events_where_the_importer_handles_them() {
         assert_eq!(fmi3SetFloat64(i, &(U as u32), 1, [1.0, 2.0].as_ptr(), 2), OK);
         assert_eq!(step3(i, 0.01, PERIOD_S).0, ERROR, "not in event mode");
         fmi3FreeInstance(i);
-        let without = stepping3(Options::default(), null_mut());
+        let without = stepping3(InstanceOptions::default(), null_mut());
         assert_eq!(fmi3EnterEventMode(without), ERROR);
         fmi3FreeInstance(without);
     }
@@ -382,7 +378,7 @@ fn what_can_be_set_depends_on_the_variable_and_on_the_time() {
 
 #[test]
 fn outputs_of_the_initialization_follow_from_the_parameters() {
-    let c = new(ServedStandard::Fmi2, Options::default(), null_mut());
+    let c = new(ServedStandard::Fmi2, InstanceOptions::default(), null_mut());
     let mut value = f64::NAN;
     // SAFETY: one reference, one value each.
     unsafe {
@@ -406,7 +402,7 @@ fn outputs_of_the_initialization_follow_from_the_parameters() {
 
 #[test]
 fn dependencies_are_those_of_the_table() {
-    let i = new(ServedStandard::Fmi3, Options::default(), null_mut());
+    let i = new(ServedStandard::Fmi3, InstanceOptions::default(), null_mut());
     let count = |slot: usize| {
         let mut count = 99;
         // SAFETY: a place.
@@ -433,7 +429,8 @@ fn dependencies_are_those_of_the_table() {
 
 #[test]
 fn states_as_bytes_go_on_in_another_instance() {
-    let (c, other) = (stepping2(), new(ServedStandard::Fmi2, Options::default(), null_mut()));
+    let (c, other) =
+        (stepping2(), new(ServedStandard::Fmi2, InstanceOptions::default(), null_mut()));
     let (mut state, mut copy, mut size) = (null_mut(), null_mut(), 0);
     // SAFETY: handles, places and bytes.
     unsafe {
@@ -460,7 +457,7 @@ fn states_as_bytes_go_on_in_another_instance() {
             bytes[i] ^= 1;
         }
         assert_eq!(fmi2DeSerializeFMUstate(c, bytes.as_ptr(), size - 1, &mut copy), ERROR);
-        let three = new(ServedStandard::Fmi3, Options::default(), null_mut());
+        let three = new(ServedStandard::Fmi3, InstanceOptions::default(), null_mut());
         assert_eq!(fmi3DeserializeFMUState(three, bytes.as_ptr().cast(), size, &mut copy), ERROR);
         for c in [c, other] {
             fmi2FreeInstance(c);

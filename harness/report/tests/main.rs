@@ -1,0 +1,10 @@
+//! Tests of the pages, in one program.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
+
+mod chart;
+mod filtered;
+mod innovations;
+mod marks;
+mod page;
+mod series;
+mod units;
