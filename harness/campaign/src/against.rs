@@ -87,12 +87,25 @@ pub fn against(
     folder: &Path,
     selection: &Selection<'_>,
 ) -> Result<Against, AgainstError> {
+    against_by(plan, &CampaignResults::open(folder)?, selection)
+}
+
+/// Compares as [`against`] does, with results that are open.
+///
+/// # Errors
+/// If a scenario isn't the planned one, a result can't be read, or nothing was
+/// selected.
+pub fn against_by(
+    plan: &Plan,
+    results: &CampaignResults,
+    selection: &Selection<'_>,
+) -> Result<Against, AgainstError> {
     let mut groups: Vec<Vec<&Case>> = Vec::new();
     let mut place = HashMap::new();
     for case in &plan.cases {
         let planned = plan.planned(case)?;
         let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
-            && selection.set.is_none_or(|set| set == case.set);
+            && selection.set.is_none_or(|set| *case.set == *set);
         if !chosen {
             continue;
         }
@@ -105,7 +118,6 @@ pub fn against(
     if groups.is_empty() {
         return Err(AgainstError::NoCase);
     }
-    let results = CampaignResults::open(folder)?;
     let mut found = Against::default();
     let mut single = 0;
     for group in groups {
@@ -143,7 +155,7 @@ pub fn against(
         if samples.is_empty() {
             continue;
         }
-        let counts = sample::read(&results, &group, &mut samples)?;
+        let counts = sample::read(results, &group, &mut samples)?;
         for (ensemble, sample) in ensembles.iter().zip(&samples) {
             match compare(first, ensemble, sample, counts) {
                 Ok(comparison) => found.compared.push(comparison),
@@ -161,9 +173,9 @@ pub fn against(
 
 fn named(case: &Case) -> String {
     if case.set.is_empty() {
-        case.scenario.clone()
+        case.scenario.to_string()
     } else {
-        format!("{} with {}", case.scenario, case.set.join(", "))
+        format!("{} with {}", case.scenario, case.set.to_strings().join(", "))
     }
 }
 
@@ -263,8 +275,8 @@ fn compare(
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
     let mut comparison = EnsembleComparison {
-        scenario: first.scenario.clone(),
-        set: first.set.clone(),
+        scenario: first.scenario.to_string(),
+        set: first.set.to_strings(),
         method: ensemble.method.clone(),
         runs: count,
         open: counts.open,

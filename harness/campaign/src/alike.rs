@@ -20,11 +20,16 @@ pub const MOST: usize = 8;
 #[must_use]
 pub fn groups(cases: &[&Case], jobs: usize) -> Vec<Vec<usize>> {
     let most = (cases.len() / jobs.max(1) / 2).clamp(1, MOST);
-    let mut open: BTreeMap<(&str, u64, Vec<&str>), usize> = BTreeMap::new();
+    // All cases of a seed stand together in a plan.
+    let mut seed = None;
+    let mut open: BTreeMap<(&str, Vec<&str>), usize> = BTreeMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (place, case) in cases.iter().enumerate() {
-        let besides = case.set.iter().map(String::as_str).filter(|set| !set.starts_with("faults."));
-        let key = (case.scenario.as_str(), case.seed, besides.collect());
+        if seed.replace(case.seed) != Some(case.seed) {
+            open.clear();
+        }
+        let besides = case.set.iter().map(|set| &**set).filter(|set| !set.starts_with("faults."));
+        let key = (&*case.scenario, besides.collect());
         match open.get(&key).map(|group| &mut groups[*group]) {
             Some(group) if group.len() < most => group.push(place),
             _ => {

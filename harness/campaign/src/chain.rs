@@ -4,6 +4,7 @@
 //! is compared; if they aren't, as for a part made on another machine, the rows are checked for
 //! consistency: the verdict of a check with its value and limit, that of a case with its checks.
 
+use super::case_places::CasePlaces;
 use super::factors::FactorColumns;
 use super::plan::Plan;
 use super::results::{self, RESULT, TABLES};
@@ -13,7 +14,6 @@ use super::table::{ColumnKind, ColumnValue, TableError};
 use super::table_rows::{CaseColumn, CaseRows, CaseTable};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
-use std::collections::HashMap;
 use std::path::PathBuf;
 
 /// Checks the tables at `paths`, named as by a merge, against the results of their folder, or for
@@ -26,8 +26,7 @@ pub fn check(
     stored: &CampaignResults,
     path: impl Fn(&str) -> PathBuf,
 ) -> Result<(), TableError> {
-    let place: HashMap<&str, usize> =
-        plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
+    let place = CasePlaces::of(plan);
     let [cases, checks, drift] = TABLES.map(|(name, _)| CaseTable::open(&path(name), &place));
     let tables = [cases?, checks?, drift?];
     let there = |index: &usize| stored.has(&plan.cases[*index].id);
@@ -47,9 +46,9 @@ pub fn check(
     let cases = compared.iter().copied();
     let expected = results::rows(plan, stored, cases, &factors, &std::env::temp_dir())?;
     for (number, (table, rows)) in tables.iter().zip(&expected.tables).enumerate() {
-        let counts = expected.counts.iter().map(|counts| counts[number]);
-        let cases: Vec<(usize, usize)> = compared.iter().copied().zip(counts).collect();
-        same(plan, stored, &cases, table, rows)?;
+        let counts = expected.counts.iter().map(|counts| counts[number] as usize);
+        let cases = compared.iter().copied().zip(counts);
+        same(plan, stored, cases, table, rows)?;
     }
     Ok(())
 }
@@ -64,21 +63,21 @@ fn wrong(table: &CaseTable, reason: String) -> TableError {
 fn same(
     plan: &Plan,
     stored: &CampaignResults,
-    cases: &[(usize, usize)],
+    cases: impl Iterator<Item = (usize, usize)> + Clone,
     table: &CaseTable,
     expected: &SpilledRows,
 ) -> Result<(), TableError> {
     let id = |case: usize| &plan.cases[case].id;
     let place = |case| stored.place(id(case)).map_or_else(String::new, |place| place.to_string());
-    for (case, count) in cases {
-        let found = table.count(*case);
-        if found != *count {
+    for (case, count) in cases.clone() {
+        let found = table.count(case);
+        if found != count {
             return Err(wrong(
                 table,
                 format!(
                     "case {} has {found} rows, its result {} gives {count}",
-                    id(*case),
-                    place(*case)
+                    id(case),
+                    place(case)
                 ),
             ));
         }
@@ -86,8 +85,8 @@ fn same(
     for (name, kind) in &table.table.columns {
         let mut values = table.values(name)?;
         let mut of_results = expected.column(name);
-        for (case, _) in cases {
-            for row in table.rows(*case).iter().flat_map(CaseRows::each) {
+        for (case, _) in cases.clone() {
+            for row in table.rows(case).iter().flat_map(CaseRows::each) {
                 let said = values.at(row)?;
                 // Converted as for a column of this kind.
                 let now = kind.converted(of_results.next().transpose()?.flatten());
@@ -99,9 +98,9 @@ fn same(
                     format!(
                         "case {} has {} in column {name}, its result {} has {}: it isn't what this \
                          result gives",
-                        id(*case),
+                        id(case),
                         in_words(&said),
-                        place(*case),
+                        place(case),
                         in_words(&now)
                     ),
                 ));

@@ -5,6 +5,7 @@ pub use super::execution::{CaseDone, ExecuteError, ExecutionEvent, ExecutionSumm
 pub use super::shard::{Shard, ShardError};
 
 use super::alike::groups;
+use super::case_places::CasePlaces;
 use super::plan::{Case, Plan};
 use super::process::TRIES;
 use super::selection::CaseSelection;
@@ -160,7 +161,7 @@ fn one(
             }
         }
     }
-    Err(ExecuteError::Ended { case: case.id.clone(), by })
+    Err(ExecuteError::Ended { case: case.id.to_string(), by })
 }
 
 /// Refuses a folder with results of another plan, which would be counted as well.
@@ -169,9 +170,8 @@ pub(crate) fn refuse_foreign(
     folder: &Path,
     results: &CampaignResults,
 ) -> Result<(), ExecuteError> {
-    let known: std::collections::HashSet<&str> =
-        plan.cases.iter().map(|case| case.id.as_str()).collect();
-    let mut foreign = results.ids().filter(|id| !known.contains(id)).peekable();
+    let known = CasePlaces::of(plan);
+    let mut foreign = results.ids().filter(|id| known.get(id).is_none()).peekable();
     match foreign.peek().map(|one| (*one).to_owned()) {
         None => Ok(()),
         Some(one) => {

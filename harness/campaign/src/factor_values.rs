@@ -1,8 +1,11 @@
 //! Values of the factors of a case.
 
+use super::shared::SharedText;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
+use std::hash::{BuildHasher, Hash, Hasher};
+use std::sync::Arc;
 
 /// Value of a factor in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -11,15 +14,15 @@ pub enum FactorValue {
     /// Number, in the factor's unit.
     Number(f64),
     /// Anything else, as text.
-    Text(String),
+    Text(SharedText),
 }
 
 /// Values of the factors of a case, in the order of the names.
 ///
 /// A plan can have millions of cases with one or two factors each, for which a tree would take ten
-/// times the memory.
+/// times the memory, and many of which have the same values.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct FactorValues(Box<[(Box<str>, FactorValue)]>);
+pub struct FactorValues(Arc<[(SharedText, FactorValue)]>);
 
 impl FactorValues {
     /// Returns the value of a factor.
@@ -29,17 +32,49 @@ impl FactorValues {
         self.0.get(at).map(|(_, value)| value)
     }
 
+    /// Returns a number that is the same for values that are the same.
+    pub(super) fn hash(&self, hasher: &impl BuildHasher) -> u64 {
+        let mut state = hasher.build_hasher();
+        for (name, value) in self.iter() {
+            name.hash(&mut state);
+            match value {
+                FactorValue::Number(number) => number.to_bits().hash(&mut state),
+                FactorValue::Text(text) => text.hash(&mut state),
+            }
+        }
+        state.finish()
+    }
+
+    /// Returns whether they can stand for others: 0 and -0 are equal, and not the same.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.0.len() == other.0.len()
+            && self.0.iter().zip(other.0.iter()).all(|((a_name, a), (b_name, b))| {
+                a_name == b_name
+                    && match (a, b) {
+                        (FactorValue::Number(a), FactorValue::Number(b)) => {
+                            a.to_bits() == b.to_bits()
+                        }
+                        _ => a == b,
+                    }
+            })
+    }
+
+    /// Returns names and values as they are shared, in the order of the names.
+    pub(super) fn shared(&self) -> impl Iterator<Item = (&SharedText, &FactorValue)> {
+        self.0.iter().map(|(name, value)| (name, value))
+    }
+
     /// Returns names and values, in the order of the names.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &FactorValue)> {
         self.0.iter().map(|(name, value)| (&**name, value))
     }
 }
 
-impl FromIterator<(String, FactorValue)> for FactorValues {
+impl FromIterator<(SharedText, FactorValue)> for FactorValues {
     /// The last value of a name counts.
-    fn from_iter<I: IntoIterator<Item = (String, FactorValue)>>(values: I) -> Self {
-        let all: std::collections::BTreeMap<String, FactorValue> = values.into_iter().collect();
-        Self(all.into_iter().map(|(name, value)| (name.into_boxed_str(), value)).collect())
+    fn from_iter<I: IntoIterator<Item = (SharedText, FactorValue)>>(values: I) -> Self {
+        let all: std::collections::BTreeMap<SharedText, FactorValue> = values.into_iter().collect();
+        Self(all.into_iter().collect())
     }
 }
 
@@ -59,7 +94,7 @@ impl<'de> Deserialize<'de> for FactorValues {
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<FactorValues, A::Error> {
                 let mut all = Vec::new();
-                while let Some(pair) = map.next_entry::<String, FactorValue>()? {
+                while let Some(pair) = map.next_entry::<SharedText, FactorValue>()? {
                     all.push(pair);
                 }
                 Ok(all.into_iter().collect())
@@ -79,6 +114,9 @@ mod tests {
         let values: FactorValues = serde_json::from_str(text).unwrap();
         assert_eq!(serde_json::to_string(&values).unwrap(), r#"{"a":"x","b":2.0}"#);
         assert_eq!(values.get("b"), Some(&FactorValue::Number(2.0)));
+        let [zero, minus]: [FactorValues; 2] = [0.0, -0.0]
+            .map(|number| [("a".into(), FactorValue::Number(number))].into_iter().collect());
+        assert!(zero == minus && !zero.is_same(&minus) && zero.is_same(&zero.clone()));
         assert_eq!((values.get("c"), values.iter().count()), (None, 2));
         assert!(serde_json::from_str::<FactorValues>("[1]").is_err());
         assert_eq!(serde_json::to_string(&FactorValues::default()).unwrap(), "{}");

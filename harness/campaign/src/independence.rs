@@ -32,7 +32,7 @@ impl Shown {
 
 /// Returns the independent draw of each case, numbered from 0, from its seed and its stream.
 #[must_use]
-pub fn draws<'a>(cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Vec<usize> {
+pub fn draws<'a, H: Ord>(cases: impl IntoIterator<Item = (&'a Case, Option<H>)>) -> Vec<usize> {
     cluster::draws(cases.into_iter().map(|(case, stream)| (case.seed, stream)))
 }
 
@@ -47,16 +47,18 @@ pub struct Idle {
 
 /// Finds cases that are the same run, and factors without effect.
 #[must_use]
-pub fn idle<'a>(plan: &Plan, cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Idle {
-    let run: Vec<(&Case, &str)> =
+pub fn idle<'a, H: Ord + Copy>(
+    plan: &Plan,
+    cases: impl IntoIterator<Item = (&'a Case, Option<H>)>,
+) -> Idle {
+    let run: Vec<(&Case, H)> =
         cases.into_iter().filter_map(|(case, stream)| Some((case, stream?))).collect();
-    let mut by_stream: HashMap<&str, Vec<usize>> = HashMap::new();
-    for (index, (_, stream)) in run.iter().enumerate() {
-        by_stream.entry(stream).or_default().push(index);
-    }
-    let mut repeated: Vec<&Vec<usize>> = by_stream.values().filter(|all| all.len() > 1).collect();
+    let mut by_stream: Vec<usize> = (0..run.len()).collect();
+    by_stream.sort_unstable_by_key(|index| (run[*index].1, *index));
+    let same = by_stream.chunk_by(|a, b| run[*a].1 == run[*b].1);
+    let mut repeated: Vec<&[usize]> = same.filter(|all| all.len() > 1).collect();
     repeated.sort();
-    let ids = |all: &Vec<usize>| all.iter().map(|index| run[*index].0.id.clone()).collect();
+    let ids = |all: &[usize]| all.iter().map(|index| run[*index].0.id.to_string()).collect();
     Idle {
         repeated: repeated.into_iter().map(ids).collect(),
         factors: (of_grid(plan).into_iter())
@@ -67,10 +69,10 @@ pub fn idle<'a>(plan: &Plan, cases: impl IntoIterator<Item = (&'a Case, Option<&
 
 /// Returns whether all cases that differ in this factor alone have the same streams. Cases are
 /// compared within a scenario and a seed, where nothing else differs.
-fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
+fn changes_nothing<H: PartialEq + Copy>(factor: &str, run: &[(&Case, H)]) -> bool {
     type Others<'a> = (&'a str, u64, BTreeMap<&'a str, String>);
     let shown = |value: &FactorValue| format!("{value:?}");
-    let mut first: HashMap<Others<'_>, &str> = HashMap::new();
+    let mut first: HashMap<Others<'_>, H> = HashMap::new();
     let mut compared = false;
     for (case, stream) in run {
         if case.factors.get(factor).is_none() {
@@ -79,7 +81,7 @@ fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
         let others = case.factors.iter().filter(|(name, _)| *name != factor);
         let others = others.map(|(name, value)| (name, shown(value))).collect();
         match first.entry((case.scenario.as_str(), case.seed, others)) {
-            std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(stream),
+            std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(*stream),
             std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {
                 compared = true;
             }

@@ -10,6 +10,8 @@ pub mod alike;
 mod besides;
 pub mod bundle;
 pub mod case;
+pub mod case_id;
+mod case_places;
 pub mod chain;
 mod draw;
 pub mod emit;
@@ -34,11 +36,14 @@ mod result_error;
 pub mod results;
 pub mod selection;
 mod shard;
+pub mod shared;
+mod shared_cases;
 pub mod sites;
 mod spill;
 pub mod status;
 pub mod stop;
 pub mod store;
+mod stream_key;
 pub mod sweep;
 pub mod sweep_page;
 pub mod table;
@@ -101,6 +106,38 @@ pub fn keep(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
+/// Gives a new file its name. An existing file with the same bytes isn't touched.
+pub(crate) fn keep_new(
+    path: &std::path::Path,
+    new: tempfile::NamedTempFile,
+) -> std::io::Result<()> {
+    if !has_same_bytes(path, new.path())? {
+        new.persist(path)?;
+    }
+    Ok(())
+}
+
+/// Returns whether a file is there with the bytes of another one.
+fn has_same_bytes(path: &std::path::Path, new: &std::path::Path) -> std::io::Result<bool> {
+    use std::io::{BufRead, BufReader};
+    let Ok(there) = std::fs::File::open(path) else { return Ok(false) };
+    let (mut there, mut new) = (BufReader::new(there), BufReader::new(std::fs::File::open(new)?));
+    loop {
+        // A file that can't be read is replaced.
+        let Ok(of_there) = there.fill_buf() else { return Ok(false) };
+        let of_new = new.fill_buf()?;
+        let count = of_there.len().min(of_new.len());
+        if count == 0 {
+            return Ok(of_there.len() == of_new.len());
+        }
+        if of_there.get(..count) != of_new.get(..count) {
+            return Ok(false);
+        }
+        there.consume(count);
+        new.consume(count);
+    }
+}
+
 #[cfg(test)]
 #[cfg(unix)]
 mod tests {
@@ -116,5 +153,30 @@ mod tests {
         drop(file);
         clean(folder.path());
         assert!(written.path().exists() && !left.exists());
+    }
+
+    #[test]
+    fn a_file_with_the_same_bytes_is_not_touched() {
+        use std::io::Write as _;
+        use std::os::unix::fs::MetadataExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        let long = vec![7; 20_000];
+        let inode = |bytes: &[u8]| {
+            let mut new = new_file(folder.path()).unwrap();
+            new.write_all(bytes).unwrap();
+            keep_new(&path, new).unwrap();
+            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+            std::fs::metadata(&path).unwrap().ino()
+        };
+        let first = inode(&long);
+        assert_eq!(inode(&long), first);
+        let mut other = long.clone();
+        other[19_999] = 8;
+        for bytes in [&other[..], &long[..10], &[], &long] {
+            let before = std::fs::metadata(&path).unwrap().ino();
+            assert_ne!(inode(bytes), before);
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

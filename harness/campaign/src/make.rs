@@ -1,9 +1,12 @@
 //! Builds the plan of a campaign file: every combination of scenarios, factors and replicates.
 
+use super::case_id::{CaseId, NoCaseId};
 use super::draw::At;
-use super::factor_values::{FactorValue, FactorValues};
+use super::factor_values::FactorValue;
 use super::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system};
 use super::requirements::{self, Planned};
+use super::shared::{SharedText, SharedTexts};
+use super::shared_cases::SharedParts;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
 use std::collections::{BTreeMap, HashMap};
@@ -49,43 +52,42 @@ impl Plan {
         let scenarios = (campaign.scenarios.iter())
             .map(|member| planned(member, &of_file, path))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut cases = Vec::new();
+        let mut cases = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
+        let mut parts = SharedParts::default();
         // Additional replicates come at the end.
         for replicate in 0..campaign.replicates {
             for (member, planned) in campaign.scenarios.iter().zip(&scenarios) {
                 for cell in 0..grid {
-                    let mut case = Case {
-                        id: String::new(),
-                        scenario: member.id.clone(),
-                        seed: campaign.seed.wrapping_add(u64::from(replicate)),
-                        replicate,
-                        set: member.set.clone(),
-                        faults: None,
-                        factors: FactorValues::default(),
-                    };
+                    let (mut set, mut faults) = (member.set.clone(), None);
                     let mut values = Vec::new();
                     for (index, factor) in campaign.factors.iter().enumerate() {
                         let at = match factor.levels.grid() {
                             Some(_) => At::Level(level_of(&campaign.factors, cell, index)),
                             None => draws.at(index, replicate),
                         };
-                        values.extend(give(&mut case, factor, at));
+                        values.extend(give(&mut set, &mut faults, factor, at));
                     }
-                    case.factors = values.into_iter().collect();
-                    case.id = id_of(planned, &case);
-                    cases.push(case);
+                    let seed = campaign.seed.wrapping_add(u64::from(replicate));
+                    let set: SharedTexts = set.into_iter().collect();
+                    let id = id_of(planned, &set, faults.as_ref(), seed).map_err(&contradiction)?;
+                    cases.push(parts.share(Case {
+                        id,
+                        scenario: member.id.as_str().into(),
+                        seed,
+                        replicate,
+                        set,
+                        faults,
+                        factors: values.into_iter().collect(),
+                    }));
                 }
             }
         }
-        let mut seen: HashMap<&str, &Case> = HashMap::new();
-        for case in &cases {
-            if let Some(other) = seen.insert(&case.id, case) {
-                return Err(contradiction(format!(
-                    "scenario {:?} and scenario {:?} give the same case {}: expected something that \
-                     differs between them",
-                    other.scenario, case.scenario, case.id
-                )));
-            }
+        if let Some([other, case]) = same(&cases) {
+            return Err(contradiction(format!(
+                "scenario {:?} and scenario {:?} give the same case {}: expected something that \
+                 differs between them",
+                other.scenario, case.scenario, case.id
+            )));
         }
         if let Some(stop) = &campaign.stop
             && !scenarios.iter().any(|s| s.requirements.contains(&stop.requirement))
@@ -113,6 +115,17 @@ impl Plan {
         plan.id = plan.hash();
         Ok(plan)
     }
+}
+
+/// Finds the first case that was there before, with the one before it.
+fn same(cases: &[Case]) -> Option<[&Case; 2]> {
+    // A list: a map of the ids would take more memory than the cases.
+    let mut order: Vec<u32> = (0..).take(cases.len()).collect();
+    let id = |at: &u32| cases.get(*at as usize).map(|case| case.id);
+    order.sort_unstable_by_key(|at| (id(at), *at));
+    let pairs = order.windows(2).filter(|pair| id(&pair[0]) == id(&pair[1]));
+    let first = pairs.min_by_key(|pair| pair[1])?;
+    Some([cases.get(first[0] as usize)?, cases.get(first[1] as usize)?])
 }
 
 /// Finds two values of a grid that are equal in another spelling: they would be the same runs under
@@ -237,19 +250,24 @@ fn planned(
 }
 
 /// Sets a factor in a case, and returns its name and its value there.
-fn give(case: &mut Case, factor: &FactorSpec, at: At) -> Option<(String, FactorValue)> {
+fn give(
+    set: &mut Vec<String>,
+    faults: &mut Option<SharedTexts>,
+    factor: &FactorSpec,
+    at: At,
+) -> Option<(SharedText, FactorValue)> {
     let value = match (&factor.levels, at) {
         (Levels::Values { key, values, .. }, At::Level(level)) => {
-            case.set.push(format!("{key}={}", values[level]));
+            set.push(format!("{key}={}", values[level]));
             plain(&values[level])
         }
         (Levels::Faults { lists, .. }, At::Level(level)) => {
             let list = &lists[level];
-            case.faults = Some(list.clone());
-            FactorValue::Text(if list.is_empty() { "none".to_owned() } else { list.join(" ") })
+            *faults = Some(list.iter().map(String::as_str).collect());
+            FactorValue::Text(if list.is_empty() { "none".into() } else { list.join(" ").into() })
         }
         (Levels::Distributed { key, unit, .. }, At::Number(number)) => {
-            case.set.push(match unit {
+            set.push(match unit {
                 Some(unit) => format!("{key}=\"{number} {unit}\""),
                 None => format!("{key}={number:?}"),
             });
@@ -258,26 +276,39 @@ fn give(case: &mut Case, factor: &FactorSpec, at: At) -> Option<(String, FactorV
         // Levels and draws come from the same factor.
         (_, At::Level(_) | At::Number(_)) => return None,
     };
-    Some((factor.name.clone(), value))
+    Some((factor.name.as_str().into(), value))
 }
 
 /// Converts a TOML value for statistics: a number, or a text, which includes quantities.
 fn plain(value: &str) -> FactorValue {
     let text = value.trim().trim_matches('"');
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.map_or_else(|| FactorValue::Text(text.to_owned()), FactorValue::Number)
+    number.map_or_else(|| FactorValue::Text(text.into()), FactorValue::Number)
 }
 
 /// Computes the BLAKE3 of everything that defines a case, hexadecimal.
 #[must_use]
 pub fn hash_of(scenario: &PlannedScenario, case: &Case) -> String {
+    hash(scenario, &case.set, case.faults.as_ref(), case.seed)
+}
+
+fn hash(
+    scenario: &PlannedScenario,
+    set: &SharedTexts,
+    faults: Option<&SharedTexts>,
+    seed: u64,
+) -> String {
     // One JSON text: different cases never give the same text.
-    let content =
-        serde_json::json!([scenario.blake3, scenario.checks, case.set, case.faults, case.seed]);
+    let content = serde_json::json!([scenario.blake3, scenario.checks, set, faults, seed]);
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the id of a case.
-fn id_of(scenario: &PlannedScenario, case: &Case) -> String {
-    hash_of(scenario, case)[..16].to_owned()
+/// Returns the id of a case, or the reason why there is none, as text.
+fn id_of(
+    scenario: &PlannedScenario,
+    set: &SharedTexts,
+    faults: Option<&SharedTexts>,
+    seed: u64,
+) -> Result<CaseId, String> {
+    hash(scenario, set, faults, seed)[..16].parse().map_err(|error: NoCaseId| error.to_string())
 }

@@ -1,5 +1,6 @@
 //! Merges the parts of shards into the same tables, wherever and in whatever order they were run.
 
+use super::case_places::CasePlaces;
 use super::chain;
 use super::independence::Shown;
 use super::plan::{Plan, short};
@@ -186,8 +187,7 @@ pub fn merge(
     end: usize,
 ) -> Result<Merged, MergeError> {
     check_parts(plan, folders)?;
-    let place: HashMap<&str, usize> =
-        plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
+    let place = CasePlaces::of(plan);
     let mut merged_cases = Merged { parts: 0, cases: 0, missing: 0 };
     for (name, first) in TABLES {
         let paths = parts(folders, name);
@@ -369,7 +369,7 @@ impl Merging {
                         continue;
                     }
                     let case = of_part.first().map_or(0, |rows| rows.rows.case);
-                    let case = plan.cases[case].id.clone();
+                    let case = plan.cases[case].id.to_string();
                     let [first, second] = [*of_first, part].map(|part| tables[part].path.clone());
                     return Err(if column == NUMERICS {
                         MergeError::Numerics { case, first, second }

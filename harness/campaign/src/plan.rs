@@ -11,9 +11,10 @@ use super::requirements::Planned;
 use octant_requirements::requirement::EnsembleRequirement;
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_statistics::proportion::Demand;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::BufWriter;
+use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Version of `plan.json`.
@@ -22,6 +23,8 @@ pub const SCHEMA: u32 = 1;
 pub const FILE_NAME: &str = "plan.json";
 /// Maximum number of cases of a plan.
 pub const CASES_MAX: u64 = 10_000_000;
+/// Length of a plan up to which it is read at once.
+const AT_ONCE_BYTES: u64 = 1 << 25;
 
 /// The plan of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,6 +55,7 @@ pub struct Plan {
     /// The scenarios.
     pub scenarios: Vec<PlannedScenario>,
     /// Cases, in the order in which they are begun.
+    #[serde(deserialize_with = "super::shared_cases::read")]
     pub cases: Vec<Case>,
 }
 
@@ -125,18 +129,21 @@ impl Plan {
     /// If it can't be read, isn't a plan of this version, or was changed after it was made.
     pub fn read(path: &Path) -> Result<Self, PlanError> {
         let form = |reason: String| PlanError::Form { path: path.to_owned(), reason };
-        let text = system("read", path, std::fs::read_to_string(path))?;
-        let version: Version = serde_json::from_str(&text)
-            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
-        if version.schema != SCHEMA {
+        let found: Result<Self, _> = json(path)?;
+        // The version is in the first line: a plan of another one needs no second look.
+        let version = match &found {
+            Ok(plan) => Ok(plan.schema),
+            Err(_) => json::<Version>(path)?.map(|version| version.schema),
+        };
+        let not_a_plan = |error| form(format!("expected a plan of a campaign: {error}"));
+        let version = version.map_err(not_a_plan)?;
+        if version != SCHEMA {
             return Err(form(format!(
-                "found version {}, this program reads version {SCHEMA}{}",
-                version.schema,
-                if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
+                "found version {version}, this program reads version {SCHEMA}{}",
+                if version > SCHEMA { ": a newer Octant wrote it" } else { "" }
             )));
         }
-        let mut plan: Self = serde_json::from_str(&text)
-            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
+        let mut plan = found.map_err(not_a_plan)?;
         let hash = plan.hash();
         if hash != plan.id {
             return Err(form(format!(
@@ -200,11 +207,18 @@ impl Plan {
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
         super::clean(folder);
-        let text = self.to_json();
         let new = system("create a file in", folder, super::new_file(folder))?;
-        system("write", &path, std::fs::write(new.path(), text))?;
+        let mut file = BufWriter::new(new.as_file());
+        system("write", &path, self.write_json(&mut file).and_then(|()| file.flush()))?;
+        drop(file);
         system("write", &path, new.persist(&path).map_err(|error| error.error))?;
         Ok(written)
+    }
+
+    /// Writes the plan as it is in its file.
+    fn write_json(&self, mut writer: impl Write) -> std::io::Result<()> {
+        serde_json::to_writer_pretty(&mut writer, self)?;
+        writer.write_all(b"\n")
     }
 
     fn ids(&self) -> impl Iterator<Item = &str> {
@@ -212,8 +226,10 @@ impl Plan {
     }
 
     pub(super) fn to_json(&self) -> String {
-        // Values of these types can always be serialised.
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+        let mut text = Vec::new();
+        // Values of these types can always be serialised, as text.
+        let _ = self.write_json(&mut text);
+        String::from_utf8(text).unwrap_or_default()
     }
 
     /// Computes the id from the contents, independent of the places of files.
@@ -314,6 +330,23 @@ pub enum PlanWritten {
     There,
     /// The plan replaced a smaller one; holds the number of new cases.
     Extended(usize),
+}
+
+/// Reads a file as JSON: a long one piece by piece, a short one at once, which takes less time.
+fn json<T: DeserializeOwned>(path: &Path) -> Result<serde_json::Result<T>, PlanError> {
+    let mut file = system("read", path, std::fs::File::open(path))?;
+    let bytes = system("read", path, file.metadata())?.len();
+    let found = if bytes > AT_ONCE_BYTES {
+        serde_json::from_reader(BufReader::with_capacity(1 << 16, file))
+    } else {
+        let mut text = Vec::new();
+        system("read", path, file.read_to_end(&mut text))?;
+        serde_json::from_slice(&text)
+    };
+    match found {
+        Err(error) if error.is_io() => system("read", path, Err(error.into())),
+        found => Ok(found),
+    }
 }
 
 #[derive(Deserialize)]

@@ -1,7 +1,9 @@
 //! Scenarios and cases of a plan.
 
+use super::case_id::CaseId;
 use super::factor_values::FactorValues;
 use super::plan_error::{PlanError, short, system};
+use super::shared::{SharedText, SharedTexts};
 use octant_requirements::verdict::LimitCheck;
 use octant_scenario::{FilePlaces, Scenario};
 use serde::{Deserialize, Serialize};
@@ -76,18 +78,18 @@ pub(super) fn hash_of_file(path: &Path) -> std::io::Result<(String, u64)> {
 pub struct Case {
     /// First 16 digits of the BLAKE3 over the scenario's BLAKE3, the additional checks, `set`,
     /// `faults` and `seed`.
-    pub id: String,
+    pub id: CaseId,
     /// Name of the scenario.
-    pub scenario: String,
+    pub scenario: SharedText,
     /// Seed of the run.
     pub seed: u64,
     /// Number of the run in its combination, from 0.
     pub replicate: u32,
     /// Keys that are set in the scenario, as `KEY=VALUE`.
-    pub set: Vec<String>,
+    pub set: SharedTexts,
     /// Faults that are injected; null: all faults of the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub faults: Option<Vec<String>>,
+    pub faults: Option<SharedTexts>,
     /// Value of each factor, for display and statistics.
     pub factors: FactorValues,
 }
@@ -125,7 +127,8 @@ impl PlannedScenario {
 
     /// Returns the scenario of a case without a check of its file.
     pub(super) fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
-        let mut scenario = Scenario::load_placed(&self.file, &case.set, &[], &self.places())?;
+        let mut scenario =
+            Scenario::load_placed(&self.file, &case.set.to_strings(), &[], &self.places())?;
         scenario.requirements.extend(self.checks.iter().map(|check| {
             octant_scenario::RequirementSpec {
                 check: check.clone(),
@@ -136,7 +139,7 @@ impl PlannedScenario {
         }));
         let Some(faults) = &case.faults else { return Ok(scenario) };
         scenario
-            .with_only(faults)
+            .with_only(&faults.to_strings())
             .map_err(|error| PlanError::Form { path: self.file.clone(), reason: error.to_string() })
     }
 }

@@ -71,7 +71,7 @@ pub(super) struct TableRows {
     /// The tables, in the order of [`TABLES`].
     pub(super) tables: [SpilledRows; 3],
     /// Rows of each case in each table, in the order in which the cases were given.
-    pub(super) counts: Vec<[usize; 3]>,
+    pub(super) counts: Vec<[u32; 3]>,
 }
 
 /// Lists columns in the order in which they are written.
@@ -149,7 +149,8 @@ pub(super) fn rows(
             check_rows(case, summary).try_for_each(|row| checks.push(row))?;
             drift_rows(case, summary).try_for_each(|row| drift.push(row))?;
         }
-        counts.push([1, checks.rows() - before[0], drift.rows() - before[1]]);
+        let more = |rows: usize, before| u32::try_from(rows - before).unwrap_or(u32::MAX);
+        counts.push([1, more(checks.rows(), before[0]), more(drift.rows(), before[1])]);
     }
     Ok(TableRows { tables: [all_cases, checks, drift], counts })
 }
@@ -187,7 +188,7 @@ fn case_row(
             summary.and_then(|summary| Some(ColumnValue::Integer(i64::from(summary.numerics?)))),
         ),
         (RESULT, Some(text(hash))),
-        ("set", Some(text(case.set.join("; ")))),
+        ("set", Some(text(case.set.to_strings().join("; ")))),
     ]);
     for (name, value) in case.factors.iter() {
         all.insert(format!("factor.{name}"), factors.value(name, value));

@@ -118,7 +118,7 @@ fn names(case: &Case) -> Vec<String> {
         FactorValue::Number(number) => format!("{name}={number}"),
         FactorValue::Text(text) => format!("{name}={text}"),
     };
-    let own = [case.id.clone(), case.scenario.clone()];
+    let own = [case.id.to_string(), case.scenario.to_string()];
     own.into_iter().chain(case.factors.iter().map(factor)).collect()
 }
 

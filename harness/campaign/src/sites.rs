@@ -2,6 +2,7 @@
 
 use super::against::EnsembleComparison;
 use super::plan::{Case, Plan, PlanError};
+use super::shared::SharedText;
 use octant_base::display::DisplayUnits;
 use std::collections::HashMap;
 use std::path::Path;
@@ -38,24 +39,31 @@ pub fn of_ensemble(
     of_case(plan, folder, case)
 }
 
-/// Display units of every case of a plan, in its order.
+/// Display units of the cases of a plan: all that occur, and the place of each case's among them.
 ///
 /// # Errors
 /// As for [`of_case`].
-pub(super) fn of_cases(plan: &Plan, folder: &Path) -> Result<Vec<DisplayUnits>, PlanError> {
+pub(super) fn of_cases(
+    plan: &Plan,
+    folder: &Path,
+) -> Result<(Vec<DisplayUnits>, Vec<u32>), PlanError> {
     // Draws differ from case to case, but few of them are of the site.
-    let mut known: HashMap<(&str, Vec<&str>), DisplayUnits> = HashMap::new();
-    let mut all = Vec::with_capacity(plan.cases.len());
+    let mut known: HashMap<(&str, Vec<&str>), u32> = HashMap::new();
+    let (mut all, mut places) = (Vec::new(), Vec::with_capacity(plan.cases.len()));
     for case in &plan.cases {
-        let of_site = case.set.iter().map(String::as_str).filter(|entry| is_of_site(entry));
+        let of_site = case.set.iter().map(SharedText::as_str).filter(|entry| is_of_site(entry));
         let key = (case.scenario.as_str(), of_site.collect());
-        let units = match known.get(&key) {
-            Some(units) => *units,
-            None => *known.entry(key).or_insert(of_case(plan, folder, case)?),
+        let at = match known.get(&key) {
+            Some(at) => *at,
+            None => {
+                all.push(of_case(plan, folder, case)?);
+                // There are at most ten million cases.
+                *known.entry(key).or_insert(u32::try_from(all.len() - 1).unwrap_or(u32::MAX))
+            }
         };
-        all.push(units);
+        places.push(at);
     }
-    Ok(all)
+    Ok((all, places))
 }
 
 /// True if a setting, `KEY=VALUE`, is of a table on which the display units depend.

@@ -2,10 +2,11 @@
 
 use super::case::ResultError;
 use super::independence::{self, Shown};
-use super::plan::{Case, Plan, StopRule};
+use super::plan::{Plan, StopRule};
 use super::shard::Shard;
 use super::stop::{self, StopDecision};
 use super::store::CampaignResults;
+use super::stream_key::StreamKey;
 use octant_base::number::plain;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::EnsembleRequirement;
@@ -142,18 +143,22 @@ pub fn of_results(
     for id in of_file.chain(of_scenarios) {
         counts.entry(id).or_default();
     }
-    let mut looked: Vec<Looked<'_>> = Vec::new();
+    let mut streams: Vec<Option<StreamKey>> = Vec::new();
+    // Of each requirement the cases that check it, by their order among those that count, and whether they
+    // passed.
+    let mut shown: BTreeMap<&str, Vec<(u32, Option<bool>)>> = BTreeMap::new();
     let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
     status.cases = mine().filter(|(index, _)| *index < end).count();
-    for (_, case) in mine().filter(|(index, _)| *index < end) {
+    for (number, (_, case)) in (0..).zip(mine().filter(|(index, _)| *index < end)) {
         let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
         let Some(facts) = results.facts(plan, case)? else {
             status.open += 1;
-            let checked: Vec<&String> = checked.collect();
-            checked.iter().for_each(|id| counts.entry(id).or_default().missing += 1);
-            let passed = checked.into_iter().map(|id| (id.as_str(), None)).collect();
-            looked.push(Looked { case, stream: None, passed });
+            for id in checked {
+                counts.entry(id).or_default().missing += 1;
+                shown.entry(id).or_default().push((number, None));
+            }
+            streams.push(None);
             continue;
         };
         *status.verdicts.entry(facts.verdict.name()).or_default() += 1;
@@ -162,13 +167,13 @@ pub fn of_results(
         if !(is_counted && facts.refused_alone) {
             status.besides = status.besides.worst(facts.besides);
         }
-        let passed = checked.clone().map(|id| (id.as_str(), Some(facts.passes(id))));
-        let passed = passed.collect();
-        let stream = facts.stream().map(str::to_owned);
+        for id in checked.clone() {
+            shown.entry(id).or_default().push((number, Some(facts.passes(id))));
+        }
+        streams.push(facts.stream().map(StreamKey::from));
         if let Some(run) = &facts.run {
             *numerics.entry(run.numerics).or_default() += 1;
         }
-        looked.push(Looked { case, stream, passed });
         for id in checked {
             let counts = counts.entry(id).or_default();
             *match facts.check(id) {
@@ -179,30 +184,32 @@ pub fn of_results(
             } += 1;
         }
         if results.differing(&case.id)?.is_some() {
-            status.differing.push(case.id.clone());
+            status.differing.push(case.id.to_string());
         }
         if facts.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
             let reason = facts.why().cloned().unwrap_or_default();
-            status.bad.push(Bad { case: case.id.clone(), verdict: facts.verdict, reason });
+            status.bad.push(Bad { case: case.id.to_string(), verdict: facts.verdict, reason });
         }
     }
     let others = numerics.into_iter().filter_map(|(version, cases)| {
         Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
     });
     status.numerics = others.collect();
-    let draws = independence::draws(looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    let looked = || {
+        let cases = mine().filter(|(index, _)| *index < end).map(|(_, case)| case);
+        cases.zip(streams.iter().map(Option::as_ref))
+    };
+    let draws = independence::draws(looked());
     status.draws = draws.iter().max().map_or(0, |last| last + 1);
-    let idle = independence::idle(plan, looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    let idle = independence::idle(plan, looked());
     (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
-    let mut rows: BTreeMap<&str, Vec<(usize, Option<bool>)>> = BTreeMap::new();
-    for (looked, draw) in looked.iter().zip(&draws) {
-        for (id, passed) in &looked.passed {
-            rows.entry(id).or_default().push((*draw, *passed));
-        }
-    }
     let of = |(id, counts): (&str, VerdictCounts)| {
         let ensemble = plan.ensemble(id);
-        let draws = DrawCounts::of(rows.remove(id).unwrap_or_default());
+        let cases = shown.remove(id).unwrap_or_default();
+        let rows = cases
+            .iter()
+            .filter_map(|(number, passed)| Some((*draws.get(*number as usize)?, *passed)));
+        let draws = DrawCounts::of(rows);
         let (verdict, reason) = judge(ensemble, counts, draws);
         let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
             further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
@@ -211,13 +218,6 @@ pub fn of_results(
     };
     status.requirements = counts.into_iter().map(of).collect();
     Ok(status)
-}
-
-/// Case that counts, with its evidence for each requirement that it checks.
-struct Looked<'a> {
-    case: &'a Case,
-    stream: Option<String>,
-    passed: Vec<(&'a str, Option<bool>)>,
 }
 
 /// Evaluates the stopping rule on the results in a folder.

@@ -1,7 +1,7 @@
 //! Rows of a table by the cases that they belong to, read column by column.
 
+use super::case_places::CasePlaces;
 use super::table::{ColumnCursor, ColumnValue, ColumnValues, ExistingTable, TableError};
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Rows of a case that follow one another.
@@ -35,7 +35,7 @@ pub(super) struct CaseTable {
 
 impl CaseTable {
     /// Opens a table. `place` are the cases of the plan by their ids.
-    pub(super) fn open(path: &Path, place: &HashMap<&str, usize>) -> Result<Self, TableError> {
+    pub(super) fn open(path: &Path, place: &CasePlaces<'_>) -> Result<Self, TableError> {
         Self::of(path, ExistingTable::open(path)?, place)
     }
 
@@ -43,7 +43,7 @@ impl CaseTable {
     pub(super) fn of(
         path: &Path,
         table: ExistingTable,
-        place: &HashMap<&str, usize>,
+        place: &CasePlaces<'_>,
     ) -> Result<Self, TableError> {
         let form = |reason: String| TableError::Form { path: path.to_owned(), reason };
         let Some(mut cases) = table.cursor("case")? else {
@@ -57,7 +57,7 @@ impl CaseTable {
                 None => None,
             };
             let id = id.as_deref().unwrap_or("");
-            let case = place.get(id).copied();
+            let case = place.get(id);
             let case = case.ok_or_else(|| form(format!("the plan has no case {id}")))?;
             match runs.last_mut() {
                 Some(run) if run.case == case => run.rows += 1,

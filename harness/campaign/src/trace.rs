@@ -2,11 +2,12 @@
 
 use super::case::ResultError;
 use super::independence;
-use super::plan::{Plan, PlanError};
+use super::plan::{Case, Plan, PlanError};
 use super::requirements;
 use super::store::CampaignResults;
+use super::stream_key::StreamKey;
 use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
-use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult as Traced};
+use octant_requirements::trace::{CampaignTrace, GrowingTrace, TracedCase, TracedResult as Traced};
 use octant_requirements::{Comparison, Verdict};
 use octant_scenario::campaign::Campaign;
 use std::path::Path;
@@ -94,56 +95,83 @@ pub fn trace_by(
     end: usize,
 ) -> Result<CampaignTrace, ResultError> {
     let requirements = &with_those_of_scenarios(plan, requirements);
-    let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
-    let mut of = |case: &super::plan::Case| -> Result<TracedCase, ResultError> {
-        let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
-        let of_file = |id: &&String| requirements.get(id).is_some();
-        let verifies: Vec<String> = (planned.iter())
-            .flat_map(|scenario| scenario.requirements.iter().filter(of_file))
-            .cloned()
-            .collect();
-        let result = if let Some(facts) = results.facts(plan, case)? {
-            // A check that passes in a run without evidence isn't a pass either, and of two results
-            // none counts.
-            let most = match facts.besides {
-                _ if results.differing(&case.id)?.is_some() => Verdict::Error,
-                Verdict::Fail => Verdict::Inconclusive,
-                other => other,
-            };
-            // A failed check of such a run doesn't count among the failures that an ensemble may
-            // have.
-            let allowed = |id: &str| {
-                let check = requirements.get(id).and_then(Requirement::check);
-                check.is_some_and(|check| check.ensemble.is_some())
-            };
-            let check = |id: &String| {
-                let check = match facts.check(id) {
-                    Verdict::Fail if most != Verdict::Pass && allowed(id) => most,
-                    check => check.worst(most),
-                };
-                (id.clone(), traced(check))
-            };
-            let checks = verifies.iter().map(check).collect();
-            streams.push(facts.stream().map(str::to_owned));
-            Some(Traced {
-                verdict: traced(facts.verdict),
-                checks,
-                // A campaign keeps summaries; a recording is made by running the case again.
-                recording: None,
-                folder: results.place(&case.id).map(|place| place.folder().display().to_string()),
-            })
-        } else {
-            streams.push(None);
-            None
-        };
-        Ok(TracedCase { id: case.id.clone(), verifies, draw: 0, result })
-    };
-    let mut cases = plan.cases.iter().take(end).map(&mut of).collect::<Result<Vec<_>, _>>()?;
-    let rows = plan.cases.iter().zip(streams.iter().map(Option::as_deref));
+    let mut streams: Vec<Option<StreamKey>> = Vec::with_capacity(plan.cases.len());
+    let mut cases = Vec::with_capacity(plan.cases.len());
+    for case in plan.cases.iter().take(end) {
+        let (case, stream) = traced_case(plan, requirements, results, case)?;
+        cases.push(case);
+        streams.push(stream);
+    }
+    let rows = plan.cases.iter().zip(streams.iter().map(Option::as_ref));
     for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
         case.draw = draw;
     }
     Ok(CampaignTrace::new(requirements, &cases))
+}
+
+/// Traces a campaign as [`trace`] does, with the independent draw of each case that counts, and with at most
+/// this number of links from a requirement to its cases.
+pub(crate) fn first_by(
+    plan: &Plan,
+    requirements: &Requirements,
+    results: &CampaignResults,
+    draws: &[usize],
+    links_max: usize,
+) -> Result<CampaignTrace, ResultError> {
+    let requirements = &with_those_of_scenarios(plan, requirements);
+    let mut growing = GrowingTrace::new(requirements, links_max);
+    for (case, draw) in plan.cases.iter().zip(draws) {
+        let (case, _) = traced_case(plan, requirements, results, case)?;
+        growing.add(&TracedCase { draw: *draw, ..case });
+    }
+    Ok(growing.trace())
+}
+
+/// Traces a case, whose draw isn't known yet, and returns its stream.
+fn traced_case(
+    plan: &Plan,
+    requirements: &Requirements,
+    results: &CampaignResults,
+    case: &Case,
+) -> Result<(TracedCase, Option<StreamKey>), ResultError> {
+    let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+    let of_file = |id: &&String| requirements.get(id).is_some();
+    let verifies: Vec<String> = (planned.iter())
+        .flat_map(|scenario| scenario.requirements.iter().filter(of_file))
+        .cloned()
+        .collect();
+    let id = case.id.to_string();
+    let Some(facts) = results.facts(plan, case)? else {
+        return Ok((TracedCase { id, verifies, draw: 0, result: None }, None));
+    };
+    // A check that passes in a run without evidence isn't a pass either, and of two results
+    // none counts.
+    let most = match facts.besides {
+        _ if results.differing(&case.id)?.is_some() => Verdict::Error,
+        Verdict::Fail => Verdict::Inconclusive,
+        other => other,
+    };
+    // A failed check of such a run doesn't count among the failures that an ensemble may
+    // have.
+    let allowed = |id: &str| {
+        let check = requirements.get(id).and_then(Requirement::check);
+        check.is_some_and(|check| check.ensemble.is_some())
+    };
+    let check = |id: &String| {
+        let check = match facts.check(id) {
+            Verdict::Fail if most != Verdict::Pass && allowed(id) => most,
+            check => check.worst(most),
+        };
+        (id.clone(), traced(check))
+    };
+    let result = Some(Traced {
+        verdict: traced(facts.verdict),
+        checks: verifies.iter().map(check).collect(),
+        // A campaign keeps summaries; a recording is made by running the case again.
+        recording: None,
+        folder: results.place(&case.id).map(|place| place.folder().display().to_string()),
+    });
+    Ok((TracedCase { id, verifies, draw: 0, result }, facts.stream().map(StreamKey::from)))
 }
 
 /// Converts a verdict without requirements into inconclusive.

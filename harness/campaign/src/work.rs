@@ -122,7 +122,7 @@ pub fn work(
         let writer = writer.get_or_insert_with(|| PartWriter::new(&job.folder, &job.stem));
         match writer.next_record() {
             Ok((part, offset)) => {
-                let (part, case) = (part.to_owned(), job.case.id.clone());
+                let (part, case) = (part.to_owned(), job.case.id.to_string());
                 tell(&WorkReply::Stores(RecordAt { part, offset, case }))?;
             }
             Err(error) => {

@@ -421,10 +421,10 @@ pub(crate) fn case(
     run(&RunRequest {
         scenario: planned.file.clone(),
         places: planned.places(),
-        set: case.set.clone(),
+        set: case.set.to_strings(),
         out: Some(out.to_owned()),
         seed: Some(case.seed),
-        only_faults: case.faults.clone(),
+        only_faults: case.faults.as_ref().map(|faults| faults.to_strings()),
         planned_faults: true,
         require: true,
         ..RunRequest::default()

@@ -410,7 +410,7 @@ fn run_all(
             together: true,
             cancel,
         };
-        let id = |index: usize| plan.cases[index].id.clone();
+        let id = |index: usize| plan.cases[index].id.to_string();
         let outcome = bar.during(&id, || in_rounds(plan, &mut options, &tell))?;
         if outcome.left > 0 || cancel.load(Ordering::Relaxed) {
             return Ok(false);
@@ -465,8 +465,11 @@ fn conclude(
         let read = |folder: &Path| CampaignResults::open(folder).ok()?.bytes(&first.id).ok()?;
         let read = |folder: &Path| read(folder).map(|stored| stored.bytes);
         let (once, twice) = (read(folder), read(&again));
-        if twice.is_some() && once != twice && !found.differing.contains(&first.id) {
-            found.differing.push(first.id.clone());
+        if twice.is_some()
+            && once != twice
+            && !found.differing.iter().any(|id| first.id == id.as_str())
+        {
+            found.differing.push(first.id.to_string());
         }
     }
     remove(&again)?;

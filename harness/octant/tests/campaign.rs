@@ -191,7 +191,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
             column("stream_hash").at(row),
             Some(ColumnValue::Text(summary.stream_hash.into()))
         );
-        let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".to_owned());
+        let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".into());
         let fired = column("faults.spike-1.fired").at(row);
         assert_eq!(fired, spiked.then_some(ColumnValue::Boolean(true)));
     }
@@ -231,7 +231,7 @@ fn assert_one_error(bench: &Bench, plan: &Plan, reason: &str) {
     assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
     let counts = [("pass", 1), ("error", 1)];
     assert!(state.verdicts == counts.into_iter().collect(), "{}", state.text());
-    assert_eq!(plan.case(&state.bad[0].case).unwrap().scenario, "other");
+    assert_eq!(plan.case(&state.bad[0].case).unwrap().scenario.as_str(), "other");
     assert_eq!(state.bad[0].reason, reason);
     merged(plan, &bench.at("out"));
 }
@@ -340,7 +340,7 @@ fn results_of_others_and_two_results_of_a_case_are_no_pass() {
     let bench = Bench::new(&CAMPAIGN.replace("replicates = 3", "replicates = 1"));
     let (plan, folder) = (bench.plan(), bench.at("out"));
     run(&plan, &folder, Shard::WHOLE, 2);
-    let id = &plan.cases[0].id;
+    let id = plan.cases[0].id.as_str();
     let text = stored::text(&folder, id);
     assert_eq!(keep(&folder, id, text.as_bytes()).unwrap(), StoreOutcome::Same);
 

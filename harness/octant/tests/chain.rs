@@ -45,7 +45,7 @@ fn readers(bench: &Bench) -> Vec<(&'static str, i32, String)> {
 fn an_edited_case_result_is_refused_by_every_reader_and_named() {
     let (bench, plan, out) = campaign();
     parts(&plan, &out);
-    let id = &plan.cases[0].id;
+    let id = plan.cases[0].id.as_str();
     let put = |result: &Value| stored::put(&out, id, &format!("{result}\n"));
     let whole = stored::value(&out, id);
     assert_eq!(whole["verdict"], "fail");
@@ -160,7 +160,7 @@ fn tables_that_contradict_the_cases_are_refused() {
             let (status, said) = if is_part { octant("merge") } else { bench.report() };
             let name = path.file_name().unwrap().to_str().unwrap();
             assert!(status == 2 && said.contains(name), "{table}: {status}: {said}");
-            assert!(said.contains(&plan.cases[0].id), "{said}");
+            assert!(said.contains(plan.cases[0].id.as_str()), "{said}");
             std::fs::write(&path, whole).unwrap();
         }
     }
@@ -192,7 +192,7 @@ fn tables_that_contradict_the_cases_are_refused() {
         let whole = std::fs::read(&path).unwrap();
         edited(&path, "verdict", pass);
         let (status, said) = merged();
-        assert!(status == 2 && said.contains(&plan.cases[0].id), "{table}: {said}");
+        assert!(status == 2 && said.contains(plan.cases[0].id.as_str()), "{table}: {said}");
         std::fs::write(&path, whole).unwrap();
     }
 }
@@ -503,7 +503,9 @@ fn a_run_and_a_campaign_are_run_again_from_their_folders_alone() {
     assert_eq!(octant(&["verify", "out"]).0, 0, "nothing contradicts it");
     let (status, said, _) = octant(&["verify", "out", "--reexecute", "all"]);
     assert!(
-        status == 1 && said.contains(&case.id) && said.contains("latitude_error_arcmin.rms"),
+        status == 1
+            && said.contains(case.id.as_str())
+            && said.contains("latitude_error_arcmin.rms"),
         "{said}"
     );
 }

@@ -199,7 +199,7 @@ fn a_plan_and_the_results_of_its_cases() {
     let folder = sample("campaign");
     for case in &plan.cases {
         let result = CaseResult::read(&file(&folder, &case.id)).unwrap();
-        assert_eq!((result.verdict, &result.case), (Verdict::Pass, &case.id));
+        assert_eq!((result.verdict, result.case.as_str()), (Verdict::Pass, case.id.as_str()));
         assert_eq!(result.summary.unwrap().seed, case.seed);
     }
     let status = status::of(&plan, &folder, Shard::WHOLE).unwrap();
@@ -207,7 +207,7 @@ fn a_plan_and_the_results_of_its_cases() {
 
     let (_folder, newer) = changed("campaign/plan.json", "\"schema\": 1", "\"schema\": 2");
     assert_refused(&Plan::read(&newer).unwrap_err().to_string());
-    let id = &plan.cases[0].id;
+    let id = plan.cases[0].id.as_str();
     let name = format!("campaign/cases/{}/{id}.json", &id[..2]);
     let (_folder, newer) = changed(&name, "\"schema\":1", "\"schema\":3");
     assert_refused(&CaseResult::read(&newer).unwrap_err().to_string());
@@ -227,7 +227,7 @@ fn a_bundle_and_results_in_a_part() {
     let stored = CampaignResults::open(&parts).unwrap();
     for case in &plan.cases {
         let (result, _) = stored.result(&case.id).unwrap().unwrap();
-        assert_eq!((result.verdict, &result.case), (Verdict::Pass, &case.id));
+        assert_eq!((result.verdict, result.case.as_str()), (Verdict::Pass, case.id.as_str()));
         assert_eq!(result.summary.unwrap().seed, case.seed);
     }
     let status = status::of(&plan, &parts, Shard::WHOLE).unwrap();

@@ -373,7 +373,7 @@ fn a_night_is_judged_anew_campaign_by_campaign() {
     let (status, found) = rejudge();
     let judged = &found["judged"][0];
     assert_eq!((status, &found["verdict"]), (Some(1), &"fail".into()), "{found}");
-    assert_eq!(judged["cases"][0]["case"], plan.cases[0].id);
+    assert_eq!(judged["cases"][0]["case"], plan.cases[0].id.as_str());
     // A night without its campaign's folder is an error that names the missing part.
     std::fs::remove_file(night.join("night/plan.json")).unwrap();
     let (status, _, err) = bench.octant(&["rejudge", night.to_str().unwrap()]);

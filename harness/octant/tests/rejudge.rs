@@ -205,7 +205,7 @@ fn the_numerics_version_is_wherever_a_number_is() {
     plan.write(&out, false).unwrap();
     bench.octant(&["campaign", "run", "out"]);
     bench.octant(&["campaign", "merge", "out"]);
-    let id = &plan.cases[0].id;
+    let id = plan.cases[0].id.as_str();
     let mut result = results::value(&out, id);
     assert_eq!(result["summary"]["numerics"], NUMERICS);
     let table =

@@ -183,7 +183,7 @@ fn a_failure_without_evidence_is_none_that_draws_may_have() {
 #[test]
 fn a_case_with_two_results_is_an_error_of_all_that_it_checks() {
     let (bench, plan, out) = modest_and_filled(|_, _, _| {});
-    let id = &plan.cases[1].id;
+    let id = plan.cases[1].id.as_str();
     results::put_beside(&out, id, &(results::text(&out, id) + "\n"));
     let (_, said) = says(&bench, &["campaign", "trace", "out", "--json"]);
     let traced: Value = serde_json::from_str(&said).unwrap();

@@ -317,16 +317,16 @@ fn campaign(
         files: Default::default(),
     };
     let case = |i: usize| Case {
-        id: String::new(),
-        scenario: "s".to_owned(),
+        id: "0123456789abcdef".parse().unwrap(),
+        scenario: "s".into(),
         seed: i as u64,
         replicate: i as u32,
-        set: Vec::new(),
+        set: Default::default(),
         faults: None,
         factors: Default::default(),
     };
     let id = |i: usize| case::hash_of(&planned, &case(i))[..16].to_owned();
-    let cases = (0..outcomes.len()).map(|i| Case { id: id(i), ..case(i) });
+    let cases = (0..outcomes.len()).map(|i| Case { id: id(i).parse().unwrap(), ..case(i) });
     let plan = Plan {
         bundled: None,
         schema: plan::SCHEMA,

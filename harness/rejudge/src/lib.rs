@@ -300,7 +300,7 @@ fn campaign(
         if again.verdict != stored.verdict {
             let reasons = again.summary.as_ref().map(|summary| summary.reasons.clone());
             cases.push(RejudgedCase {
-                case: case.id.clone(),
+                case: case.id.to_string(),
                 then: stored.verdict,
                 now: again.verdict,
                 reasons: reasons.unwrap_or_default(),

@@ -2,7 +2,7 @@
 
 use crate::requirement::{EnsembleRequirement, Requirement, Requirements, Verification};
 use crate::verdict::Verdict;
-use octant_statistics::cluster::DrawCounts;
+use octant_statistics::cluster::{DrawCounts, DrawTally};
 use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -65,6 +65,12 @@ pub struct VerdictCounts {
 }
 
 impl VerdictCounts {
+    /// Number of all checks, also of those that are missing.
+    #[must_use]
+    pub const fn all(&self) -> u64 {
+        self.pass + self.inconclusive + self.fail + self.error + self.missing
+    }
+
     fn add(&mut self, verdict: Option<Verdict>) {
         *match verdict {
             None => &mut self.missing,
@@ -118,54 +124,103 @@ pub struct CampaignTrace {
     pub unknown: Vec<UnknownRequirement>,
 }
 
+/// Trace of a campaign whose cases come one by one.
+#[derive(Debug)]
+pub struct GrowingTrace<'a> {
+    requirements: &'a Requirements,
+    /// Place of each requirement by its id.
+    index: HashMap<&'a str, usize>,
+    rows: Vec<GrowingRow>,
+    without_requirement: Vec<String>,
+    unknown: Vec<UnknownRequirement>,
+    links_max: usize,
+}
+
+/// Cases of a requirement so far.
+#[derive(Clone, Debug, Default)]
+struct GrowingRow {
+    links: Vec<TraceLink>,
+    counts: VerdictCounts,
+    draws: DrawTally,
+}
+
+impl<'a> GrowingTrace<'a> {
+    /// Begins a trace, in which each requirement will have its first `links_max` cases. All of them count.
+    #[must_use]
+    pub fn new(requirements: &'a Requirements, links_max: usize) -> Self {
+        let all = &requirements.requirements;
+        Self {
+            requirements,
+            index: all.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect(),
+            rows: vec![GrowingRow::default(); all.len()],
+            without_requirement: Vec::new(),
+            unknown: Vec::new(),
+            links_max,
+        }
+    }
+
+    /// Adds a case. One that names a requirement several times counts once for it, with the worst of its
+    /// checks.
+    pub fn add(&mut self, case: &TracedCase) {
+        let mut worst: HashMap<&str, Verdict> = HashMap::new();
+        for (id, verdict) in case.result.iter().flat_map(|result| &result.checks) {
+            let slot = worst.entry(id).or_insert(*verdict);
+            *slot = (*slot).max(*verdict);
+        }
+        // Checks count, whether they were announced or not.
+        let mut ids: Vec<&str> = Vec::new();
+        let checked = case.result.iter().flat_map(|r| &r.checks).map(|(id, _)| id);
+        for id in case.verifies.iter().chain(checked) {
+            if !ids.contains(&id.as_str()) {
+                ids.push(id);
+            }
+        }
+        let mut known = false;
+        for id in ids {
+            let Some(row) = self.index.get(id).and_then(|at| self.rows.get_mut(*at)) else {
+                let requirement = id.to_owned();
+                self.unknown.push(UnknownRequirement { case: case.id.clone(), requirement });
+                continue;
+            };
+            known = true;
+            let verdict = worst.get(id).copied();
+            row.counts.add(verdict);
+            row.draws.add(case.draw, verdict.map(|verdict| verdict == Verdict::Pass));
+            if row.links.len() < self.links_max {
+                row.links.push(TraceLink {
+                    case: case.id.clone(),
+                    draw: case.draw,
+                    verdict,
+                    recording: case.result.as_ref().and_then(|r| r.recording.clone()),
+                    folder: case.result.as_ref().and_then(|r| r.folder.clone()),
+                });
+            }
+        }
+        if !known {
+            self.without_requirement.push(case.id.clone());
+        }
+    }
+
+    /// Returns the trace of all cases.
+    #[must_use]
+    pub fn trace(self) -> CampaignTrace {
+        let Self { requirements, rows, without_requirement, unknown, .. } = self;
+        let rows: Vec<TraceRow> =
+            requirements.requirements.iter().zip(rows).map(|(r, cases)| row(r, cases)).collect();
+        let tested = |row: &&TraceRow| row.counts.all() == 0 && row.verdict.is_some();
+        let without_case = rows.iter().filter(tested).map(|row| row.id.clone()).collect();
+        CampaignTrace { requirements: rows, without_case, without_requirement, unknown }
+    }
+}
+
 impl CampaignTrace {
     /// Traces the cases of a campaign. A case that names a requirement several times counts once for
     /// it, with the worst of its checks.
     #[must_use]
     pub fn new(requirements: &Requirements, cases: &[TracedCase]) -> Self {
-        let index: HashMap<&str, usize> =
-            requirements.requirements.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect();
-        let mut links: Vec<Vec<TraceLink>> = vec![Vec::new(); requirements.requirements.len()];
-        let (mut without_requirement, mut unknown) = (Vec::new(), Vec::new());
-        for case in cases {
-            let mut worst: HashMap<&str, Verdict> = HashMap::new();
-            for (id, verdict) in case.result.iter().flat_map(|result| &result.checks) {
-                let slot = worst.entry(id).or_insert(*verdict);
-                *slot = (*slot).max(*verdict);
-            }
-            // Checks count, whether they were announced or not.
-            let mut ids: Vec<&str> = Vec::new();
-            let checked = case.result.iter().flat_map(|r| &r.checks).map(|(id, _)| id);
-            for id in case.verifies.iter().chain(checked) {
-                if !ids.contains(&id.as_str()) {
-                    ids.push(id);
-                }
-            }
-            let mut known = false;
-            for id in ids {
-                let Some(&at) = index.get(id) else {
-                    let requirement = id.to_owned();
-                    unknown.push(UnknownRequirement { case: case.id.clone(), requirement });
-                    continue;
-                };
-                known = true;
-                links[at].push(TraceLink {
-                    case: case.id.clone(),
-                    draw: case.draw,
-                    verdict: worst.get(id).copied(),
-                    recording: case.result.as_ref().and_then(|r| r.recording.clone()),
-                    folder: case.result.as_ref().and_then(|r| r.folder.clone()),
-                });
-            }
-            if !known {
-                without_requirement.push(case.id.clone());
-            }
-        }
-        let rows: Vec<TraceRow> =
-            requirements.requirements.iter().zip(links).map(|(r, cases)| row(r, cases)).collect();
-        let tested = |row: &&TraceRow| row.cases.is_empty() && row.verdict.is_some();
-        let without_case = rows.iter().filter(tested).map(|row| row.id.clone()).collect();
-        Self { requirements: rows, without_case, without_requirement, unknown }
+        let mut growing = GrowingTrace::new(requirements, usize::MAX);
+        cases.iter().for_each(|case| growing.add(case));
+        growing.trace()
     }
 
     /// Worst verdict of all requirements that runs can verify. Without any it is inconclusive, because
@@ -189,14 +244,9 @@ impl CampaignTrace {
     }
 }
 
-fn row(requirement: &Requirement, cases: Vec<TraceLink>) -> TraceRow {
-    let mut counts = VerdictCounts::default();
-    for link in &cases {
-        counts.add(link.verdict);
-    }
-    let passed =
-        |link: &TraceLink| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
-    let draws = DrawCounts::of(cases.iter().map(passed));
+fn row(requirement: &Requirement, cases: GrowingRow) -> TraceRow {
+    let GrowingRow { links: cases, counts, draws } = cases;
+    let draws = draws.counts();
     let (verdict, reason) = match &requirement.verification {
         Verification::Test(check) => {
             let (verdict, reason) = judge(check.ensemble, counts, draws);
@@ -234,8 +284,7 @@ pub fn judge(
     counts: VerdictCounts,
     draws: DrawCounts,
 ) -> (Verdict, String) {
-    let VerdictCounts { pass, inconclusive, fail, error, missing } = counts;
-    let all = pass + inconclusive + fail + error + missing;
+    let (VerdictCounts { inconclusive, fail, error, missing, .. }, all) = (counts, counts.all());
     if all == 0 {
         return (Verdict::Inconclusive, "no case verifies it".to_owned());
     }

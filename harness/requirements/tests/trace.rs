@@ -6,7 +6,9 @@ use octant_requirements::requirement::{
     Check, EnsembleRequirement, Limit, Requirement, Requirements, Verification,
 };
 use octant_requirements::strictdoc;
-use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult, VerdictCounts, judge};
+use octant_requirements::trace::{
+    CampaignTrace, GrowingTrace, TracedCase, TracedResult, VerdictCounts, judge,
+};
 use octant_statistics::cluster::DrawCounts;
 use proptest::prelude::*;
 
@@ -139,6 +141,29 @@ fn an_ensemble_passes_by_its_bound() {
         "59 of 59 independent draws passed: with 95.00 % confidence a draw passes with a probability \
          of at least 95.04 %, required 95.00 %"
     );
+}
+
+#[test]
+fn a_trace_of_the_first_cases_counts_all() {
+    let requirements = document(vec![tested("A", None), tested("B", None)]);
+    let cases: Vec<TracedCase> = (0..9)
+        .map(|i| {
+            let verdict = if i == 7 { Verdict::Fail } else { Verdict::Pass };
+            case(&format!("c{i}"), &[("A", verdict)])
+        })
+        .collect();
+    let whole = CampaignTrace::new(&requirements, &cases);
+    let mut growing = GrowingTrace::new(&requirements, 2);
+    cases.iter().for_each(|case| growing.add(case));
+    let mut first = growing.trace();
+    assert_eq!(whole.requirements[0].cases.len(), 9);
+    assert_eq!(whole.requirements[0].counts.all(), 9);
+    assert_eq!(whole.requirements[0].verdict, Some(Verdict::Fail));
+    // All is the same, but for the links.
+    assert_eq!(first.requirements[0].cases, whole.requirements[0].cases[..2]);
+    first.requirements[0].cases = whole.requirements[0].cases.clone();
+    assert_eq!(first, whole);
+    assert_eq!(first.without_case, ["B"]);
 }
 
 #[test]

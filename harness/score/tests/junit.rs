@@ -1,7 +1,8 @@
 //! JUnit XML as nextest writes it.
 
 use octant_requirements::Verdict;
-use octant_score::junit::{JunitCase, JunitSuite, document};
+use octant_score::junit::{JunitCase, JunitCases, JunitSuite, document, write_document};
+use std::io;
 
 fn case(verdict: Verdict, message: &str) -> JunitCase {
     JunitCase {
@@ -56,6 +57,21 @@ fn the_file_is_that_of_nextest() {
 </testsuites>
 "#;
     assert_eq!(document("octant", &suites).expect("can be written"), expected);
+
+    /// Cases that are made when they are written.
+    struct Made(usize);
+    impl JunitCases for Made {
+        fn each(&self, put: &mut dyn FnMut(&JunitCase) -> io::Result<()>) -> io::Result<()> {
+            (0..self.0).try_for_each(|number| put(&case(Verdict::Fail, &number.to_string())))
+        }
+    }
+    let made = JunitSuite { name: "m".to_owned(), properties: Vec::new(), cases: Made(3) };
+    let listed = (0..3).map(|number| case(Verdict::Fail, &number.to_string()));
+    let listed =
+        JunitSuite { cases: listed.collect(), name: "m".to_owned(), properties: Vec::new() };
+    let mut written = Vec::new();
+    write_document("octant", &[made], &mut written).unwrap();
+    assert_eq!(String::from_utf8(written).unwrap(), document("octant", &[listed]).unwrap());
 }
 
 #[test]

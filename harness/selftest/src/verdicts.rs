@@ -347,7 +347,7 @@ fn only_case(bench: &CaseBench<'_>) -> Result<String, CaseSetupError> {
     let plan = octant_campaign::plan::Plan::read(&bench.at("campaign/plan.json"))
         .map_err(|error| error.to_string())?;
     let case = plan.cases.first().ok_or("find a case in the plan")?;
-    Ok(case.id.clone())
+    Ok(case.id.to_string())
 }
 
 fn status(bench: &CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError> {

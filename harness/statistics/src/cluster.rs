@@ -7,43 +7,108 @@
 //! dependence between the rows of a draw.
 
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::hash::Hash;
 
 /// Draw of each row, as numbers from 0 in the order of the first rows. Rows with the same seed belong
 /// to one draw, and so do rows with the same stream, also over several steps.
 #[must_use]
-pub fn draws<S: Hash + Eq, H: Hash + Eq>(
-    rows: impl IntoIterator<Item = (S, Option<H>)>,
-) -> Vec<usize> {
-    let (mut by_seed, mut by_stream) = (HashMap::new(), HashMap::new());
+pub fn draws<S: Ord, H: Ord>(rows: impl IntoIterator<Item = (S, Option<H>)>) -> Vec<usize> {
+    let (seeds, streams): (Vec<S>, Vec<Option<H>>) = rows.into_iter().unzip();
+    let mut order: Vec<usize> = (0..seeds.len()).collect();
     // Each row points to a row of its draw that isn't after it; the first row of a draw points to
     // itself.
-    let mut first: Vec<usize> = Vec::new();
-    fn root(first: &mut [usize], mut row: usize) -> usize {
-        while first[row] != row {
-            first[row] = first[first[row]];
-            row = first[row];
-        }
-        row
+    let mut first = order.clone();
+    // Sorted lists: maps of millions of rows would take several times the memory.
+    order.sort_unstable_by_key(|row| &seeds[*row]);
+    for same in order.chunk_by(|a, b| seeds[*a] == seeds[*b]) {
+        join(&mut first, same);
     }
-    for (row, (seed, stream)) in rows.into_iter().enumerate() {
-        first.push(row);
-        let of_seed = *by_seed.entry(seed).or_insert(row);
-        let of_stream = stream.map_or(row, |stream| *by_stream.entry(stream).or_insert(row));
-        for other in [of_seed, of_stream] {
-            let (a, b) = (root(&mut first, row), root(&mut first, other));
-            let (low, high) = (a.min(b), a.max(b));
-            first[high] = low;
-        }
+    order.retain(|row| streams[*row].is_some());
+    order.sort_unstable_by_key(|row| &streams[*row]);
+    for same in order.chunk_by(|a, b| streams[*a] == streams[*b]) {
+        join(&mut first, same);
     }
-    let mut numbers = HashMap::new();
-    (0..first.len())
-        .map(|row| {
-            let next = numbers.len();
-            *numbers.entry(root(&mut first, row)).or_insert(next)
-        })
-        .collect()
+    let mut next = 0;
+    let mut numbers = order;
+    numbers.clear();
+    for row in 0..first.len() {
+        let root = root(&mut first, row);
+        numbers.push(if root == row { next } else { numbers[root] });
+        next += usize::from(root == row);
+    }
+    numbers
+}
+
+fn root(first: &mut [usize], mut row: usize) -> usize {
+    while first[row] != row {
+        first[row] = first[first[row]];
+        row = first[row];
+    }
+    row
+}
+
+/// Makes rows one draw.
+fn join(first: &mut [usize], rows: &[usize]) {
+    for pair in rows.windows(2) {
+        let (a, b) = (root(first, pair[0]), root(first, pair[1]));
+        first[a.max(b)] = a.min(b);
+    }
+}
+
+/// Results of draws whose rows come one by one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DrawTally {
+    /// Result of each draw by its number: `None` if it has no row.
+    dense: Vec<Option<DrawResult>>,
+    /// Draws whose numbers are far beyond the number of rows.
+    sparse: BTreeMap<usize, DrawResult>,
+    rows: u64,
+}
+
+/// Whether a draw passed; `None`: it is open.
+type DrawResult = Option<bool>;
+
+/// Length by which the list of draws grows at most for one row.
+const GROWTH: usize = 1 << 12;
+
+impl DrawTally {
+    /// Adds a row of a draw, and whether it passed; `None`: no result yet.
+    pub fn add(&mut self, draw: usize, passed: Option<bool>) {
+        self.rows += 1;
+        if draw >= self.dense.len() && draw - self.dense.len() < GROWTH {
+            let more = self.dense.len()..=draw;
+            self.dense.extend(more.map(|draw| self.sparse.remove(&draw)));
+        }
+        let all = match self.dense.get_mut(draw) {
+            Some(all) => all.get_or_insert(Some(true)),
+            None => self.sparse.entry(draw).or_insert(Some(true)),
+        };
+        *all = match (*all, passed) {
+            (Some(false), _) | (_, Some(false)) => Some(false),
+            (None, _) | (_, None) => None,
+            (Some(true), Some(true)) => Some(true),
+        };
+    }
+
+    /// Returns whether each draw passed, in the order of their numbers; `None`: it is open.
+    pub fn results(&self) -> impl Iterator<Item = Option<bool>> {
+        self.dense.iter().copied().flatten().chain(self.sparse.values().copied())
+    }
+
+    /// Counts the draws.
+    #[must_use]
+    pub fn counts(&self) -> DrawCounts {
+        let mut counts = DrawCounts { rows: self.rows, ..DrawCounts::default() };
+        for passed in self.results() {
+            *match passed {
+                Some(true) => &mut counts.passed,
+                Some(false) => &mut counts.not_passed,
+                None => &mut counts.open,
+            } += 1;
+        }
+        counts
+    }
 }
 
 /// Numbers of draws by result.
@@ -63,25 +128,9 @@ impl DrawCounts {
     /// Counts draws. Each row has its draw, and whether it passed; `None`: no result yet.
     #[must_use]
     pub fn of(rows: impl IntoIterator<Item = (usize, Option<bool>)>) -> Self {
-        let mut draws: HashMap<usize, Option<bool>> = HashMap::new();
-        let mut counts = Self::default();
-        for (draw, passed) in rows {
-            counts.rows += 1;
-            let all = draws.entry(draw).or_insert(Some(true));
-            *all = match (*all, passed) {
-                (Some(false), _) | (_, Some(false)) => Some(false),
-                (None, _) | (_, None) => None,
-                (Some(true), Some(true)) => Some(true),
-            };
-        }
-        for passed in draws.into_values() {
-            *match passed {
-                Some(true) => &mut counts.passed,
-                Some(false) => &mut counts.not_passed,
-                None => &mut counts.open,
-            } += 1;
-        }
-        counts
+        let mut tally = DrawTally::default();
+        rows.into_iter().for_each(|(draw, passed)| tally.add(draw, passed));
+        tally.counts()
     }
 
     /// Number of draws with a result.

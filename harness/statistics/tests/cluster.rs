@@ -1,8 +1,9 @@
 //! The unit of inference: independent draws, not rows.
 
-use octant_statistics::cluster::{DrawCounts, Growing, draws};
+use octant_statistics::cluster::{DrawCounts, DrawTally, Growing, draws};
 use octant_statistics::proportion::Demand;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 
 const ASKED: Demand = Demand { pass: 0.95, confidence: 0.95 };
 
@@ -74,7 +75,67 @@ fn a_draw_passes_if_all_of_its_rows_do() {
     assert_eq!((counts.known(), counts.all()), (3, 4));
 }
 
+/// Draws by their definition: rows are joined until nothing changes.
+fn joined(rows: &[(u8, Option<u8>)]) -> Vec<usize> {
+    let mut of: Vec<usize> = (0..rows.len()).collect();
+    loop {
+        let before = of.clone();
+        for (a, (seed, stream)) in rows.iter().enumerate() {
+            for (b, (other, of_other)) in rows.iter().enumerate() {
+                if seed == other || (stream.is_some() && stream == of_other) {
+                    of[a] = of[a].min(of[b]);
+                }
+            }
+        }
+        if of == before {
+            break;
+        }
+    }
+    let mut numbers = BTreeMap::new();
+    for first in &of {
+        let next = numbers.len();
+        numbers.entry(*first).or_insert(next);
+    }
+    of.iter().map(|first| numbers[first]).collect()
+}
+
 proptest! {
+    #[test]
+    fn rows_are_joined_by_seeds_and_streams(
+        rows in prop::collection::vec((0u8..12, prop::option::of(0u8..12)), 0..30),
+    ) {
+        prop_assert_eq!(draws(rows.iter().copied()), joined(&rows));
+    }
+
+    /// Numbers near each other and far apart, in any order.
+    #[test]
+    fn a_tally_keeps_the_worst_of_each_draw(
+        rows in prop::collection::vec(
+            (prop_oneof![0usize..9, 4090usize..4105, any::<usize>()], prop::option::of(any::<bool>())),
+            0..60,
+        ),
+    ) {
+        let (mut tally, mut worst) = (DrawTally::default(), BTreeMap::new());
+        for (draw, passed) in &rows {
+            tally.add(*draw, *passed);
+            let all: &mut Vec<Option<bool>> = worst.entry(*draw).or_default();
+            all.push(*passed);
+        }
+        let results: Vec<Option<bool>> = worst
+            .values()
+            .map(|all| match all {
+                all if all.contains(&Some(false)) => Some(false),
+                all if all.contains(&None) => None,
+                _ => Some(true),
+            })
+            .collect();
+        prop_assert_eq!(tally.results().collect::<Vec<_>>(), results.clone());
+        let count = |wanted| results.iter().filter(|result| **result == wanted).count() as u64;
+        let counts = tally.counts();
+        prop_assert_eq!((counts.passed, counts.not_passed), (count(Some(true)), count(Some(false))));
+        prop_assert_eq!((counts.open, counts.rows), (count(None), rows.len() as u64));
+    }
+
     #[test]
     fn draws_that_come_one_by_one_are_the_same(
         seeds in prop::collection::vec(

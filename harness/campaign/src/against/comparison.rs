@@ -52,7 +52,7 @@ impl EnsembleComparison {
     /// Place of its first case in the plan; `None` if the plan has no such case.
     #[must_use]
     pub fn place(&self, plan: &Plan) -> Option<usize> {
-        let is = |case: &Case| case.scenario == self.scenario && case.set == self.set;
+        let is = |case: &Case| case.scenario == self.scenario && *case.set == *self.set;
         plan.cases.iter().position(is)
     }
 }

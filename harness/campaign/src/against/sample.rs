@@ -3,6 +3,7 @@
 use crate::case::ResultError;
 use crate::plan::Case;
 use crate::store::CampaignResults;
+use crate::stream_key::StreamKey;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_scenario::Method;
 use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
@@ -74,7 +75,9 @@ pub(super) fn read(
             continue;
         };
         match result.summary {
-            Some(summary) if !streams.insert(summary.stream_hash.clone()) => counts.repeated += 1,
+            Some(summary) if !streams.insert(StreamKey::from(summary.stream_hash.as_str())) => {
+                counts.repeated += 1
+            }
             Some(summary) => {
                 counts.summaries += 1;
                 methods.iter_mut().for_each(|method| method.push(&summary));

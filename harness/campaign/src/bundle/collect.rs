@@ -4,6 +4,7 @@ use super::contents::{FILES, plain};
 use super::error::BundleError;
 use crate::plan::{BundledCampaign, Plan, PlannedFile, PlannedScenario};
 use crate::planned::hash_of_file;
+use crate::shared::SharedText;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::Campaign;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -65,12 +66,13 @@ impl Collected {
         let mut named: BTreeMap<String, PathBuf> = BTreeMap::new();
         // The files of a scenario that came from a bundle are known by their names as written.
         let known = planned.places();
-        let mut seen: HashSet<&[String]> = HashSet::new();
+        let mut seen: HashSet<&[SharedText]> = HashSet::new();
         for case in self.plan.cases.iter().filter(|case| case.scenario == planned.id) {
             if !seen.insert(&case.set) {
                 continue;
             }
-            let scenario = Scenario::load_placed(&planned.file, &case.set, &[], &known)?;
+            let scenario =
+                Scenario::load_placed(&planned.file, &case.set.to_strings(), &[], &known)?;
             let talks = scenario.devices().into_iter();
             self.outside.extend(talks.map(|uri| format!("{uri} of scenario {:?}", planned.id)));
             if planned.files.is_empty() {

@@ -6,9 +6,6 @@ use octant_base::number;
 use octant_evidence::manifest::shell_line;
 use octant_statistics::sample::ConfidenceInterval;
 
-/// Maximum number of rows of a table on the page; the rest is in separate files.
-pub(super) const ROWS_MAX: usize = 2000;
-
 /// Sections of the page: anchor and heading.
 pub(super) const SECTIONS: [(&str, &str); 10] = [
     ("requirements", "Requirements"),

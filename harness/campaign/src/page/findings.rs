@@ -3,7 +3,7 @@
 
 use super::elements::{case_link, heading};
 use crate::report::CampaignReport;
-use crate::report::rows::{ReportRow, RowOutcome};
+use crate::report::rows::RowOutcome;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_report::discrepancies::table;
@@ -14,11 +14,28 @@ const SHOWN: usize = 50;
 /// Number of cases of a discrepancy that are shown at once; the others are folded.
 const FIRST: usize = 5;
 
+/// Cases of a kind, with what is said of them.
+#[derive(Debug, Default)]
+struct FoundCases {
+    /// The first ones.
+    first: Vec<(String, String)>,
+    /// Number of all of them.
+    all: usize,
+}
+
 pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let outliers = &report.statistics.outliers;
-    let of = |wanted: &dyn Fn(&RowOutcome) -> Option<String>| -> Vec<(String, String)> {
-        let why = |row: &ReportRow<'_>| Some((row.case.id.clone(), wanted(row.outcome.as_ref()?)?));
-        report.rows.iter().filter_map(why).collect()
+    let of = |wanted: &dyn Fn(&RowOutcome) -> Option<String>| -> FoundCases {
+        let mut found = FoundCases::default();
+        for row in report.rows.iter() {
+            if let Some(why) = row.outcome.as_ref().and_then(wanted) {
+                found.all += 1;
+                if found.first.len() < SHOWN {
+                    found.first.push((row.case.id.to_string(), why));
+                }
+            }
+        }
+        found
     };
     let errors = of(&|outcome| outcome.error.clone());
     let refused = of(&|outcome| outcome.refused.clone());
@@ -59,7 +76,7 @@ pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Mark
             (more(outliers.len(), "statistics.json"))
         }
         (cases(report, "Cases that ended as errors", "No case ended as an error.", &errors, beside))
-        @if !refused.is_empty() { (cases(report, "Calibrations that were refused", "", &refused, beside)) }
+        @if refused.all > 0 { (cases(report, "Calibrations that were refused", "", &refused, beside)) }
         (cases(report, "Faults that never fired", "Every fault that was injected fired.", &unfired, beside))
         (cases(report, "Cases that came to two results", "No case came to two results.", &differing, beside))
     }
@@ -73,24 +90,24 @@ fn cases(
     report: &CampaignReport<'_>,
     title: &str,
     none: &str,
-    all: &[(String, String)],
+    found: &FoundCases,
     beside: Option<&str>,
 ) -> Markup {
     html! {
         h3 { (title) }
-        @if all.is_empty() {
+        @if found.all == 0 {
             p { (none) }
         } @else {
             table {
                 thead { tr { th { "Case" } th { "What" } } }
-                tbody { @for (case, why) in all.iter().take(SHOWN) {
+                tbody { @for (case, why) in &found.first {
                     tr {
                         td { (case_link(case, beside)) }
                         td { (why) div.reason { code { (report.case_again(case)) } } }
                     }
                 } }
             }
-            (more(all.len(), "cases.parquet"))
+            (more(found.all, "cases.parquet"))
         }
     }
 }

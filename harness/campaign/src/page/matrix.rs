@@ -1,10 +1,10 @@
 //! Trace in both directions: from each requirement to its cases, and from each case to its
 //! requirements.
 
-use super::elements::{ROWS_MAX, case_link, heading};
+use super::elements::{case_link, heading};
 use super::requirements::check;
-use crate::report::CampaignReport;
 use crate::report::combination::shown;
+use crate::report::{CampaignReport, ROWS_MAX};
 use maud::{Markup, html};
 use octant_report::page::badge;
 
@@ -21,7 +21,7 @@ pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Mark
                 summary {
                     strong { (row.id) } ": "
                     @match row.verdict { Some(verdict) => (badge(verdict)), None => span.soft { "not by a run" } }
-                    " " (row.cases.len()) " cases, verified by " (row.verification)
+                    " " (row.counts.all()) " cases, verified by " (row.verification)
                 }
                 p.reason { (row.reason) }
                 p.cases {
@@ -30,7 +30,7 @@ pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Mark
                             @match link.verdict { Some(verdict) => (verdict.name()), None => "not run" } } " "
                     }
                 }
-                (rest(row.cases.len()))
+                (rest(usize::try_from(row.counts.all()).unwrap_or(usize::MAX)))
             }
         }
         (missing("Requirements without a case", &trace.without_case, None))
@@ -66,8 +66,9 @@ fn missing(title: &str, ids: &[String], beside: Option<&str>) -> Markup {
 
 fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
     let requirements = &report.statistics.requirements;
-    let mut worst_first: Vec<_> = report.rows.iter().collect();
-    worst_first.sort_by_key(|row| std::cmp::Reverse(row.outcome.as_ref().map(|o| o.verdict)));
+    let mut worst_first: Vec<usize> = (0..report.rows.len()).collect();
+    worst_first.sort_by_key(|place| std::cmp::Reverse(report.rows.verdict(*place)));
+    worst_first.truncate(ROWS_MAX);
     html! {
         details {
             summary { (report.rows.len()) " cases, the worst first" }
@@ -78,7 +79,7 @@ fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
                         @for r in requirements { th.n { (r.id) } }
                         th style="padding-left:14px" { "Stream hash" }
                     } }
-                    tbody { @for row in worst_first.into_iter().take(ROWS_MAX) {
+                    tbody { @for row in report.rows.at(worst_first) {
                         @let outcome = row.outcome.as_ref();
                         tr {
                             td { (case_link(&row.case.id, beside)) }
@@ -87,7 +88,7 @@ fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
                             td.n { (row.case.seed) }
                             td.n { (check(outcome.map(|outcome| outcome.verdict))) }
                             @for r in requirements { td.n {
-                                @match crate::report::discrepancy::checks_of(report.plan, row, &r.id) {
+                                @match crate::report::discrepancy::checks_of(report.plan, &row, &r.id) {
                                     Some(verdict) => (check(verdict)),
                                     None => "–",
                                 }

@@ -1,9 +1,7 @@
 //! Verdicts of the requirements: overall, and by combination.
 
 use super::elements::heading;
-use crate::report::discrepancy::checks_of;
-use crate::report::requirement::{CombinationChecks, RequirementFigures};
-use crate::report::rows::ReportRow;
+use crate::report::requirement::{self, CombinationChecks, RequirementFigures};
 use crate::report::{CampaignReport, POLICY};
 use maud::{Markup, html};
 use octant_base::number;
@@ -47,8 +45,11 @@ fn unit_of(report: &CampaignReport<'_>, r: &RequirementFigures) -> Option<PageUn
     if !is_of_place(measure) {
         return Some(shown(measure, report.units.shown()));
     }
-    let checks = |(_, row): &(usize, &ReportRow<'_>)| checks_of(report.plan, row, &r.id).is_some();
-    let cases = report.rows.iter().enumerate().filter(checks).map(|(place, _)| place);
+    let checks = |place: &usize| {
+        let case = report.rows.case(*place);
+        case.is_some_and(|case| requirement::checks(report.plan, &case.scenario, &r.id))
+    };
+    let cases = (0..report.rows.len()).filter(checks);
     report.units.at_all(cases).map(|units| shown(measure, &units))
 }
 

@@ -6,6 +6,7 @@
 
 use crate::factor_values::FactorValue;
 use crate::plan::{Case, Plan};
+use crate::shared::SharedText;
 use octant_base::number;
 use octant_scenario::quantity_of;
 use std::collections::HashMap;
@@ -46,7 +47,7 @@ impl Combination {
 pub fn shown(value: &FactorValue) -> String {
     match value {
         FactorValue::Number(number) => number::plain(*number, 6),
-        FactorValue::Text(text) => text.clone(),
+        FactorValue::Text(text) => text.to_string(),
     }
 }
 
@@ -83,8 +84,9 @@ pub fn of(plan: &Plan, end: usize) -> Vec<Combination> {
         let factors: Vec<(String, String)> = (grid.iter())
             .filter_map(|name| Some((name.clone(), shown(case.factors.get(name)?))))
             .collect();
-        let at = *place.entry((case.scenario.clone(), factors.clone())).or_insert_with(|| {
-            all.push(Combination { scenario: case.scenario.clone(), factors, cases: Vec::new() });
+        let scenario = case.scenario.to_string();
+        let at = *place.entry((scenario.clone(), factors.clone())).or_insert_with(|| {
+            all.push(Combination { scenario, factors, cases: Vec::new() });
             all.len() - 1
         });
         all[at].cases.push(index);
@@ -99,7 +101,7 @@ pub fn takes_part(case: &Case, factor: &str) -> bool {
     let Some(FactorValue::Number(number)) = case.factors.get(factor) else { return true };
     let Some(faults) = &case.faults else { return true };
     // The setting of the factor is the one that contains its number.
-    let is_its = |entry: &&String| {
+    let is_its = |entry: &&SharedText| {
         let value = entry.split_once('=').map_or("", |(_, value)| value).trim_matches('"');
         value.split_whitespace().next().and_then(|n| n.parse().ok()) == Some(*number)
     };

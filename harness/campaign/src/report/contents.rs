@@ -2,21 +2,20 @@
 //! results.
 
 use super::combination::Combination;
-use super::curves::CurveFile;
 use super::envelope::ShownEnvelope;
 use super::error::ReportError;
 use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use super::requirement::RequirementFigures;
-use super::rows::{ReportRow, ReportRows};
+use super::rows::ReportRows;
 use super::selftest::SelfTest;
 use super::units::CampaignUnits;
 use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
-use crate::against::{Against, Selection, against};
+use crate::against::{Against, Selection, against_by};
 use crate::execute::{Shard, refuse_foreign};
 use crate::plan::Plan;
 use crate::status::{self, CampaignStatus, StatusError};
 use crate::store::CampaignResults;
-use crate::trace::trace_by;
+use crate::trace::first_by;
 use octant_base::display::UnitChoice;
 use octant_evidence::discrepancy::Discrepancy;
 use octant_evidence::disposition::{self, Dispositions};
@@ -27,12 +26,14 @@ use octant_requirements::trace::CampaignTrace;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Version of `statistics.json`.
 pub const SCHEMA: u32 = 1;
 /// Maximum number of reasons listed.
 const REASONS_MAX: usize = 12;
+/// Maximum number of rows of a table on the page, and of traced cases of a requirement; the rest is in
+/// separate files.
+pub(crate) const ROWS_MAX: usize = 2000;
 
 /// Counting rule of cases: the same here, in `[stop]`, in comparisons and in nights.
 pub const POLICY: &str = "The unit is the independent draw, an instrument with its noise: all cases of a \
@@ -80,16 +81,16 @@ pub struct Statistics {
 
 /// Predicts the ensembles by linear theory, and compares them with the cases. This needs the files
 /// of the scenarios, which a folder copied from elsewhere lacks.
-fn predicted(plan: &Plan, folder: &Path) -> Against {
+fn predicted(plan: &Plan, results: &CampaignResults) -> Against {
     if plan.cases.is_empty() {
         return Against::default();
     }
-    against(plan, folder, &Selection::default())
+    against_by(plan, results, &Selection::default())
         .unwrap_or_else(|error| Against { left_out: vec![error.to_string()], ..Against::default() })
 }
 
 /// Content of a report.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct CampaignReport<'a> {
     /// The plan.
     pub plan: &'a Plan,
@@ -102,14 +103,14 @@ pub struct CampaignReport<'a> {
     /// Predicted ensembles, compared with the cases.
     pub prediction: Against,
     /// The cases.
-    pub rows: Vec<ReportRow<'a>>,
+    pub rows: ReportRows<'a>,
     /// Combinations of the cases, as in the statistics.
     pub combinations: Vec<Combination>,
     /// Dispositions of the discrepancies.
     pub dispositions: Dispositions,
     /// Texts of the requirements.
     pub about: Requirements,
-    /// Trace from requirements to cases and back.
+    /// Trace from requirements to their first cases and back.
     pub trace: CampaignTrace,
     /// The self-test of the program.
     pub selftest: Option<SelfTest>,
@@ -119,16 +120,16 @@ pub struct CampaignReport<'a> {
     pub tables: Vec<(String, String)>,
     /// Units of errors on the page.
     pub units: CampaignUnits,
-    /// The file of the drifts.
-    curves: Arc<CurveFile>,
+    /// Independent draw of each case.
+    draws: Vec<usize>,
 }
 
-/// Checks that the drifts could be read.
-fn check(curves: &CurveFile) -> Result<(), ReportError> {
+/// Checks that the rows and their drifts could be read.
+fn check(rows: &ReportRows<'_>) -> Result<(), ReportError> {
     let path = std::env::temp_dir();
     let wrong =
-        |source| ReportError::System { action: "read the drifts of cases from", path, source };
-    curves.error().map_or(Ok(()), |source| Err(wrong(source)))
+        |source| ReportError::System { action: "read the results of cases from", path, source };
+    rows.error().map_or(Ok(()), |source| Err(wrong(source)))
 }
 
 impl<'a> CampaignReport<'a> {
@@ -148,11 +149,12 @@ impl<'a> CampaignReport<'a> {
             }
             None => plan.cases.len(),
         };
-        let ReportRows { rows, results_blake3, curves } = rows::read(plan, &results, end)?;
+        let (rows, results_blake3) = rows::read(plan, &results, end)?;
+        let draws = rows::draws(&rows);
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
-        let trace = trace_by(plan, &about, &results, end)?;
-        let run = rows.iter().filter(|row| row.outcome.is_some()).count();
+        let trace = first_by(plan, &about, &results, &draws, ROWS_MAX)?;
+        let run = (0..rows.len()).filter(|place| rows.has_run(*place)).count();
         let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
             wrong.push(reason);
@@ -161,13 +163,11 @@ impl<'a> CampaignReport<'a> {
         if let Some(test) = selftest.as_ref().filter(|test| test.verdict != Verdict::Pass) {
             wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
         }
-        let draws = rows::draws(&rows);
         let mut of_combinations: Vec<CombinationFigures> = combinations
             .iter()
             .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
             .collect();
         figures::mark(&mut of_combinations);
-        check(&curves)?;
         let statistics = Statistics {
             schema: SCHEMA,
             title: plan.title.clone(),
@@ -180,7 +180,7 @@ impl<'a> CampaignReport<'a> {
             open: status.open,
             verdicts: status.verdicts.clone(),
             confidence: figures::CONFIDENCE,
-            requirements: requirement::of(plan, &status, &about, &combinations, &rows),
+            requirements: requirement::of(plan, &status, &about, &combinations, &rows, &draws),
             scenarios: (plan.scenarios.iter())
                 .map(|scenario| ScenarioFigures::of(&scenario.id, &grid, &combinations, &rows))
                 .collect(),
@@ -188,6 +188,7 @@ impl<'a> CampaignReport<'a> {
             outliers: figures::standing_out(&combinations, &rows),
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
         };
+        check(&rows)?;
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let name = absolute.file_name().map_or(".".into(), |name| name.to_string_lossy());
         let name = name.into_owned();
@@ -196,7 +197,7 @@ impl<'a> CampaignReport<'a> {
             name,
             status,
             statistics,
-            prediction: predicted(plan, folder),
+            prediction: predicted(plan, &results),
             rows,
             combinations,
             dispositions,
@@ -206,16 +207,16 @@ impl<'a> CampaignReport<'a> {
             notes,
             tables,
             units: CampaignUnits::of(plan, folder),
-            curves,
+            draws,
         })
     }
 
-    /// Checks that the drifts of all cases could be read each time.
+    /// Checks that the rows of all cases, and their drifts, could be read each time.
     ///
     /// # Errors
-    /// If the temporary file that holds them could not be read.
+    /// If the temporary files that hold them could not be read.
     pub fn check(&self) -> Result<(), ReportError> {
-        check(&self.curves)
+        check(&self.rows)
     }
 
     /// Chooses units of errors on the page, in place of the scenarios'. Files for machines keep theirs.
@@ -233,14 +234,14 @@ impl<'a> CampaignReport<'a> {
             let figures = self.statistics.combinations.get(combination)?;
             return figures.envelope.as_ref().map(ShownEnvelope::from);
         }
-        let draws = rows::draws(&self.rows);
         let (curves, beyond) =
-            figures::curves(self.combinations.get(combination)?, &self.rows, &draws);
-        let at_site = |(case, curve)| {
-            let units = self.units.at(case);
-            (curve, [units.latitude().factor, units.longitude().factor])
-        };
-        let curves: Vec<_> = curves.into_iter().map(at_site).collect();
+            figures::curves(self.combinations.get(combination)?, &self.rows, &self.draws);
+        let curves: Vec<_> = (curves.iter())
+            .map(|(case, curve)| {
+                let units = self.units.at(*case);
+                (curve, [units.latitude().factor, units.longitude().factor])
+            })
+            .collect();
         ShownEnvelope::of(&curves, beyond)
     }
 

@@ -99,6 +99,16 @@ impl CurveFile {
 }
 
 impl StoredCurve {
+    /// Names a curve in a file.
+    pub(super) fn new(step_s: f64, points: usize, at: u64, file: Arc<CurveFile>) -> Self {
+        Self { step_s, points, at, file }
+    }
+
+    /// Byte at which it begins in its file.
+    pub(super) fn at(&self) -> u64 {
+        self.at
+    }
+
     /// Reads some points of an axis: 0 latitude, 1 longitude, arcmin. `None` if they can't be read, which
     /// the file of the curves remembers.
     pub(super) fn read(&self, axis: usize, from: usize, points: usize) -> Option<Vec<f64>> {

@@ -2,7 +2,7 @@
 
 use super::combination::Combination;
 use super::requirement;
-use super::rows::{ReportRow, RowOutcome};
+use super::rows::{ReportRow, ReportRows, RowOutcome};
 use crate::plan::Plan;
 use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
@@ -14,7 +14,7 @@ pub(super) fn find(
     plan: &Plan,
     status: &CampaignStatus,
     combinations: &[Combination],
-    rows: &[ReportRow<'_>],
+    rows: &ReportRows<'_>,
     notes: &[String],
 ) -> Vec<Discrepancy> {
     let mut all = Vec::new();
@@ -41,8 +41,8 @@ pub(super) fn find(
         }
     }
     let ids = |wanted: &dyn Fn(&RowOutcome) -> bool| -> Vec<String> {
-        let is = |row: &&ReportRow<'_>| row.outcome.as_ref().is_some_and(wanted);
-        rows.iter().filter(is).map(|row| row.case.id.clone()).collect()
+        let is = |row: &ReportRow<'_>| row.outcome.as_ref().is_some_and(wanted);
+        rows.iter().filter(is).map(|row| row.case.id.to_string()).collect()
     };
     let differing = ids(&|outcome| outcome.differs);
     if !differing.is_empty() {
@@ -66,7 +66,7 @@ pub(super) fn find(
         };
         all.push(Discrepancy::whole(&subject, found.clone()));
     }
-    let open = rows.iter().filter(|row| row.outcome.is_none()).count();
+    let open = (0..rows.len()).filter(|place| !rows.has_run(*place)).count();
     if open > 0 {
         let subject =
             Subject { kind: "not run", verdict: Verdict::Inconclusive, requirement: None, of: "" };
@@ -94,17 +94,17 @@ fn counted(cases: usize) -> String {
 fn of_combination(
     plan: &Plan,
     combination: &Combination,
-    rows: &[ReportRow<'_>],
+    rows: &ReportRows<'_>,
 ) -> Vec<Discrepancy> {
     let name = combination.name();
     // Grouped by content, in the order of the names.
     let mut found: BTreeMap<(&'static str, Verdict, Option<String>, String), Vec<String>> =
         BTreeMap::new();
-    for row in combination.cases.iter().filter_map(|case| rows.get(*case)) {
+    for row in rows.at(combination.cases.iter().copied()) {
         let Some(outcome) = &row.outcome else { continue };
-        for (kind, verdict, requirement, why) in of_case(plan, row, outcome) {
+        for (kind, verdict, requirement, why) in of_case(plan, &row, outcome) {
             let cases = found.entry((kind, verdict, requirement, why)).or_default();
-            cases.push(row.case.id.clone());
+            cases.push(row.case.id.to_string());
         }
     }
     found

@@ -4,8 +4,10 @@ use super::curves::StoredCurve;
 use octant_statistics::envelope::envelope;
 use serde::Serialize;
 
-/// Number of points of all curves that are in memory at a time.
+/// Largest number of points of each curve that are in memory at a time.
 const BLOCK: usize = 64;
+/// Number of points of all curves together that are in memory at a time.
+const VALUES: usize = 1 << 22;
 
 /// Percentiles of the envelopes.
 pub const PERCENTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -56,10 +58,11 @@ impl ShownEnvelope {
         }
         let points = curves.iter().map(|(curve, _)| curve.points).min()?;
         // Some points of all curves at a time.
+        let block = (VALUES / curves.len().max(1)).clamp(1, BLOCK);
         let of = |axis: usize| {
             let mut found = vec![Vec::with_capacity(points); PERCENTILES.len()];
-            for from in (0..points).step_by(BLOCK) {
-                let count = BLOCK.min(points - from);
+            for from in (0..points).step_by(block) {
+                let count = block.min(points - from);
                 let one = |(curve, factors): &(&StoredCurve, [f64; 2])| {
                     let mut values = curve.read(axis, from, count)?;
                     values.iter_mut().for_each(|value| *value *= factors[axis]);

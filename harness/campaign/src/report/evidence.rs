@@ -9,10 +9,11 @@ use crate::store::CampaignResults;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
-use std::io::ErrorKind;
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
+use tempfile::NamedTempFile;
 
 /// Name of the page in the folder of a campaign.
 pub const PAGE: &str = "report.html";
@@ -47,8 +48,8 @@ pub fn write(
             "octant campaign report DIR",
         )?;
     }
-    let xml = junit(report)
-        .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
+    let path_of = |name: &str| folder.join(name);
+    let xml = new_junit(report, &path_of(JUNIT))?;
     let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
     let html = crate::page::render(report, true);
     report.check()?;
@@ -57,7 +58,8 @@ pub fn write(
     }
     keep(&folder.join(STATISTICS), statistics.as_bytes())?;
     keep(&folder.join(PREDICTION), prediction.as_bytes())?;
-    keep(&folder.join(JUNIT), xml.as_bytes())?;
+    let wrong = |source| ReportError::System { action: "write", path: path_of(JUNIT), source };
+    crate::keep_new(&path_of(JUNIT), xml).map_err(wrong)?;
     keep(&folder.join(PAGE), html.as_bytes())?;
     inputs(report, folder)?;
     // An old signature doesn't apply to the new manifest.
@@ -93,16 +95,34 @@ pub fn write(
     Ok(Manifest::write(folder, &facts)?)
 }
 
+/// Writes the JUnit file under another name: it is as long as the campaign, and gets its own name with the
+/// others.
+fn new_junit(report: &CampaignReport<'_>, path: &Path) -> Result<NamedTempFile, ReportError> {
+    let folder = path.parent().unwrap_or(path);
+    let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
+    crate::clean(folder);
+    let new = crate::new_file(folder).map_err(wrong)?;
+    let mut writer = BufWriter::new(new.as_file());
+    junit(report, &mut writer).and_then(|()| writer.flush()).map_err(wrong)?;
+    drop(writer);
+    Ok(new)
+}
+
 /// Times of the first and the last result.
 type Times = (Option<String>, Option<String>);
 
 /// Returns the times of the first and the last result.
 fn times(report: &CampaignReport<'_>, folder: &Path) -> Result<Times, ReportError> {
     let results = CampaignResults::open(folder)?;
-    let run = report.rows.iter().filter(|row| row.outcome.is_some());
-    let all: Vec<SystemTime> = run.filter_map(|row| results.time(&row.case.id)).collect();
-    let text = |time: &SystemTime| humantime::format_rfc3339_seconds(*time).to_string();
-    Ok((all.iter().min().map(text), all.iter().max().map(text)))
+    let run = (0..report.rows.len()).filter(|place| report.rows.has_run(*place));
+    let cases = run.filter_map(|place| report.rows.case(place));
+    let (mut first, mut last): (Option<SystemTime>, Option<SystemTime>) = (None, None);
+    for time in cases.filter_map(|case| results.time(&case.id)) {
+        first = Some(first.map_or(time, |first| first.min(time)));
+        last = last.max(Some(time));
+    }
+    let text = |time: SystemTime| humantime::format_rfc3339_seconds(time).to_string();
+    Ok((first.map(text), last.map(text)))
 }
 
 /// Copies the campaign's file, its requirements and its scenarios, if they are still the planned

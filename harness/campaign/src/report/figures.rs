@@ -11,7 +11,7 @@
 use super::combination::{self, Combination, number_of, takes_part};
 use super::curves::StoredCurve;
 use super::envelope::EnvelopeFigures;
-use super::rows::{CaseDrift, ReportRow};
+use super::rows::{CaseDrift, ReportRows};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
 use octant_statistics::outlier::{LIMIT, OutlierScale, outliers};
@@ -175,43 +175,52 @@ pub struct OutlierFigures {
     pub score: f64,
 }
 
-/// Cases of a sample that ran, each with its drift; a case without one is beyond every number.
+/// Cases of a sample that ran; a case without a drift is beyond every number.
 struct Sample<'a> {
-    cases: Vec<(&'a Case, Option<&'a CaseDrift>)>,
+    rows: &'a ReportRows<'a>,
     /// Places of the cases in the plan.
     places: Vec<usize>,
 }
 
 impl<'a> Sample<'a> {
     /// Selects the cases at these places, the first of each draw.
-    fn of_draws(rows: &'a [ReportRow<'_>], places: &[usize], draws: &[usize]) -> Self {
-        let mut seen = BTreeSet::new();
-        let is_new = |place: &&usize| draws.get(**place).is_none_or(|draw| seen.insert(*draw));
-        let run = |place: &&usize| rows.get(**place).is_some_and(|row| row.outcome.is_some());
-        Self::of(rows, places.iter().filter(run).filter(is_new).copied())
+    fn of_draws(rows: &'a ReportRows<'_>, places: &[usize], draws: &[usize]) -> Self {
+        let mut seen = vec![false; draws.iter().max().map_or(0, |last| last + 1)];
+        let mut is_new = |place: usize| {
+            let seen = draws.get(place).and_then(|draw| seen.get_mut(*draw));
+            seen.is_none_or(|seen| !std::mem::replace(seen, true))
+        };
+        Self::of(rows, places.iter().copied().filter(|p| rows.has_run(*p) && is_new(*p)))
     }
 
-    fn of(rows: &'a [ReportRow<'_>], places: impl Iterator<Item = usize>) -> Self {
-        let one = |place: usize| {
-            let row = rows.get(place)?;
-            Some(((row.case, row.outcome.as_ref()?.drift.as_ref()), place))
-        };
-        let (cases, places) = places.filter_map(one).unzip();
-        Self { cases, places }
+    fn of(rows: &'a ReportRows<'_>, places: impl Iterator<Item = usize>) -> Self {
+        Self { rows, places: places.filter(|place| rows.has_run(*place)).collect() }
+    }
+
+    /// Reads the cases, each with its drift.
+    fn cases(&self) -> impl Iterator<Item = (&'a Case, Option<CaseDrift>)> {
+        let rows = self.rows.at(self.places.iter().copied());
+        rows.map(|row| (row.case, row.outcome.and_then(|outcome| outcome.drift)))
+    }
+
+    /// Reads the drifts of the cases that navigated.
+    fn drifts(&self) -> impl Iterator<Item = CaseDrift> {
+        let there = self.places.iter().copied().filter(|place| self.rows.has_drift(*place));
+        self.rows.at(there).filter_map(|row| row.outcome?.drift)
     }
 
     /// Returns the errors over time, each with the place of its case.
-    fn curves(&self) -> Vec<(usize, &'a StoredCurve)> {
-        let cases = self.places.iter().zip(&self.cases);
-        cases.filter_map(|(place, (_, drift))| Some((*place, (*drift)?.curve.as_ref()?))).collect()
+    fn curves(&self) -> Vec<(usize, StoredCurve)> {
+        let cases = self.places.iter().zip(self.cases());
+        cases.filter_map(|(place, (_, drift))| Some((*place, drift?.curve?))).collect()
     }
 
     fn navigated(&self) -> usize {
-        self.cases.iter().filter(|(_, drift)| drift.is_some()).count()
+        self.places.iter().filter(|place| self.rows.has_drift(**place)).count()
     }
 
     fn beyond(&self) -> usize {
-        self.cases.len() - self.navigated()
+        self.places.len() - self.navigated()
     }
 
     /// Returns a measure of all cases; empty if no case navigates.
@@ -219,7 +228,7 @@ impl<'a> Sample<'a> {
         if self.navigated() == 0 {
             return Vec::new();
         }
-        self.cases.iter().map(|(_, drift)| drift.map_or(f64::INFINITY, &of)).collect()
+        self.cases().map(|(_, drift)| drift.as_ref().map_or(f64::INFINITY, &of)).collect()
     }
 }
 
@@ -232,35 +241,33 @@ const OUTLYING: [(&str, Measure); 2] = [
     (DRIFT, |drift| drift.rate_nmi_per_h),
 ];
 
-fn drift<'a>(rows: &'a [ReportRow<'_>], case: usize) -> Option<&'a CaseDrift> {
-    rows.get(case)?.outcome.as_ref()?.drift.as_ref()
-}
-
 impl CombinationFigures {
     pub(super) fn of(
         plan: &Plan,
         grid: &[String],
         combination: &Combination,
-        rows: &[ReportRow<'_>],
+        rows: &ReportRows<'_>,
         draws: &[usize],
     ) -> Self {
         let sample = Sample::of_draws(rows, &combination.cases, draws);
         let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
-        let curves: Vec<&StoredCurve> =
-            sample.curves().into_iter().map(|(_, curve)| curve).collect();
-        let values = |name: &String| {
-            let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
-            cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
+        let envelope = || {
+            let curves = sample.curves();
+            let curves: Vec<&StoredCurve> = curves.iter().map(|(_, curve)| curve).collect();
+            EnvelopeFigures::of(&curves, sample.beyond())
         };
-        let is_number = |name: &String| values(name).into_iter().all(|v| number_of(v).is_some());
+        let is_number = |name: &String| {
+            let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
+            cases.filter_map(|case| case.factors.get(name)).all(|v| number_of(v).is_some())
+        };
         let drawn = |name: &&String| !grid.contains(*name) && is_number(name);
         Self {
             scenario: combination.scenario.clone(),
             factors: combination.factors.iter().cloned().collect(),
             cases: combination.cases.len(),
-            draws: sample.cases.len(),
+            draws: sample.places.len(),
             navigated: sample.navigated(),
             beyond: sample.beyond(),
             at_end: Position::of(&last),
@@ -269,7 +276,7 @@ impl CombinationFigures {
             solution: solution(&sample),
             rate_nmi_per_h: rate_bounds(&column(|drift| drift.rate_nmi_per_h), CONFIDENCE),
             time_rms_nmi: Spread::of(&column(|drift| drift.rms_nmi)),
-            envelope: EnvelopeFigures::of(&curves, sample.beyond()),
+            envelope: envelope(),
             convergence_cep50: of_last(0.5),
             convergence_r95: of_last(0.95),
             sensitivity: (plan.factors.iter().filter(drawn))
@@ -281,26 +288,25 @@ impl CombinationFigures {
 
 /// Returns the errors over time on which the figures of a combination are based, each with the place of its
 /// case, and the number of draws that are beyond every number.
-pub(super) fn curves<'a>(
+pub(super) fn curves(
     combination: &Combination,
-    rows: &'a [ReportRow<'_>],
+    rows: &ReportRows<'_>,
     draws: &[usize],
-) -> (Vec<(usize, &'a StoredCurve)>, usize) {
+) -> (Vec<(usize, StoredCurve)>, usize) {
     let sample = Sample::of_draws(rows, &combination.cases, draws);
     (sample.curves(), sample.beyond())
 }
 
 /// Collects the largest errors of attitude and velocity that every navigating case has.
 fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
-    let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
-    let all = drifts().flat_map(|drift| &drift.solution);
-    let names: BTreeSet<(&str, &str)> = all.map(|(name, unit, _)| (*name, *unit)).collect();
+    let all = sample.drifts().flat_map(|drift| drift.solution);
+    let names: BTreeSet<(&str, &str)> = all.map(|(name, unit, _)| (name, unit)).collect();
     let of = |(name, unit): (&str, &str)| {
         let get = |drift: &CaseDrift| {
             let mut all = drift.solution.iter();
             all.find(|other| (other.0, other.1) == (name, unit)).map(|(.., max)| *max)
         };
-        let known = drifts().all(|drift| get(drift).is_some());
+        let known = sample.drifts().all(|drift| get(&drift).is_some());
         let value = |drift: &CaseDrift| get(drift).unwrap_or(f64::INFINITY);
         Some((format!("{name}, {unit}"), Spread::of(&known.then(|| sample.column(value))?)?))
     };
@@ -309,21 +315,21 @@ fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
 
 /// Collects radial errors at the marks that every navigating case reached.
 fn marks(sample: &Sample<'_>) -> BTreeMap<String, Position> {
-    let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
-    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.marks_nmi.keys()).collect();
+    let mut names: BTreeSet<String> = BTreeSet::new();
+    sample.drifts().for_each(|drift| names.extend(drift.marks_nmi.into_keys()));
     let of = |name: &String| {
-        let reached = drifts().all(|drift| drift.marks_nmi.contains_key(name));
+        let reached = sample.drifts().all(|drift| drift.marks_nmi.contains_key(name));
         let value = |drift: &CaseDrift| drift.marks_nmi.get(name).copied().unwrap_or(f64::INFINITY);
         Some((name.clone(), Position::of(&reached.then(|| sample.column(value))?)?))
     };
-    names.into_iter().filter_map(of).collect()
+    names.iter().filter_map(of).collect()
 }
 
 impl FactorFigures {
     /// Correlates a factor; `None` if it isn't numeric.
     fn of(name: &str, sample: &Sample<'_>) -> Option<Self> {
         let (mut values, mut rates) = (Vec::new(), Vec::new());
-        for (case, drift) in &sample.cases {
+        for (case, drift) in sample.cases() {
             let Some(value) = case.factors.get(name) else { continue };
             let number = number_of(value)?;
             if takes_part(case, name) {
@@ -355,7 +361,7 @@ impl ScenarioFigures {
         scenario: &str,
         grid: &[String],
         combinations: &[Combination],
-        rows: &[ReportRow<'_>],
+        rows: &ReportRows<'_>,
     ) -> Self {
         let mine: Vec<&Combination> =
             combinations.iter().filter(|combination| combination.scenario == scenario).collect();
@@ -384,20 +390,19 @@ impl ScenarioFigures {
 /// Lists cases that stand out from their combination, the farthest first.
 pub(super) fn standing_out(
     combinations: &[Combination],
-    rows: &[ReportRow<'_>],
+    rows: &ReportRows<'_>,
 ) -> Vec<OutlierFigures> {
     let mut found = Vec::new();
     for (place, combination) in combinations.iter().enumerate() {
-        let there: Vec<(&Case, &CaseDrift)> = (combination.cases.iter())
-            .filter_map(|case| Some((rows.get(*case)?.case, drift(rows, *case)?)))
-            .collect();
+        let navigated = combination.cases.iter().copied().filter(|case| rows.has_drift(*case));
+        let there = Sample::of(rows, navigated);
         for (measure, of) in OUTLYING {
-            let values: Vec<f64> = there.iter().map(|(_, drift)| of(drift)).collect();
+            let values: Vec<f64> = there.drifts().map(|drift| of(&drift)).collect();
             let median = percentile(&values, 0.5).unwrap_or(f64::NAN);
             found.extend(outliers(&values, OutlierScale::Logarithm, LIMIT).into_iter().filter_map(
                 |o| {
                     Some(OutlierFigures {
-                        case: there.get(o.index)?.0.id.clone(),
+                        case: rows.case(*there.places.get(o.index)?)?.id.to_string(),
                         combination: place,
                         measure,
                         value: *values.get(o.index)?,

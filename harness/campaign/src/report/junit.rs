@@ -1,17 +1,38 @@
 //! `junit.xml` of a campaign: a suite for each combination, with a test case for each requirement that
 //! a case checks, and one for the case itself.
 
+use super::combination::Combination;
 use super::contents::CampaignReport;
 use super::discrepancy::checks_of;
 use super::rows::ReportRow;
 use octant_requirements::Verdict;
-use octant_score::junit::{JunitCase, JunitSuite, document};
+use octant_score::junit::{JunitCase, JunitCases, JunitSuite, write_document};
+use std::io;
 
-/// Renders the campaign as JUnit XML. Only a pass is a success; a case that hasn't run isn't.
+/// Cases of a suite: few of the whole campaign, or those of a combination, which are read when they are
+/// written.
+enum SuiteCases<'a> {
+    Listed(Vec<JunitCase>),
+    Of { report: &'a CampaignReport<'a>, combination: &'a Combination, name: String },
+}
+
+impl JunitCases for SuiteCases<'_> {
+    fn each(&self, put: &mut dyn FnMut(&JunitCase) -> io::Result<()>) -> io::Result<()> {
+        match self {
+            Self::Listed(cases) => cases.each(put),
+            Self::Of { report, combination, name } => {
+                let mut rows = report.rows.at(combination.cases.iter().copied());
+                rows.try_for_each(|row| of_case(report, &row, name).iter().try_for_each(&mut *put))
+            }
+        }
+    }
+}
+
+/// Writes the campaign as JUnit XML. Only a pass is a success; a case that hasn't run isn't.
 ///
 /// # Errors
 /// If the XML can't be written.
-pub fn junit(report: &CampaignReport<'_>) -> std::io::Result<String> {
+pub fn junit(report: &CampaignReport<'_>, to: impl io::Write) -> io::Result<()> {
     let class = &report.plan.title;
     let mut cases = Vec::new();
     for requirement in &report.statistics.requirements {
@@ -35,14 +56,14 @@ pub fn junit(report: &CampaignReport<'_>) -> std::io::Result<String> {
         ("results_blake3", report.statistics.results_blake3.clone()),
         ("octant", env!("CARGO_PKG_VERSION").to_owned()),
     ];
+    let cases = SuiteCases::Listed(cases);
     let mut suites = vec![JunitSuite { name: class.clone(), properties, cases }];
     for combination in &report.combinations {
         let name = combination.name();
-        let rows = combination.cases.iter().filter_map(|case| report.rows.get(*case));
-        let cases = rows.flat_map(|row| of_case(report, row, &name)).collect();
+        let cases = SuiteCases::Of { report, combination, name: name.clone() };
         suites.push(JunitSuite { name, properties: Vec::new(), cases });
     }
-    document("octant campaign", &suites)
+    write_document("octant campaign", &suites, to)
 }
 
 fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec<JunitCase> {

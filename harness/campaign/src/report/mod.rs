@@ -15,12 +15,14 @@ mod error;
 pub mod evidence;
 pub mod figures;
 pub mod junit;
+mod outcome;
 pub mod requirement;
+mod row_bytes;
 pub mod rows;
 pub mod selftest;
 mod tables;
 pub mod units;
 
-pub(crate) use contents::again;
 pub use contents::{CampaignReport, POLICY, SCHEMA, Statistics};
+pub(crate) use contents::{ROWS_MAX, again};
 pub use error::ReportError;

@@ -3,18 +3,17 @@
 
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
-use super::rows::{self, ReportRow, RowOutcome};
+use super::rows::{ReportRow, ReportRows, RowOutcome};
 use crate::plan::Plan;
 use crate::status::{CampaignStatus, RequirementStatus};
 use octant_requirements::Verdict;
 use octant_requirements::requirement::{EnsembleRequirement, Requirements};
 use octant_requirements::trace::{VerdictCounts, claim};
 use octant_score::verdict::RequirementResult;
-use octant_statistics::cluster::DrawCounts;
+use octant_statistics::cluster::{DrawCounts, DrawTally};
 use octant_statistics::convergence::{ConvergenceStep, convergence, pass};
 use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// Figures of a requirement over the cases.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -94,11 +93,7 @@ struct Counted {
 }
 
 impl Counted {
-    fn of<'a>(
-        plan: &Plan,
-        id: &str,
-        rows: impl Iterator<Item = (usize, &'a ReportRow<'a>)>,
-    ) -> Self {
+    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, ReportRow<'a>)>) -> Self {
         let mut counted = Self { counts: VerdictCounts::default(), rows: Vec::new() };
         for (draw, row) in rows {
             if !checks(plan, &row.case.scenario, id) {
@@ -126,17 +121,14 @@ impl Counted {
 
     /// Returns whether each known draw passed, in the order in which they began.
     fn passed(&self) -> Vec<bool> {
-        let mut rows: BTreeMap<usize, Vec<(usize, Option<bool>)>> = BTreeMap::new();
-        for row in &self.rows {
-            rows.entry(row.0).or_default().push(*row);
-        }
-        let known = rows.into_values().map(DrawCounts::of).filter(|draws| draws.known() > 0);
-        known.map(|draws| draws.passed > 0).collect()
+        let mut tally = DrawTally::default();
+        self.rows.iter().for_each(|(draw, passed)| tally.add(*draw, *passed));
+        tally.results().flatten().collect()
     }
 }
 
 /// Returns whether the cases of a scenario check a requirement.
-pub(super) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
+pub(crate) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
     let planned = plan.scenarios.iter().find(|planned| planned.id == scenario);
     planned.is_some_and(|planned| planned.requirements.iter().any(|own| own == id))
 }
@@ -147,13 +139,13 @@ pub(super) fn of(
     status: &CampaignStatus,
     about: &Requirements,
     combinations: &[Combination],
-    rows: &[ReportRow<'_>],
+    rows: &ReportRows<'_>,
+    draws: &[usize],
 ) -> Vec<RequirementFigures> {
-    let draws = rows::draws(rows);
     status
         .requirements
         .iter()
-        .map(|(id, status)| one(plan, id, status, about, combinations, rows, &draws))
+        .map(|(id, status)| one(plan, id, status, about, combinations, rows, draws))
         .collect()
 }
 
@@ -163,36 +155,37 @@ fn one(
     status: &RequirementStatus,
     about: &Requirements,
     combinations: &[Combination],
-    rows: &[ReportRow<'_>],
+    rows: &ReportRows<'_>,
     draws: &[usize],
 ) -> RequirementFigures {
     let results = || {
         rows.iter().filter_map(|row| {
-            let checks = &row.outcome.as_ref()?.checks;
-            Some((row.case.id.as_str(), checks.iter().find(|check| check.id == id)?))
+            let mut checks = row.outcome?.checks.into_iter();
+            Some((row.case, checks.find(|check| check.id == id)?))
         })
     };
     let planned = plan.requirements.iter().find(|planned| planned.check.id == id);
-    let first: Option<&RequirementResult> = results().next().map(|(_, result)| result);
+    let first: Option<RequirementResult> = results().next().map(|(_, result)| result);
     let (measure, comparison, limit) = match (planned, first) {
         (Some(planned), _) => {
             let check = &planned.check;
             (Some(check.measure.clone()), Some(check.comparison.sign()), Some(check.limit))
         }
         (None, Some(result)) => {
-            (Some(result.measure.clone()), Some(result.comparison.sign()), Some(result.limit))
+            (Some(result.measure), Some(result.comparison.sign()), Some(result.limit))
         }
         (None, None) => (None, None, None),
     };
-    let all = Counted::of(plan, id, draws.iter().copied().zip(rows));
+    let all = Counted::of(plan, id, draws.iter().copied().zip(rows.iter()));
     let counted = all.draws();
     let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
     let nearest = results()
         .filter_map(|(case, result)| {
             let (value, margin) = (result.value?, result.margin?);
-            Some(Nearest { case: case.to_owned(), value, margin })
+            Some((case, value, margin))
         })
-        .min_by(|a, b| a.margin.total_cmp(&b.margin));
+        .min_by(|a, b| a.2.total_cmp(&b.2))
+        .map(|(case, value, margin)| Nearest { case: case.id.to_string(), value, margin });
     let own = about.get(id);
     RequirementFigures {
         id: id.to_owned(),
@@ -217,8 +210,9 @@ fn one(
         convergence: convergence(&all.passed(), |passed| pass(passed, CONFIDENCE)),
         combinations: (combinations.iter())
             .map(|combination| {
-                let row = |case: &usize| Some((*draws.get(*case)?, rows.get(*case)?));
-                let mine = Counted::of(plan, id, combination.cases.iter().filter_map(row));
+                let cases = combination.cases.iter().copied();
+                let draws = cases.clone().filter_map(|case| draws.get(case).copied());
+                let mine = Counted::of(plan, id, draws.zip(rows.at(cases)));
                 let draws = mine.draws();
                 CombinationChecks {
                     counts: mine.counts,

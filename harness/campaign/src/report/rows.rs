@@ -1,20 +1,25 @@
-//! Reads each case's result once, and keeps the parts that a report needs.
+//! Reads each case's result once, and keeps the parts that a report needs: in a temporary file, as a
+//! campaign can have millions of cases.
 
 pub use super::curves::Curve;
+pub use super::outcome::{CaseDrift, RowOutcome};
 
-use super::curves::{CurveFile, CurveWriter, StoredCurve};
+use super::curves::{CurveFile, CurveWriter};
 use super::error::ReportError;
-use crate::besides::besides;
-use crate::case::CaseResult;
+use super::row_bytes::{ErrorNames, decode, encode};
 use crate::independence;
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
+use crate::stream_key::StreamKey;
 use octant_requirements::Verdict;
-use octant_score::summary::{NavigationScore, Summary};
-use octant_score::verdict::RequirementResult;
-use std::collections::BTreeMap;
-use std::io;
-use std::sync::Arc;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes that are written at a time.
+const WRITTEN: usize = 1 << 20;
+/// Bytes that are read at a time.
+const WINDOW: u64 = 1 << 18;
 
 /// Case with its result.
 #[derive(Clone, Debug)]
@@ -25,61 +30,26 @@ pub struct ReportRow<'a> {
     pub outcome: Option<RowOutcome>,
 }
 
-/// Result of a case.
-#[derive(Clone, Debug)]
-pub struct RowOutcome {
-    /// Worst verdict of all parts.
-    pub verdict: Verdict,
-    /// Worst verdict of all parts except the requirements.
-    pub besides: Verdict,
-    /// Reason why there is no summary.
-    pub error: Option<String>,
-    /// Reasons for the verdict.
-    pub reasons: Vec<String>,
-    /// Checks of the case.
-    pub checks: Vec<RequirementResult>,
-    /// Reason why its calibration was refused.
-    pub refused: Option<String>,
-    /// Faults that never fired.
-    pub unfired: Vec<String>,
-    /// True if the case has two results.
-    pub differs: bool,
-    /// Hash of its streams.
-    pub stream_hash: Option<String>,
-    /// Drift; `None` without a navigation.
-    pub drift: Option<CaseDrift>,
-}
-
-/// The drift of a case.
-#[derive(Clone, Debug)]
-pub struct CaseDrift {
-    /// Length of the navigation, h.
-    pub duration_h: f64,
-    /// Radial error at its end, nmi.
-    pub final_nmi: f64,
-    /// Largest radial error, nmi.
-    pub max_nmi: f64,
-    /// Time-RMS, nmi.
-    pub rms_nmi: f64,
-    /// Rate, nmi/h.
-    pub rate_nmi_per_h: f64,
-    /// Radial error at the marks that it reached, nmi.
-    pub marks_nmi: BTreeMap<String, f64>,
-    /// Largest errors of attitude and velocity that were scored, with name and unit.
-    pub solution: Box<[(&'static str, &'static str, f64)]>,
-    /// Errors over time.
-    pub curve: Option<StoredCurve>,
-}
-
-/// Rows of a plan.
+/// Rows of a plan, in a temporary file. A row that can't be read is like one of a case that hasn't run, and
+/// [`ReportRows::error`] tells of it.
 #[derive(Debug)]
 pub struct ReportRows<'a> {
-    /// The rows.
-    pub rows: Vec<ReportRow<'a>>,
-    /// One hash of all results.
-    pub results_blake3: String,
-    /// The file of the drifts.
-    pub(super) curves: Arc<CurveFile>,
+    cases: &'a [Case],
+    /// End of each row in the file.
+    ends: Vec<u64>,
+    /// What is known of each row without reading it.
+    known: Vec<KnownRow>,
+    names: ErrorNames,
+    /// The file without a name, and the first error of reading it.
+    file: Mutex<(Option<File>, Option<io::Error>)>,
+    curves: Arc<CurveFile>,
+}
+
+/// Verdict of a case that has run, and whether it navigated.
+#[derive(Clone, Copy, Debug)]
+struct KnownRow {
+    verdict: Option<Verdict>,
+    navigated: bool,
 }
 
 /// Hashes all results of a plan up to `end`, without keeping any.
@@ -103,102 +73,176 @@ pub fn read<'a>(
     plan: &'a Plan,
     results: &CampaignResults,
     end: usize,
-) -> Result<ReportRows<'a>, ReportError> {
+) -> Result<(ReportRows<'a>, String), ReportError> {
+    let cases = plan.cases.get(..end).unwrap_or(&plan.cases);
     let mut hasher = blake3::Hasher::new();
-    let mut rows = Vec::with_capacity(end);
     let mut curves = CurveWriter::new();
+    let mut rows = ReportRows::new(cases, curves.file());
+    let mut bytes = Vec::new();
     let wrong = |source| ReportError::System {
-        action: "keep the drifts of cases in",
+        action: "keep the results of cases in",
         path: std::env::temp_dir(),
         source,
     };
-    for case in plan.cases.iter().take(end) {
+    for case in cases {
         let read = results.of_plan(plan, case)?;
         let Some((result, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
-            rows.push(ReportRow { case, outcome: None });
+            rows.push(None, &mut bytes).map_err(wrong)?;
             continue;
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
         let differs = results.differing(&case.id)?.is_some();
         let outcome = RowOutcome::of(result, differs, &mut curves).map_err(wrong)?;
-        rows.push(ReportRow { case, outcome: Some(outcome) });
+        rows.push(Some(&outcome), &mut bytes).map_err(wrong)?;
     }
     curves.flush().map_err(wrong)?;
-    let results_blake3 = hasher.finalize().to_hex().to_string();
-    Ok(ReportRows { rows, results_blake3, curves: curves.file() })
+    rows.flush(&mut bytes).map_err(wrong)?;
+    Ok((rows, hasher.finalize().to_hex().to_string()))
 }
 
 /// Returns the independent draw of each row.
-pub(super) fn draws(rows: &[ReportRow<'_>]) -> Vec<usize> {
-    let stream =
-        |row: &ReportRow<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
-    let streams: Vec<Option<String>> = rows.iter().map(stream).collect();
-    let cases = rows.iter().map(|row| row.case).zip(streams.iter().map(Option::as_deref));
-    independence::draws(cases)
+pub(super) fn draws(rows: &ReportRows<'_>) -> Vec<usize> {
+    let stream = |row: ReportRow<'_>| -> Option<StreamKey> {
+        Some(row.outcome?.stream_hash?.as_str().into())
+    };
+    let streams: Vec<Option<StreamKey>> = rows.iter().map(stream).collect();
+    independence::draws(rows.cases.iter().zip(streams.iter().map(Option::as_ref)))
 }
 
-impl RowOutcome {
-    fn of(result: CaseResult, differs: bool, curves: &mut CurveWriter) -> io::Result<Self> {
-        let besides = besides(&result);
-        let (verdict, error) = (result.verdict, result.error);
-        let mut outcome = Self {
-            verdict,
-            besides,
-            error,
-            reasons: Vec::new(),
-            checks: Vec::new(),
-            refused: None,
-            unfired: Vec::new(),
-            differs,
-            stream_hash: None,
-            drift: None,
-        };
-        let Some(summary) = result.summary else { return Ok(outcome) };
-        let Summary { reasons, requirements, faults, calibration, navigation, stream_hash, .. } =
-            summary;
-        outcome.reasons = reasons;
-        outcome.checks = requirements;
-        outcome.refused = calibration.and_then(|calibration| calibration.refused);
-        outcome.unfired =
-            faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
-        outcome.stream_hash = Some(stream_hash);
-        let drift = |navigation: &NavigationScore| CaseDrift::of(navigation, curves);
-        outcome.drift = navigation.as_ref().map(drift).transpose()?;
-        Ok(outcome)
-    }
-
-    /// Returns the verdict of a requirement: an error without a summary, inconclusive if it wasn't
-    /// checked.
-    #[must_use]
-    pub fn check(&self, requirement: &str) -> Verdict {
-        if self.error.is_some() || self.stream_hash.is_none() {
-            return Verdict::Error;
+impl<'a> ReportRows<'a> {
+    fn new(cases: &'a [Case], curves: Arc<CurveFile>) -> Self {
+        Self {
+            cases,
+            ends: Vec::with_capacity(cases.len()),
+            known: Vec::with_capacity(cases.len()),
+            names: ErrorNames::new(),
+            file: Mutex::default(),
+            curves,
         }
-        let mut checks = self.checks.iter();
-        let found = checks.find(|check| check.id == requirement);
-        found.map_or(Verdict::Inconclusive, |check| check.verdict)
+    }
+
+    fn push(&mut self, outcome: Option<&RowOutcome>, bytes: &mut Vec<u8>) -> io::Result<()> {
+        let (before, last) = (bytes.len(), self.ends.last().copied().unwrap_or(0));
+        outcome.inspect(|outcome| encode(outcome, &mut self.names, bytes));
+        self.ends.push(last + (bytes.len() - before) as u64);
+        self.known.push(KnownRow {
+            verdict: outcome.map(|outcome| outcome.verdict),
+            navigated: outcome.is_some_and(|outcome| outcome.drift.is_some()),
+        });
+        if bytes.len() >= WRITTEN { self.flush(bytes) } else { Ok(()) }
+    }
+
+    fn flush(&mut self, bytes: &mut Vec<u8>) -> io::Result<()> {
+        let (file, _) = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let file = match file {
+            Some(file) => file,
+            none => none.insert(tempfile::tempfile()?),
+        };
+        file.write_all(bytes)?;
+        bytes.clear();
+        Ok(())
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.cases.len()
+    }
+
+    /// Returns whether there is no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cases.is_empty()
+    }
+
+    /// Returns the case of a row.
+    #[must_use]
+    pub fn case(&self, place: usize) -> Option<&'a Case> {
+        self.cases.get(place)
+    }
+
+    /// Returns the verdict of a case; `None` if it hasn't run.
+    #[must_use]
+    pub fn verdict(&self, place: usize) -> Option<Verdict> {
+        self.known.get(place)?.verdict
+    }
+
+    /// Returns whether a case has run.
+    #[must_use]
+    pub fn has_run(&self, place: usize) -> bool {
+        self.verdict(place).is_some()
+    }
+
+    /// Returns whether a case has a drift.
+    #[must_use]
+    pub fn has_drift(&self, place: usize) -> bool {
+        self.known.get(place).is_some_and(|known| known.navigated)
+    }
+
+    /// Takes the first error of reading a row, or the drift of one.
+    #[must_use]
+    pub fn error(&self) -> Option<io::Error> {
+        let of_rows = self.file.lock().unwrap_or_else(PoisonError::into_inner).1.take();
+        of_rows.or_else(|| self.curves.error())
+    }
+
+    /// Reads all rows.
+    pub fn iter(&self) -> impl Iterator<Item = ReportRow<'a>> {
+        self.at(0..self.len())
+    }
+
+    /// Reads the rows of these cases, given by their places; those that lie near each other are best read
+    /// one after another.
+    pub fn at<P: IntoIterator<Item = usize>>(
+        &self,
+        places: P,
+    ) -> impl Iterator<Item = ReportRow<'a>> + use<'_, 'a, P> {
+        let mut window = RowWindow { start: 0, bytes: Vec::new() };
+        places.into_iter().filter_map(move |place| self.row(place, &mut window))
+    }
+
+    fn row(&self, place: usize, window: &mut RowWindow) -> Option<ReportRow<'a>> {
+        let case = self.cases.get(place)?;
+        let outcome = if self.has_run(place) { self.outcome(place, window) } else { None };
+        Some(ReportRow { case, outcome })
+    }
+
+    fn outcome(&self, place: usize, window: &mut RowWindow) -> Option<RowOutcome> {
+        let end = *self.ends.get(place)?;
+        let start = place.checked_sub(1).map_or(Some(0), |last| self.ends.get(last).copied())?;
+        let decoded = self.bytes(start, end, window).and_then(|bytes| {
+            let outcome = decode(bytes, &self.names, &self.curves);
+            outcome.ok_or_else(|| io::Error::other("what was written is not what is read"))
+        });
+        let keep = |error| {
+            let mut inner = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+            inner.1.get_or_insert(error);
+        };
+        decoded.map_err(keep).ok()
+    }
+
+    /// Returns the bytes of a row.
+    fn bytes<'w>(&self, start: u64, end: u64, window: &'w mut RowWindow) -> io::Result<&'w [u8]> {
+        if start < window.start || end > window.start + window.bytes.len() as u64 {
+            let last = self.ends.last().copied().unwrap_or(0);
+            let length = (end - start).max(WINDOW).min(last - start);
+            let length = usize::try_from(length).map_err(io::Error::other)?;
+            window.bytes.resize(length, 0);
+            window.start = start;
+            let mut inner = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+            let file = inner.0.as_mut().ok_or(io::ErrorKind::UnexpectedEof)?;
+            file.seek(SeekFrom::Start(start))?;
+            file.read_exact(&mut window.bytes)?;
+        }
+        let range = |at: u64| usize::try_from(at - window.start).map_err(io::Error::other);
+        let (from, to) = (range(start)?, range(end)?);
+        window.bytes.get(from..to).ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
     }
 }
 
-impl CaseDrift {
-    fn of(navigation: &NavigationScore, curves: &mut CurveWriter) -> io::Result<Self> {
-        let radial = &navigation.radial_error_nmi;
-        let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
-        // Latitude and longitude come first.
-        let solution = navigation.errors().into_iter().skip(2);
-        let curve = Curve::of(&navigation.series_hours);
-        Ok(Self {
-            solution: solution
-                .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
-                .collect(),
-            duration_h: navigation.duration_h,
-            final_nmi: radial.r#final,
-            max_nmi: radial.max,
-            rms_nmi: radial.rms,
-            rate_nmi_per_h: radial.rate_per_h,
-            marks_nmi: marks.collect(),
-            curve: curve.map(|curve| curves.push(&curve)).transpose()?,
-        })
-    }
+/// Bytes of the file that were read last.
+struct RowWindow {
+    start: u64,
+    bytes: Vec<u8>,
 }

@@ -28,7 +28,7 @@ impl CampaignUnits {
         let (mut several, mut lengths) = (Vec::new(), Err("there is no case".to_owned()));
         match sites::of_cases(plan, folder) {
             Err(error) => lengths = Err(error.to_string()),
-            Ok(all) => {
+            Ok((all, places)) => {
                 if let Some(first) = all.first() {
                     let mut agree = |quantity, same: fn(&DisplayUnits, &DisplayUnits) -> bool| {
                         let agrees = all.iter().all(|other| same(first, other));
@@ -46,7 +46,8 @@ impl CampaignUnits {
                     if agree("velocity", |a, b| a.velocity == b.velocity) {
                         shown.velocity = first.velocity;
                     }
-                    lengths = Ok(all.iter().map(|units| units.arcmin_m).collect());
+                    let length = |at: &u32| all.get(*at as usize).map(|units| units.arcmin_m);
+                    lengths = Ok(places.iter().filter_map(length).collect());
                 }
             }
         }

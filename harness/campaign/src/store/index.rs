@@ -3,8 +3,8 @@
 use super::error::{PartError, ResultPlace};
 use super::files;
 use super::frame::{Checksum, RecordKind, first};
-use super::scan::{Found, hex, read_head, read_whole, scan};
-use super::stored::{Stored, StoredRecord, read_file};
+use super::scan::{Found, hex, read_checksum, read_head, read_whole, scan};
+use super::stored::{Stored, StoredId, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
 use crate::case::{CaseResult, ResultError};
 use crate::facts::CaseFacts;
@@ -24,7 +24,7 @@ pub struct CampaignResults {
     parts: Vec<Part>,
     /// Results by the ids of their cases, those of a case in the order in which they count: a list, as a
     /// campaign can have millions.
-    stored: Vec<(Box<str>, Stored)>,
+    stored: Vec<(StoredId, Stored)>,
     /// Number of cases that have a result.
     cases: usize,
 }
@@ -56,19 +56,20 @@ impl CampaignResults {
     pub fn open(folder: &Path) -> Result<Self, ResultError> {
         let file = |(case, is_second, place): (String, bool, ResultPlace)| {
             let path = place.path().to_owned();
-            (case.into_boxed_str(), Stored::File { path, is_second })
+            (case.into(), Stored::File { path, is_second })
         };
-        let mut stored: Vec<(Box<str>, Stored)> =
+        let mut stored: Vec<(StoredId, Stored)> =
             files::all(folder).into_iter().map(file).collect();
+        let has_files = !stored.is_empty();
         let paths = parts(&folder.join(FOLDER))?;
         let mut parts = Vec::with_capacity(paths.len());
         let stay_open = paths.len() <= OPEN_MAX;
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
         for (part, path) in (0..).zip(paths) {
             let file = File::open(&path).map_err(PartError::system("read", &path))?;
-            scan(&path, &file, |Found { head, offset, own }| {
-                let case = head.case.into_boxed_str();
+            scan(&path, &file, |Found { head, offset }| {
                 if head.kind == RecordKind::Forgotten {
+                    let case = head.case.into_boxed_str();
                     forgotten.entry(case).or_default().insert(first(&head.blake3));
                     return;
                 }
@@ -77,15 +78,21 @@ impl CampaignResults {
                     part,
                     offset,
                     has_facts: !head.facts.is_empty(),
-                    blake3: head.blake3,
-                    own,
                 };
-                stored.push((case, Stored::Record(record)));
+                stored.push((head.case.into(), Stored::Record(record)));
             })?;
             parts.push(Part { path, file: stay_open.then_some(file) });
         }
-        // The files of a case are in their order already.
-        stored.sort_by(|(a_case, a), (b_case, b)| a_case.cmp(b_case).then_with(|| a.order(b)));
+        let order = |(a_case, a): &(StoredId, Stored), (b_case, b): &(StoredId, Stored)| {
+            (**a_case).cmp(&**b_case).then_with(|| a.order(b))
+        };
+        if has_files {
+            // The files of a case are in their order already.
+            stored.sort_by(order);
+        } else {
+            // In place: there can be millions.
+            stored.sort_unstable_by(order);
+        }
         let mut found = Self { parts, stored, cases: 0 };
         found.forget(&forgotten)?;
         Ok(found)
@@ -98,9 +105,9 @@ impl CampaignResults {
     ) -> Result<(), ResultError> {
         let mut gone = BTreeSet::new();
         for (case, forgotten) in forgotten {
-            let from = self.stored.partition_point(|(other, _)| other < case);
+            let from = self.stored.partition_point(|(other, _)| **other < **case);
             for (index, (_, stored)) in self.of(case).iter().enumerate() {
-                if forgotten.contains(&stored.own()?) {
+                if forgotten.contains(&self.own(stored)?) {
                     gone.insert(from + index);
                 }
             }
@@ -117,16 +124,18 @@ impl CampaignResults {
             from += of_case.len();
         }
         let mut index = 0;
-        self.stored.retain(|_| {
-            index += 1;
-            !gone.contains(&(index - 1))
-        });
+        if !gone.is_empty() {
+            self.stored.retain(|_| {
+                index += 1;
+                !gone.contains(&(index - 1))
+            });
+        }
         self.stored.shrink_to_fit();
         Ok(())
     }
 
     /// Returns the results of a case.
-    fn of(&self, case: &str) -> &[(Box<str>, Stored)] {
+    fn of(&self, case: &str) -> &[(StoredId, Stored)] {
         let from = self.stored.partition_point(|(other, _)| **other < *case);
         let rest = self.stored.get(from..).unwrap_or_default();
         let count = rest.iter().take_while(|(other, _)| **other == *case).count();
@@ -176,8 +185,8 @@ impl CampaignResults {
             if stored.is_beside() {
                 return Ok(Some(self.place_of(stored, case)));
             }
-            let found = stored.blake3()?;
-            if found != *blake3.get_or_insert(main.blake3()?) {
+            let found = self.blake3(stored)?;
+            if found != *blake3.get_or_insert(self.blake3(main)?) {
                 return Ok(Some(self.place_of(stored, case)));
             }
         }
@@ -189,7 +198,7 @@ impl CampaignResults {
     /// # Errors
     /// If a result has to be read for it, and can't.
     pub fn known(&self, case: &str) -> Result<Vec<String>, ResultError> {
-        self.of(case).iter().map(|(_, stored)| Ok(hex(&stored.blake3()?))).collect()
+        self.of(case).iter().map(|(_, stored)| Ok(hex(&self.blake3(stored)?))).collect()
     }
 
     /// Returns the time at which the result of a case was stored.
@@ -274,7 +283,7 @@ impl CampaignResults {
     /// forgotten. A result that can't be read is none of them.
     pub(super) fn errors(&self, case: &str) -> Result<Vec<Checksum>, ResultError> {
         let all = self.of(case).iter().map(|(_, stored)| stored);
-        all.filter(|stored| self.is_error(stored, case)).map(Stored::own).collect()
+        all.filter(|stored| self.is_error(stored, case)).map(|stored| self.own(stored)).collect()
     }
 
     fn is_error(&self, stored: &Stored, case: &str) -> bool {
@@ -290,6 +299,22 @@ impl CampaignResults {
             return facts.error.is_some();
         }
         read().unwrap_or(false)
+    }
+
+    /// BLAKE3 of a result. It isn't kept: few cases have more than one.
+    fn blake3(&self, stored: &Stored) -> Result<[u8; 32], ResultError> {
+        match stored {
+            Stored::File { path, .. } => Ok(*blake3::hash(&read_file(path)?).as_bytes()),
+            Stored::Record(record) => Ok(self.at(record, read_head)?.blake3),
+        }
+    }
+
+    /// Returns the checksum by which a result can be forgotten.
+    fn own(&self, stored: &Stored) -> Result<Checksum, ResultError> {
+        match stored {
+            Stored::File { .. } => Ok(first(&self.blake3(stored)?)),
+            Stored::Record(record) => Ok(self.at(record, read_checksum)?),
+        }
     }
 
     /// The result that counts: the first one.

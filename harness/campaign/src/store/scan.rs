@@ -25,8 +25,6 @@ pub(super) struct Found {
     pub(super) head: RecordHead,
     /// Byte at which it begins.
     pub(super) offset: u64,
-    /// Its checksum.
-    pub(super) own: Checksum,
 }
 
 /// Records of a file, up to the byte from which the end is torn.
@@ -80,6 +78,18 @@ pub(super) fn read_head(path: &Path, file: &File, offset: u64) -> Result<RecordH
     let bytes = file.metadata().map_err(PartError::system("read", path))?.len();
     let head = Source::of(file, bytes).head(offset);
     head.map_err(PartError::system("read", path))?.ok_or_else(|| no_head(path, offset))
+}
+
+/// Reads the checksum of the record at a byte of a file.
+pub(super) fn read_checksum(path: &Path, file: &File, offset: u64) -> Result<Checksum, PartError> {
+    let bytes = file.metadata().map_err(PartError::system("read", path))?.len();
+    let mut source = Source::of(file, bytes);
+    let head = source.head(offset).map_err(PartError::system("read", path))?;
+    let head = head.ok_or_else(|| no_head(path, offset))?;
+    let mut own = [0; CHECK];
+    let at = offset + head.bytes() + u64::from(head.body_bytes);
+    source.exact(at, &mut own).map_err(PartError::system("read", path))?;
+    Ok(own)
 }
 
 /// Reads the record at a byte, and returns its head and its result.
@@ -252,7 +262,7 @@ impl Source<'_> {
                 },
             });
         }
-        Ok(At::Record(Found { head, offset, own }, next))
+        Ok(At::Record(Found { head, offset }, next))
     }
 
     fn is_whole(&mut self, head: &RecordHead, body: u64, own: Checksum) -> io::Result<bool> {

@@ -1,8 +1,9 @@
 //! Results as the index knows them: where each is, and what tells it from others.
 
-use super::frame::{Checksum, first};
 use crate::case::ResultError;
+use crate::case_id::CaseId;
 use std::cmp::Ordering;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 /// A stored result.
@@ -25,8 +26,30 @@ pub(super) struct StoredRecord {
     pub(super) part: u32,
     pub(super) offset: u64,
     pub(super) has_facts: bool,
-    pub(super) blake3: [u8; 32],
-    pub(super) own: Checksum,
+}
+
+/// Id of a case as a record has it: that of a planned case, or any other text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum StoredId {
+    Case(CaseId),
+    Other(Box<str>),
+}
+
+impl From<String> for StoredId {
+    fn from(text: String) -> Self {
+        text.parse().map_or_else(|_| Self::Other(text.into()), Self::Case)
+    }
+}
+
+impl Deref for StoredId {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        match self {
+            Self::Case(id) => id,
+            Self::Other(text) => text,
+        }
+    }
 }
 
 impl Stored {
@@ -46,21 +69,6 @@ impl Stored {
 
     pub(super) fn has_facts(&self) -> bool {
         matches!(self, Self::Record(StoredRecord { has_facts: true, .. }))
-    }
-
-    pub(super) fn blake3(&self) -> Result<[u8; 32], ResultError> {
-        match self {
-            Self::File { path, .. } => Ok(*blake3::hash(&read_file(path)?).as_bytes()),
-            Self::Record(record) => Ok(record.blake3),
-        }
-    }
-
-    /// Returns the checksum by which it can be forgotten.
-    pub(super) fn own(&self) -> Result<Checksum, ResultError> {
-        match self {
-            Self::File { .. } => Ok(first(&self.blake3()?)),
-            Self::Record(record) => Ok(record.own),
-        }
     }
 }
 

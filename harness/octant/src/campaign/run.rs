@@ -80,7 +80,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     };
     let bar = CaseBar::new("", mine, options.jobs, may_stop);
     let tell = |event: &ExecutionEvent| show(&bar, &plan, event);
-    let name = |index: usize| plan.cases[index].id.clone();
+    let name = |index: usize| plan.cases[index].id.to_string();
     let outcome = bar.during(&name, || in_rounds(&plan, &mut options, &tell))?;
     conclude(arguments, &plan, shard, &outcome)
 }

@@ -82,7 +82,7 @@ uniform = [0, 100]
 pub(crate) static TEMPLATE: LazyLock<Value> = LazyLock::new(|| {
     let bench = Bench::new(CAMPAIGN);
     let plan = bench.plan();
-    let spiked = |case: &&Case| case.faults == Some(vec!["spike-1".to_owned()]);
+    let spiked = |case: &&Case| case.faults == Some(["spike-1"].into_iter().collect());
     let case = plan.cases.iter().find(spiked).unwrap();
     let result = case::run(plan.planned(case).unwrap(), case, &Control::default()).unwrap();
     let value: Value = serde_json::from_str(&result.to_json().unwrap()).unwrap();

@@ -26,7 +26,7 @@ fn the_same_results_give_the_same_bytes_wherever_they_lie() {
     assert_eq!(output.status.code(), Some(4));
     assert!(files(&out) == after, "--out leaves the folder as it is");
     let alone = std::fs::read_to_string(first.at("alone.html")).unwrap();
-    assert!(alone.contains(&plan.cases[3].id) && !alone.contains("href=\"cases/"));
+    assert!(alone.contains(plan.cases[3].id.as_str()) && !alone.contains("href=\"cases/"));
 }
 
 #[test]

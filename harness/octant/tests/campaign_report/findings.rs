@@ -44,7 +44,7 @@ fn names_are_escaped() {
     assert_eq!(said, results::text(&out, &plan.cases[7].id));
     let output = bench.octant(&["campaign", "result", "out", &plan.cases[7].id[..5]]);
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.code() == Some(2) && said.contains(&plan.cases[7].id), "{said}");
+    assert!(output.status.code() == Some(2) && said.contains(plan.cases[7].id.as_str()), "{said}");
     let xml = bench.read("junit.xml");
     assert!(xml.contains("T&lt;script"), "the title is escaped");
     assert_eq!(xml.matches("name=\"verifies\"").count(), 2 * 80 + 2);
@@ -83,7 +83,7 @@ fn what_is_wrong_with_cases_is_told_with_the_line_that_runs_them_again() {
         assert_eq!(found.id.len(), 12);
     }
     let outlier = &statistics["outliers"][0];
-    assert_eq!(outlier["case"], plan.cases[7].id);
+    assert_eq!(outlier["case"], plan.cases[7].id.as_str());
     assert_eq!(outlier["measure"], "navigation.radial_error_nmi.rate_per_h");
     let xml = bench.read("junit.xml");
     assert!(xml.contains("<failure") && xml.contains("type=\"inconclusive\""));

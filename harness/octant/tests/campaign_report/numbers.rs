@@ -197,7 +197,12 @@ fn predictions_stand_beside_the_cases() {
         // One of the σ computed independently: about the mean, from the results of the cases.
         let set = comparison["set"].as_array().unwrap();
         let mut errors = Vec::new();
-        for case in bench.plan().cases.iter().filter(|case| case.faults == Some(Vec::new())) {
+        for case in bench
+            .plan()
+            .cases
+            .iter()
+            .filter(|case| case.faults.as_ref().is_some_and(|faults| faults.is_empty()))
+        {
             if set.iter().all(|one| case.set.iter().any(|other| one == other.as_str())) {
                 let result = results::value(&bench.at("out"), &case.id);
                 let parameters = &result["summary"]["calibration"]["parameters"];

@@ -7,13 +7,54 @@ use std::io;
 
 /// Suite of test cases.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct JunitSuite {
+pub struct JunitSuite<C = Vec<JunitCase>> {
     /// Name.
     pub name: String,
     /// Names and values of its properties.
     pub properties: Vec<(&'static str, String)>,
     /// Test cases.
-    pub cases: Vec<JunitCase>,
+    pub cases: C,
+}
+
+/// Test cases of a suite, which need not be in memory together.
+pub trait JunitCases {
+    /// Passes on one case after another: every time the same ones.
+    ///
+    /// # Errors
+    /// The first error of `put`.
+    fn each(&self, put: &mut dyn FnMut(&JunitCase) -> io::Result<()>) -> io::Result<()>;
+}
+
+impl JunitCases for Vec<JunitCase> {
+    fn each(&self, put: &mut dyn FnMut(&JunitCase) -> io::Result<()>) -> io::Result<()> {
+        self.iter().try_for_each(put)
+    }
+}
+
+/// Numbers of test cases.
+#[derive(Clone, Copy, Debug, Default)]
+struct CaseNumbers {
+    tests: usize,
+    skipped: usize,
+    failures: usize,
+    errors: usize,
+}
+
+impl CaseNumbers {
+    fn of(cases: &impl JunitCases) -> io::Result<Self> {
+        let mut all = Self::default();
+        cases.each(&mut |case| {
+            all.tests += 1;
+            match case.element() {
+                Some("skipped") => all.skipped += 1,
+                Some("failure") => all.failures += 1,
+                Some(_) => all.errors += 1,
+                None => {}
+            }
+            Ok(())
+        })?;
+        Ok(all)
+    }
 }
 
 /// Test case.
@@ -43,7 +84,7 @@ impl JunitCase {
         }
     }
 
-    fn write(&self, writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
+    fn write(&self, writer: &mut Writer<impl io::Write>) -> io::Result<()> {
         let tag = tag("testcase", &[("name", &self.name), ("classname", &self.class)]);
         let element = self.element();
         if self.properties.is_empty() && element.is_none() {
@@ -66,49 +107,69 @@ impl JunitCase {
 /// # Errors
 /// If the XML can't be written.
 pub fn document(name: &str, suites: &[JunitSuite]) -> io::Result<String> {
-    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 4);
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let count = |element| count(suites.iter().flat_map(|suite| &suite.cases), element);
-    let attributes = [
-        ("name", name),
-        ("tests", &suites.iter().map(|suite| suite.cases.len()).sum::<usize>().to_string()),
-        ("skipped", &count("skipped")),
-        ("failures", &count("failure")),
-        ("errors", &count("error")),
-    ];
-    writer.write_event(Event::Start(tag("testsuites", &attributes)))?;
-    for suite in suites {
-        write_suite(suite, &mut writer)?;
-    }
-    writer.write_event(Event::End(BytesEnd::new("testsuites")))?;
-    writer.write_indent()?;
-    String::from_utf8(writer.into_inner()).map_err(io::Error::other)
+    let mut text = Vec::new();
+    write_document(name, suites, &mut text)?;
+    String::from_utf8(text).map_err(io::Error::other)
 }
 
-fn write_suite(suite: &JunitSuite, writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
-    let count = |element| count(suite.cases.iter(), element);
+/// Writes suites as [`document`] does, into a file. The cases of each are asked for twice: their numbers come
+/// first.
+///
+/// # Errors
+/// If the XML can't be written.
+pub fn write_document<C: JunitCases>(
+    name: &str,
+    suites: &[JunitSuite<C>],
+    to: impl io::Write,
+) -> io::Result<()> {
+    let mut writer = Writer::new_with_indent(to, b' ', 4);
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let numbers = suites.iter().map(|suite| CaseNumbers::of(&suite.cases));
+    let numbers = numbers.collect::<io::Result<Vec<CaseNumbers>>>()?;
+    let sum = |of: fn(&CaseNumbers) -> usize| numbers.iter().map(of).sum::<usize>().to_string();
+    let attributes = [
+        ("name", name),
+        ("tests", &sum(|all| all.tests)),
+        ("skipped", &sum(|all| all.skipped)),
+        ("failures", &sum(|all| all.failures)),
+        ("errors", &sum(|all| all.errors)),
+    ];
+    writer.write_event(Event::Start(tag("testsuites", &attributes)))?;
+    for (suite, numbers) in suites.iter().zip(&numbers) {
+        write_suite(suite, *numbers, &mut writer)?;
+    }
+    writer.write_event(Event::End(BytesEnd::new("testsuites")))?;
+    writer.write_indent()
+}
+
+fn write_suite<C: JunitCases>(
+    suite: &JunitSuite<C>,
+    numbers: CaseNumbers,
+    writer: &mut Writer<impl io::Write>,
+) -> io::Result<()> {
     let tag = tag(
         "testsuite",
         &[
             ("name", &suite.name),
-            ("tests", &suite.cases.len().to_string()),
-            ("skipped", &count("skipped")),
-            ("errors", &count("error")),
-            ("failures", &count("failure")),
+            ("tests", &numbers.tests.to_string()),
+            ("skipped", &numbers.skipped.to_string()),
+            ("errors", &numbers.errors.to_string()),
+            ("failures", &numbers.failures.to_string()),
         ],
     );
-    if suite.properties.is_empty() && suite.cases.is_empty() {
+    if suite.properties.is_empty() && numbers.tests == 0 {
         return writer.write_event(Event::Empty(tag));
     }
     writer.write_event(Event::Start(tag))?;
     properties(&suite.properties, writer)?;
-    for case in &suite.cases {
-        case.write(writer)?;
-    }
+    suite.cases.each(&mut |case| case.write(writer))?;
     writer.write_event(Event::End(BytesEnd::new("testsuite")))
 }
 
-fn properties(all: &[(&'static str, String)], writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
+fn properties(
+    all: &[(&'static str, String)],
+    writer: &mut Writer<impl io::Write>,
+) -> io::Result<()> {
     if all.is_empty() {
         return Ok(());
     }
@@ -118,10 +179,6 @@ fn properties(all: &[(&'static str, String)], writer: &mut Writer<Vec<u8>>) -> i
         writer.write_event(Event::Empty(property))?;
     }
     writer.write_event(Event::End(BytesEnd::new("properties")))
-}
-
-fn count<'a>(cases: impl Iterator<Item = &'a JunitCase>, element: &str) -> String {
-    cases.filter(|case| case.element() == Some(element)).count().to_string()
 }
 
 /// Makes a tag with attributes. Control characters are left out: XML has no form for most of them, and

@@ -2,7 +2,7 @@
 
 mod document;
 
-pub use document::{JunitCase, JunitSuite, document};
+pub use document::{JunitCase, JunitCases, JunitSuite, document, write_document};
 
 use super::summary::{FaultResult, Summary};
 use super::verdict::RequirementResult;

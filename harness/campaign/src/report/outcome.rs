@@ -1,0 +1,125 @@
+//! Parts of a case's result that a report needs.
+
+use super::curves::{Curve, CurveWriter, StoredCurve};
+use crate::besides::besides;
+use crate::case::CaseResult;
+use octant_requirements::Verdict;
+use octant_score::summary::{NavigationScore, Summary};
+use octant_score::verdict::RequirementResult;
+use std::collections::BTreeMap;
+use std::io;
+
+/// Result of a case.
+#[derive(Clone, Debug)]
+pub struct RowOutcome {
+    /// Worst verdict of all parts.
+    pub verdict: Verdict,
+    /// Worst verdict of all parts except the requirements.
+    pub besides: Verdict,
+    /// Reason why there is no summary.
+    pub error: Option<String>,
+    /// Reasons for the verdict.
+    pub reasons: Vec<String>,
+    /// Checks of the case.
+    pub checks: Vec<RequirementResult>,
+    /// Reason why its calibration was refused.
+    pub refused: Option<String>,
+    /// Faults that never fired.
+    pub unfired: Vec<String>,
+    /// True if the case has two results.
+    pub differs: bool,
+    /// Hash of its streams.
+    pub stream_hash: Option<String>,
+    /// Drift; `None` without a navigation.
+    pub drift: Option<CaseDrift>,
+}
+
+/// The drift of a case.
+#[derive(Clone, Debug)]
+pub struct CaseDrift {
+    /// Length of the navigation, h.
+    pub duration_h: f64,
+    /// Radial error at its end, nmi.
+    pub final_nmi: f64,
+    /// Largest radial error, nmi.
+    pub max_nmi: f64,
+    /// Time-RMS, nmi.
+    pub rms_nmi: f64,
+    /// Rate, nmi/h.
+    pub rate_nmi_per_h: f64,
+    /// Radial error at the marks that it reached, nmi.
+    pub marks_nmi: BTreeMap<String, f64>,
+    /// Largest errors of attitude and velocity that were scored, with name and unit.
+    pub solution: Box<[(&'static str, &'static str, f64)]>,
+    /// Errors over time.
+    pub curve: Option<StoredCurve>,
+}
+
+impl RowOutcome {
+    pub(super) fn of(
+        result: CaseResult,
+        differs: bool,
+        curves: &mut CurveWriter,
+    ) -> io::Result<Self> {
+        let besides = besides(&result);
+        let (verdict, error) = (result.verdict, result.error);
+        let mut outcome = Self {
+            verdict,
+            besides,
+            error,
+            reasons: Vec::new(),
+            checks: Vec::new(),
+            refused: None,
+            unfired: Vec::new(),
+            differs,
+            stream_hash: None,
+            drift: None,
+        };
+        let Some(summary) = result.summary else { return Ok(outcome) };
+        let Summary { reasons, requirements, faults, calibration, navigation, stream_hash, .. } =
+            summary;
+        outcome.reasons = reasons;
+        outcome.checks = requirements;
+        outcome.refused = calibration.and_then(|calibration| calibration.refused);
+        outcome.unfired =
+            faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
+        outcome.stream_hash = Some(stream_hash);
+        let drift = |navigation: &NavigationScore| CaseDrift::of(navigation, curves);
+        outcome.drift = navigation.as_ref().map(drift).transpose()?;
+        Ok(outcome)
+    }
+
+    /// Returns the verdict of a requirement: an error without a summary, inconclusive if it wasn't
+    /// checked.
+    #[must_use]
+    pub fn check(&self, requirement: &str) -> Verdict {
+        if self.error.is_some() || self.stream_hash.is_none() {
+            return Verdict::Error;
+        }
+        let mut checks = self.checks.iter();
+        let found = checks.find(|check| check.id == requirement);
+        found.map_or(Verdict::Inconclusive, |check| check.verdict)
+    }
+}
+
+impl CaseDrift {
+    fn of(navigation: &NavigationScore, curves: &mut CurveWriter) -> io::Result<Self> {
+        let radial = &navigation.radial_error_nmi;
+        let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
+        // Latitude and longitude come first.
+        let solution = navigation.errors().into_iter().skip(2);
+        let curve = Curve::of(&navigation.series_hours);
+        Ok(Self {
+            solution: solution
+                .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
+                .collect(),
+            duration_h: navigation.duration_h,
+            final_nmi: radial.r#final,
+            max_nmi: radial.max,
+            rms_nmi: radial.rms,
+            rate_nmi_per_h: radial.rate_per_h,
+            marks_nmi: marks.collect(),
+            curve: curve.map(|curve| curves.push(&curve)).transpose()?,
+        })
+    }
+}
