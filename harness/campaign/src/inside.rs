@@ -4,7 +4,7 @@
 use super::chain;
 use super::merge::merged;
 use super::plan::{FILE_NAME, Plan};
-use super::report::{evidence::STATISTICS, rows};
+use super::report::{file_names::STATISTICS, rows};
 use super::results::TABLES;
 use super::shard::Shard;
 use super::status;

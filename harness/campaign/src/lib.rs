@@ -24,7 +24,6 @@ pub mod independence;
 pub mod inside;
 mod make;
 pub mod merge;
-pub mod page;
 pub mod plan;
 mod plan_error;
 mod planned;
@@ -45,7 +44,6 @@ pub mod stop;
 pub mod store;
 mod stream_key;
 pub mod sweep;
-pub mod sweep_page;
 pub mod table;
 mod table_rows;
 pub mod trace;
@@ -107,10 +105,7 @@ pub fn keep(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Gives a new file its name. An existing file with the same bytes isn't touched.
-pub(crate) fn keep_new(
-    path: &std::path::Path,
-    new: tempfile::NamedTempFile,
-) -> std::io::Result<()> {
+pub fn keep_new(path: &std::path::Path, new: tempfile::NamedTempFile) -> std::io::Result<()> {
     if !has_same_bytes(path, new.path())? {
         new.persist(path)?;
     }

@@ -7,7 +7,7 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_campaign::sweep::{SweepAxis, SweepError, cells_of, indices, sweep};
-use octant_campaign::sweep_page;
+use octant_campaign_pages::sweep as sweep_page;
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use std::path::PathBuf;

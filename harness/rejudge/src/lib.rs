@@ -8,7 +8,7 @@
 use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{self, Plan};
-use octant_campaign::report::evidence::STATISTICS;
+use octant_campaign::report::file_names::STATISTICS;
 use octant_campaign::status;
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{CampaignResults, StoredResult, keep_in};

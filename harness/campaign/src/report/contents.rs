@@ -33,7 +33,7 @@ pub const SCHEMA: u32 = 1;
 const REASONS_MAX: usize = 12;
 /// Maximum number of rows of a table on the page, and of traced cases of a requirement; the rest is in
 /// separate files.
-pub(crate) const ROWS_MAX: usize = 2000;
+pub const ROWS_MAX: usize = 2000;
 
 /// Counting rule of cases: the same here, in `[stop]`, in comparisons and in nights.
 pub const POLICY: &str = "The unit is the independent draw, an instrument with its noise: all cases of a \
@@ -330,7 +330,7 @@ fn json(what: &'static str, value: &impl Serialize) -> Result<String, ReportErro
 }
 
 /// Returns the command line that makes the campaign again.
-pub(crate) fn again(report: &CampaignReport<'_>) -> String {
+pub fn again(report: &CampaignReport<'_>) -> String {
     let lines: Vec<String> = report.again().iter().map(|words| shell_line(words)).collect();
     lines.join(" && ")
 }

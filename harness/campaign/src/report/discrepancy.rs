@@ -161,7 +161,7 @@ fn of_case(plan: &Plan, row: &ReportRow<'_>, outcome: &RowOutcome) -> Vec<Found>
 
 /// Returns the verdict of a case on a requirement, if the case checks it; the inner `None`: it
 /// hasn't run.
-pub(crate) fn checks_of(plan: &Plan, row: &ReportRow<'_>, id: &str) -> Option<Option<Verdict>> {
+pub fn checks_of(plan: &Plan, row: &ReportRow<'_>, id: &str) -> Option<Option<Verdict>> {
     requirement::checks(plan, &row.case.scenario, id)
         .then(|| row.outcome.as_ref().map(|outcome| outcome.check(id)))
 }

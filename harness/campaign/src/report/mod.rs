@@ -3,7 +3,7 @@
 //! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
 //! their statistics, [`envelope`] those of the errors over time, [`units`] the units of the page, [`discrepancy`] lists everything that isn't a pass,
 //! [`disposition`](octant_evidence::disposition) has its dispositions, [`CampaignReport`] puts them together.
-//! [`evidence`] writes all of it into the folder of the campaign. The page is [`crate::page`].
+//! The crate of the pages writes all of it into the folder of the campaign.
 
 mod about;
 pub mod combination;
@@ -12,8 +12,8 @@ mod curves;
 pub mod discrepancy;
 pub mod envelope;
 mod error;
-pub mod evidence;
 pub mod figures;
+pub mod file_names;
 pub mod junit;
 mod outcome;
 pub mod requirement;
@@ -23,6 +23,5 @@ pub mod selftest;
 mod tables;
 pub mod units;
 
-pub use contents::{CampaignReport, POLICY, SCHEMA, Statistics};
-pub(crate) use contents::{ROWS_MAX, again};
+pub use contents::{CampaignReport, POLICY, ROWS_MAX, SCHEMA, Statistics, again};
 pub use error::ReportError;

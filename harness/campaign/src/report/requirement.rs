@@ -128,7 +128,7 @@ impl Counted {
 }
 
 /// Returns whether the cases of a scenario check a requirement.
-pub(crate) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
+pub fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
     let planned = plan.scenarios.iter().find(|planned| planned.id == scenario);
     planned.is_some_and(|planned| planned.requirements.iter().any(|own| own == id))
 }

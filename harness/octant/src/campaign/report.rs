@@ -6,7 +6,9 @@ use crate::signing::signing_key;
 use crate::terminal::{print, write};
 use clap::Args;
 use octant_base::display::UnitChoice;
-use octant_campaign::report::{CampaignReport, ReportError, evidence};
+use octant_campaign::report::file_names::PAGE;
+use octant_campaign::report::{CampaignReport, ReportError};
+use octant_campaign_pages::{campaign, evidence};
 use octant_evidence::discrepancy::counted;
 use octant_evidence::disposition::DispositionError;
 use octant_requirements::Verdict;
@@ -39,14 +41,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let path = match &arguments.out {
         Some(path) => {
-            let page = octant_campaign::page::render(&report, false);
+            let page = campaign::render(&report, false);
             report.check()?;
             write(path, page)?;
             path.clone()
         }
         None => {
             evidence::write(&mut report, folder, key, started)?;
-            folder.join(evidence::PAGE)
+            folder.join(PAGE)
         }
     };
     let found = report.statistics.discrepancies.len();

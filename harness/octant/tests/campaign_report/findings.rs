@@ -161,7 +161,7 @@ fn nothing_looks_like_a_pass_that_is_none() {
     let folder = tempfile::tempdir().unwrap();
     let report = CampaignReport::of(&empty, folder.path()).unwrap();
     assert_eq!(report.statistics.verdict, Verdict::Inconclusive);
-    assert!(octant_campaign::page::render(&report, true).contains("there is no case"));
+    assert!(octant_campaign_pages::campaign::render(&report, true).contains("there is no case"));
     assert!(report.open() > 0);
 }
 

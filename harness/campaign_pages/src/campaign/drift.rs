@@ -1,12 +1,12 @@
 //! Drift of the cases: figures with bounds, and percentiles over time.
 
 use super::elements::{heading, with_bounds_in};
-use crate::report::CampaignReport;
-use crate::report::envelope::PERCENTILES;
-use crate::report::figures::{CombinationFigures, ScenarioFigures};
 use maud::{Markup, html};
 use octant_base::display::ShownUnit;
 use octant_base::number;
+use octant_campaign::report::CampaignReport;
+use octant_campaign::report::envelope::PERCENTILES;
+use octant_campaign::report::figures::{CombinationFigures, ScenarioFigures};
 use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 
 /// Maximum number of combinations that are drawn.

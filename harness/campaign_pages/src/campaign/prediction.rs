@@ -1,10 +1,10 @@
 //! Linear prediction of an ensemble, compared with its cases.
 
 use super::elements::{heading, with_bounds};
-use crate::against::{EnsembleComparison, ErrorRow};
-use crate::report::CampaignReport;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::against::{EnsembleComparison, ErrorRow};
+use octant_campaign::report::CampaignReport;
 
 pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let prediction = &report.prediction;

@@ -1,10 +1,10 @@
 //! Factors with which the drift correlates.
 
 use super::elements::heading;
-use crate::report::CampaignReport;
-use crate::report::figures::FactorFigures;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::report::CampaignReport;
+use octant_campaign::report::figures::FactorFigures;
 
 pub(super) fn section(report: &CampaignReport<'_>) -> Markup {
     let drawn = || {

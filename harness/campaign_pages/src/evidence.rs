@@ -1,11 +1,11 @@
 //! Folder of a campaign as evidence: inputs, results, and a manifest with the hash of every file,
 //! signed as that of a run.
 
-use super::contents::{CampaignReport, again};
-use super::error::ReportError;
-use super::junit::junit;
-use crate::plan::INPUTS;
-use crate::store::CampaignResults;
+use octant_campaign::plan::INPUTS;
+use octant_campaign::report::file_names::{JUNIT, PAGE, PREDICTION, STATISTICS};
+use octant_campaign::report::junit::junit;
+use octant_campaign::report::{CampaignReport, ReportError, again};
+use octant_campaign::store::CampaignResults;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
@@ -14,15 +14,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
 use tempfile::NamedTempFile;
-
-/// Name of the page in the folder of a campaign.
-pub const PAGE: &str = "report.html";
-/// Name of the statistics file.
-pub const STATISTICS: &str = "statistics.json";
-/// Name of the file that compares predicted ensembles with the cases.
-pub const PREDICTION: &str = "prediction.json";
-/// Name of the JUnit file.
-pub const JUNIT: &str = "junit.xml";
 
 /// Writes everything into the folder of a campaign: dispositions, statistics, JUnit, page, copies
 /// of the inputs, and the manifest last. Existing files with the same content aren't touched.
@@ -51,7 +42,7 @@ pub fn write(
     let path_of = |name: &str| folder.join(name);
     let xml = new_junit(report, &path_of(JUNIT))?;
     let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
-    let html = crate::page::render(report, true);
+    let html = crate::campaign::render(report, true);
     report.check()?;
     if !report.dispositions.text.is_empty() {
         keep(&path, report.dispositions.text.as_bytes())?;
@@ -59,7 +50,7 @@ pub fn write(
     keep(&folder.join(STATISTICS), statistics.as_bytes())?;
     keep(&folder.join(PREDICTION), prediction.as_bytes())?;
     let wrong = |source| ReportError::System { action: "write", path: path_of(JUNIT), source };
-    crate::keep_new(&path_of(JUNIT), xml).map_err(wrong)?;
+    octant_campaign::keep_new(&path_of(JUNIT), xml).map_err(wrong)?;
     keep(&folder.join(PAGE), html.as_bytes())?;
     inputs(report, folder)?;
     // An old signature doesn't apply to the new manifest.
@@ -100,8 +91,8 @@ pub fn write(
 fn new_junit(report: &CampaignReport<'_>, path: &Path) -> Result<NamedTempFile, ReportError> {
     let folder = path.parent().unwrap_or(path);
     let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
-    crate::clean(folder);
-    let new = crate::new_file(folder).map_err(wrong)?;
+    octant_campaign::clean(folder);
+    let new = octant_campaign::new_file(folder).map_err(wrong)?;
     let mut writer = BufWriter::new(new.as_file());
     junit(report, &mut writer).and_then(|()| writer.flush()).map_err(wrong)?;
     drop(writer);
@@ -150,7 +141,7 @@ fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportEr
             );
         }
     // Only if the campaign's plan is still the same.
-    } else if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
+    } else if octant_campaign::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
         files.push((plan.campaign.clone(), folder.join("campaign.toml")));
         let campaign = octant_scenario::campaign::Campaign::load(&plan.campaign).ok();
         if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {
@@ -179,5 +170,5 @@ fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportEr
 /// Writes a file whole or not at all, and only if it changes.
 fn keep(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
-    crate::keep(path, bytes).map_err(wrong)
+    octant_campaign::keep(path, bytes).map_err(wrong)
 }

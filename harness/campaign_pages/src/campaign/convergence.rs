@@ -2,8 +2,8 @@
 
 use super::drift::DRAWN_MAX;
 use super::elements::heading;
-use crate::report::CampaignReport;
 use maud::{Markup, html};
+use octant_campaign::report::CampaignReport;
 use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 use octant_statistics::convergence::ConvergenceStep;
 

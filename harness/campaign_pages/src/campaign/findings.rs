@@ -2,10 +2,10 @@
 //! dispositions.
 
 use super::elements::{case_link, heading};
-use crate::report::CampaignReport;
-use crate::report::rows::RowOutcome;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::report::CampaignReport;
+use octant_campaign::report::rows::RowOutcome;
 use octant_report::discrepancies::table;
 use octant_report::units::shown;
 

@@ -1,8 +1,8 @@
 //! Renders `sweep.html`, the heat map of a sweep as `sweep.svg`, and its plain text and CSV.
 
-use crate::sweep::{Sweep, SweepAxis, SweepCell, indices};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
+use octant_campaign::sweep::{Sweep, SweepAxis, SweepCell, indices};
 use octant_report::page::page;
 
 /// Width and height of a cell of the map, px.
@@ -31,7 +31,7 @@ fn notice(cell: &SweepCell) -> &str {
 /// Lists the panels: the first two axes span a map, every combination of the others has its own.
 fn panels(sweep: &Sweep) -> Vec<(String, Vec<&SweepCell>)> {
     let others = sweep.axes.get(2..).unwrap_or(&[]);
-    let count = crate::sweep::cells_of(others);
+    let count = octant_campaign::sweep::cells_of(others);
     (0..count)
         .map(|panel| {
             let at = indices(others, panel);

@@ -3,9 +3,9 @@
 
 use super::elements::{case_link, heading};
 use super::requirements::check;
-use crate::report::combination::shown;
-use crate::report::{CampaignReport, ROWS_MAX};
 use maud::{Markup, html};
+use octant_campaign::report::combination::shown;
+use octant_campaign::report::{CampaignReport, ROWS_MAX};
 use octant_report::page::badge;
 
 pub(super) fn section(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
@@ -88,7 +88,7 @@ fn cases(report: &CampaignReport<'_>, beside: Option<&str>) -> Markup {
                             td.n { (row.case.seed) }
                             td.n { (check(outcome.map(|outcome| outcome.verdict))) }
                             @for r in requirements { td.n {
-                                @match crate::report::discrepancy::checks_of(report.plan, &row, &r.id) {
+                                @match octant_campaign::report::discrepancy::checks_of(report.plan, &row, &r.id) {
                                     Some(verdict) => (check(verdict)),
                                     None => "–",
                                 }

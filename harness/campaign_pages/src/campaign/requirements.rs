@@ -1,10 +1,10 @@
 //! Verdicts of the requirements: overall, and by combination.
 
 use super::elements::heading;
-use crate::report::requirement::{self, CombinationChecks, RequirementFigures};
-use crate::report::{CampaignReport, POLICY};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::report::requirement::{self, CombinationChecks, RequirementFigures};
+use octant_campaign::report::{CampaignReport, POLICY};
 use octant_report::page::badge;
 use octant_report::units::{PageUnit, is_of_place, shown, unit};
 use octant_requirements::Verdict;

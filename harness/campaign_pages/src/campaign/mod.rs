@@ -14,10 +14,10 @@ mod prediction;
 mod requirements;
 mod sensitivity;
 
-use crate::report::{CampaignReport, again};
 use elements::{SECTIONS, heading, short};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_campaign::report::{CampaignReport, again};
 use octant_report::page::{badge, page};
 use octant_requirements::Verdict;
 
@@ -116,9 +116,10 @@ fn figures(report: &CampaignReport<'_>) -> Markup {
     let statistics = &report.statistics;
     let all = statistics.requirements.len();
     let shown = statistics.requirements.iter().filter(|r| r.verdict == Verdict::Pass).count();
-    let worst = |f: &dyn Fn(&crate::report::figures::CombinationFigures) -> Option<f64>| {
-        statistics.combinations.iter().filter_map(f).max_by(f64::total_cmp)
-    };
+    let worst =
+        |f: &dyn Fn(&octant_campaign::report::figures::CombinationFigures) -> Option<f64>| {
+            statistics.combinations.iter().filter_map(f).max_by(f64::total_cmp)
+        };
     let r95 = worst(&|figures| Some(figures.at_end?.r95.value));
     let rate = worst(&|figures| Some(figures.rate_nmi_per_h?.rate95.value));
     let discrepancies = statistics.discrepancies.len();
