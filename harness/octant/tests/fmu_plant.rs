@@ -285,23 +285,8 @@ fn bits(output: &Output) -> [u8; canonical::OUTPUT_BYTES] {
     bytes
 }
 
-/// Runs both and compares the plant's outputs, the core's answers, and truth. Without optimization the instruments
-/// are on the stack several times, which is more than a test's thread has.
+/// Runs both and compares the plant's outputs, the core's answers, and truth.
 fn same(
-    plant: &plant_config::PlantConfig,
-    faults: &[FaultSpec],
-    core: &core::CoreConfig,
-    samples: u64,
-    saves: &[u64],
-) -> Pair {
-    let thread = std::thread::Builder::new().stack_size(16 << 20);
-    std::thread::scope(|scope| {
-        let both = || both_the_same(plant, faults, core, samples, saves);
-        thread.spawn_scoped(scope, both).unwrap().join().unwrap()
-    })
-}
-
-fn both_the_same(
     plant: &plant_config::PlantConfig,
     faults: &[FaultSpec],
     core: &core::CoreConfig,
