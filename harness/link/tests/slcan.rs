@@ -93,8 +93,7 @@ fn heard(text: &[u8]) -> Vec<HeardFrame> {
 fn line(frame: &BusFrame) -> Vec<u8> {
     let (mut port, exchanged) = opened(b"");
     assert!(port.send(frame, Duration::ZERO).unwrap());
-    let sent = exchanged.lock().unwrap().sent.clone();
-    sent
+    exchanged.lock().unwrap().sent.clone()
 }
 
 #[test]
