@@ -1,4 +1,4 @@
-//! What holds of every table of variables.
+//! Rules for every table of variables.
 
 use octant_fmu::table::{DeclaredCausality, ElementType, Model};
 

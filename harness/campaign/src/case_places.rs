@@ -16,7 +16,7 @@ impl<'a> CasePlaces<'a> {
     pub(crate) fn of(plan: &'a Plan) -> Self {
         let cases = plan.cases.as_slice();
         let mut order: Vec<u32> = (0..).take(cases.len()).collect();
-        // Of several cases with the same id the last one counts.
+        // The last case with an id counts.
         order.sort_unstable_by_key(|at| (cases[*at as usize].id, u32::MAX - at));
         Self { cases, order }
     }

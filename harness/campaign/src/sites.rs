@@ -57,7 +57,7 @@ pub(super) fn of_cases(
             Some(at) => *at,
             None => {
                 all.push(of_case(plan, folder, case)?);
-                // There are at most ten million cases.
+                // A plan has at most ten million cases.
                 *known.entry(key).or_insert(u32::try_from(all.len() - 1).unwrap_or(u32::MAX))
             }
         };

@@ -144,8 +144,7 @@ pub fn of_results(
         counts.entry(id).or_default();
     }
     let mut streams: Vec<Option<StreamKey>> = Vec::new();
-    // Of each requirement the cases that check it, by their order among those that count, and whether they
-    // passed.
+    // Cases that check each requirement, by their order among those that count, and whether they passed.
     let mut shown: BTreeMap<&str, Vec<(u32, Option<bool>)>> = BTreeMap::new();
     let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
     status.cases = mine().filter(|(index, _)| *index < end).count();

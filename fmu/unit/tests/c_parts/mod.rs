@@ -15,7 +15,7 @@ mod registry;
 mod room;
 mod rooms;
 
-/// What `log` takes from its neighbours.
+/// Neighbour of `log` that it imports.
 mod mode {
     pub(super) use octant_fmu::c::ServedStandard;
 }

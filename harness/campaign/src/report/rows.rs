@@ -37,7 +37,7 @@ pub struct ReportRows<'a> {
     cases: &'a [Case],
     /// End of each row in the file.
     ends: Vec<u64>,
-    /// What is known of each row without reading it.
+    /// Facts of each row that are kept in memory.
     known: Vec<KnownRow>,
     names: ErrorNames,
     /// The file without a name, and the first error of reading it.
