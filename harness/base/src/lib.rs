@@ -13,6 +13,7 @@
 //! | [`interrupt`] | signals that end the program |
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
+//! | [`utc`] | times of the host as text |
 
 pub mod arrow;
 pub mod child;
@@ -25,3 +26,4 @@ pub mod names;
 pub mod number;
 pub mod pool;
 pub mod serial;
+pub mod utc;

@@ -112,7 +112,7 @@ fn times(report: &CampaignReport<'_>, folder: &Path) -> Result<Times, ReportErro
         first = Some(first.map_or(time, |first| first.min(time)));
         last = last.max(Some(time));
     }
-    let text = |time: SystemTime| humantime::format_rfc3339_seconds(time).to_string();
+    let text = |time: SystemTime| octant_base::utc::seconds(time);
     Ok((first.map(text), last.map(text)))
 }
 

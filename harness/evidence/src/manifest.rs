@@ -108,8 +108,8 @@ impl Manifest {
             rustc: some(build.rustc),
             host: Machine::this(),
             seed: facts.seed,
-            started: humantime::format_rfc3339_millis(facts.started).to_string(),
-            ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
+            started: octant_base::utc::millis(facts.started),
+            ended: octant_base::utc::millis(facts.ended),
             rerun: match &facts.campaign {
                 Some(campaign) => campaign.rerun.clone(),
                 None => shell_line(&facts.command_line),

@@ -130,7 +130,7 @@ fn wrapped(longitude_deg: f64) -> f64 {
 /// Run time as a date of KML.
 fn date(time_s: f64) -> String {
     let time = UNIX_EPOCH + Duration::from_nanos((time_s.max(0.0) * 1e9).round() as u64);
-    humantime::format_rfc3339_millis(time).to_string()
+    octant_base::utc::millis(time)
 }
 
 struct Xml<W: Write>(Writer<W>);

@@ -104,7 +104,7 @@ pub fn accept(history: &Path, id: &str, operator: Option<String>) -> Result<Acce
     let accepted = Accepted {
         schema: SCHEMA,
         night: id.to_owned(),
-        accepted: humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
+        accepted: octant_base::utc::seconds(std::time::SystemTime::now()),
         operator,
     };
     let text = serde_json::to_string_pretty(&accepted)

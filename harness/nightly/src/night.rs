@@ -167,7 +167,7 @@ pub fn all(history: &Path) -> Result<Vec<Night>, NightError> {
 /// on.
 #[must_use]
 pub fn free_name(history: &Path, now: SystemTime, known: &[String]) -> String {
-    let day = humantime::format_rfc3339_seconds(now).to_string();
+    let day = octant_base::utc::seconds(now);
     let day = day.get(..10).unwrap_or(&day).to_owned();
     let name = |n: u32| if n == 1 { day.clone() } else { format!("{day}.{n}") };
     let taken = |name: &String| known.contains(name) || nights(history).join(name).exists();

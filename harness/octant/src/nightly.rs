@@ -142,7 +142,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         print(&format!("night {} was interrupted: the same command resumes it\n", night.id))?;
         return Ok(Verdict::Inconclusive);
     }
-    night.ended = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
+    night.ended = Some(octant_base::utc::seconds(SystemTime::now()));
     let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
     let limits = ChangeThresholds { alpha: arguments.alpha, least: arguments.least };
     let rerun = |campaign: &str, case: &str| {
@@ -289,7 +289,7 @@ fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failur
     let night = Night {
         schema: SCHEMA,
         id: free_name(history, now, &known),
-        started: humantime::format_rfc3339_seconds(now).to_string(),
+        started: octant_base::utc::seconds(now),
         ended: None,
         program,
         host: Machine::this(),
@@ -335,7 +335,7 @@ fn remove_begun(history: &Path) -> Result<(), Failure> {
 
 /// Number of the day of a time in RFC 3339; 0 for one that isn't.
 fn day_of(time: &str) -> u64 {
-    let since = humantime::parse_rfc3339(time).ok().and_then(|t| t.duration_since(UNIX_EPOCH).ok());
+    let since = octant_base::utc::parse(time).ok().and_then(|t| t.duration_since(UNIX_EPOCH).ok());
     since.map_or(0, |since| since.as_secs() / 86_400)
 }
 

@@ -71,7 +71,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 Format::Toml => file::write(&requirements),
                 Format::StrictDoc => sdoc::write(&requirements).map_err(Failure::input)?,
                 Format::ReqIf => {
-                    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+                    let now = octant_base::utc::seconds(SystemTime::now());
                     reqif::write(&requirements, &now).map_err(Failure::input)?
                 }
             };

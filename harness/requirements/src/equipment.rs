@@ -14,19 +14,19 @@ pub struct Day(String);
 /// Reason why a text is no day.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DayError {
-    /// The text has another form, or the calendar has no such day.
+    /// The text has another form.
     #[error("found {found:?}, expected a day such as 2027-03-31")]
     Day {
         /// Text found.
         found: String,
     },
-    /// Month or day are out of range.
+    /// The calendar has no such day.
     #[error("found {found:?}, expected a day such as 2027-03-31: {error}")]
-    OutOfRange {
+    NotInCalendar {
         /// Text found.
         found: String,
         /// Reason.
-        error: humantime::TimestampError,
+        error: octant_base::utc::TimeTextError,
     },
     /// The text is no time of RFC 3339.
     #[error("found {found:?}, expected a time of RFC 3339: {error}")]
@@ -34,7 +34,7 @@ pub enum DayError {
         /// Text found.
         found: String,
         /// Reason.
-        error: humantime::TimestampError,
+        error: octant_base::utc::TimeTextError,
     },
 }
 
@@ -45,25 +45,23 @@ impl Day {
     /// If the calendar has no such day.
     pub fn parse(text: &str) -> Result<Self, DayError> {
         let found = || text.to_owned();
-        let wrong = || DayError::Day { found: found() };
         let is_form = text.len() == 10
             && text.bytes().enumerate().all(|(place, byte)| match place {
                 4 | 7 => byte == b'-',
                 _ => byte.is_ascii_digit(),
             });
         if !is_form {
-            return Err(wrong());
+            return Err(DayError::Day { found: found() });
         }
-        let at_midnight = humantime::parse_rfc3339(&format!("{text}T00:00:00Z"));
-        let time = at_midnight.map_err(|error| DayError::OutOfRange { found: found(), error })?;
-        // A day that isn't in the calendar is converted back to another one.
-        if Self::of(time).0 == text { Ok(Self(text.to_owned())) } else { Err(wrong()) }
+        let at_midnight = octant_base::utc::parse(&format!("{text}T00:00:00Z"));
+        at_midnight.map_err(|error| DayError::NotInCalendar { found: found(), error })?;
+        Ok(Self(text.to_owned()))
     }
 
     /// Day of a time of the host.
     #[must_use]
     pub fn of(time: SystemTime) -> Self {
-        let text = humantime::format_rfc3339_seconds(time).to_string();
+        let text = octant_base::utc::seconds(time);
         Self(text.get(..10).unwrap_or_default().to_owned())
     }
 
@@ -72,7 +70,7 @@ impl Day {
     /// # Errors
     /// If it is no such time.
     pub fn of_text(text: &str) -> Result<Self, DayError> {
-        let time = humantime::parse_rfc3339(text)
+        let time = octant_base::utc::parse(text)
             .map_err(|error| DayError::Time { found: text.to_owned(), error })?;
         Ok(Self::of(time))
     }
