@@ -1,5 +1,5 @@
-//! Cases that begin alike: cases of one scenario and seed that differ by their faults alone. What they have in common
-//! before the first fault sets in is computed once.
+//! Cases that begin alike: cases of one scenario and seed that differ by their faults and their navigation alone.
+//! What they have in common, before the first fault sets in or the calibration ends, is computed once.
 
 use super::case::{CaseError, CaseResult, hash_of};
 use super::plan::{Case, PlannedScenario};
@@ -15,6 +15,9 @@ use std::sync::{Mutex, PoisonError};
 /// to the end.
 pub const MOST: usize = 8;
 
+/// Keys that count after the beginning.
+const LATER: [&str; 2] = ["faults.", "procedure.navigation."];
+
 /// Puts cases that begin alike together, by their places in `cases`. The groups stand in the order of their
 /// first cases, and none is larger than [`MOST`], or than leaves each of `jobs` two of them.
 #[must_use]
@@ -28,7 +31,8 @@ pub fn groups(cases: &[&Case], jobs: usize) -> Vec<Vec<usize>> {
         if seed.replace(case.seed) != Some(case.seed) {
             open.clear();
         }
-        let besides = case.set.iter().map(|set| &**set).filter(|set| !set.starts_with("faults."));
+        let differs = |set: &&str| LATER.iter().any(|keys| set.starts_with(keys));
+        let besides = case.set.iter().map(|set| &**set).filter(|set| !differs(set));
         let key = (&*case.scenario, besides.collect());
         match open.get(&key).map(|group| &mut groups[*group]) {
             Some(group) if group.len() < most => group.push(place),

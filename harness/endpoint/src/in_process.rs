@@ -1,6 +1,8 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
+use octant_calibration::config::NavigationPlan;
+use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::{Core, CoreConfig};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance};
@@ -20,9 +22,7 @@ impl InProcess {
     ///
     /// # Errors
     /// If the configuration contradicts itself.
-    pub fn new(
-        config: &CoreConfig,
-    ) -> Result<Self, octant_calibration::state_machine::CoreConfigError> {
+    pub fn new(config: &CoreConfig) -> Result<Self, CoreConfigError> {
         Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
     }
 
@@ -30,6 +30,19 @@ impl InProcess {
     #[must_use]
     pub fn core(&self) -> &Core {
         &self.core
+    }
+
+    /// Plans another navigation after the calibration that runs: see [`Core::plan_navigation`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn plan_navigation(
+        &mut self,
+        navigation: Option<NavigationPlan>,
+    ) -> Result<(), CoreConfigError> {
+        self.core.plan_navigation(navigation.clone())?;
+        self.config.navigation = navigation;
+        Ok(())
     }
 
     /// Returns the core itself, after its last step.

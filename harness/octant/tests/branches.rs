@@ -5,7 +5,7 @@ use octant_base::control::Control;
 use octant_faults::FaultSpec;
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
-use octant_run::branches::{BranchPlan, run_branches};
+use octant_run::branches::{BranchPlan, first_alike, run_branches};
 use octant_run::method::{MethodError, MethodRun};
 use octant_run::stem::Stem;
 use octant_run::{Ended, Prepared, StreamKeeping, assemble, run_method};
@@ -103,6 +103,60 @@ proptest! {
         let found = shared(&scenarios, seed, StreamKeeping::Hash, 1);
         prop_assert_eq!(found, undivided(&scenarios, seed, StreamKeeping::Hash));
     }
+}
+
+/// A navigation of its own: its length in tenths of a second, and a rotation; `None`: the run ends with the
+/// calibration.
+fn navigating(scenario: &Scenario, navigation: Option<(u64, bool)>) -> Scenario {
+    let mut scenario = scenario.clone();
+    let Some((tenths, rotates)) = navigation else {
+        scenario.navigation = None;
+        return scenario;
+    };
+    let plan = scenario.navigation.as_mut().unwrap();
+    plan.duration_s = Some(tenths as f64 / 10.0);
+    if !rotates {
+        plan.dwell_s = 1.0;
+    }
+    scenario
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn runs_that_navigate_otherwise_share_the_calibration(
+        sets in proptest::collection::vec((
+            proptest::collection::vec(draw::spec(), 0..3),
+            prop::option::weighted(0.8, (prop::sample::select(vec![1u64, 17, 30, 45]), any::<bool>())),
+        ), 2..7),
+        seed in 0..1000u64,
+        jobs in 1..4usize,
+        keeping in prop::sample::select(vec![StreamKeeping::Hash, StreamKeeping::HashAlone, StreamKeeping::None]),
+    ) {
+        let scenarios: Vec<Scenario> = (sets.iter())
+            .map(|(specs, navigation)| navigating(&scenario(specs), *navigation))
+            .filter(|scenario| scenario.station(seed).is_ok())
+            .collect();
+        let found = shared(&scenarios, seed, keeping, jobs);
+        for (found, expected) in found.iter().zip(undivided(&scenarios, seed, keeping)) {
+            prop_assert_eq!(found, &expected);
+        }
+    }
+}
+
+/// Runs and their twins as a suite has them: each navigation has its own twin.
+#[test]
+fn each_navigation_has_a_twin_of_its_own() {
+    let clean = scenario(&[]);
+    let scenarios = [Some((30, true)), Some((30, true)), Some((45, true)), Some((30, false)), None]
+        .map(|navigation| navigating(&clean, navigation));
+    let control = Control::default();
+    let method = Method::Primary;
+    let plans: Vec<BranchPlan<'_>> = (scenarios.iter())
+        .map(|scenario| BranchPlan { scenario, method, seed: 3, control: &control })
+        .collect();
+    assert_eq!(first_alike(&plans), [0, 0, 2, 3, 4]);
 }
 
 #[test]

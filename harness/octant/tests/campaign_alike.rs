@@ -46,7 +46,7 @@ limit = \"10 nmi\"
 
 const CAMPAIGN: &str = "schema = 1
 title = \"alike\"
-replicates = 2
+replicates = 1
 [[scenarios]]
 id = \"alike\"
 file = \"alike.toml\"
@@ -54,6 +54,10 @@ file = \"alike.toml\"
 name = \"latitude\"
 key = \"site.latitude\"
 values = [\"0 deg\", \"60 deg\"]
+[[factors]]
+name = \"navigation\"
+key = \"procedure.navigation.duration\"
+values = [\"10 min\", \"15 min\"]
 [[factors]]
 name = \"fault\"
 faults = [[], [\"spike-1\"], [\"slip-1\"], [\"spike-1\", \"dropout-1\"]]
@@ -70,7 +74,7 @@ fn plan(folder: &Path) -> Plan {
 }
 
 #[test]
-fn groups_have_one_scenario_and_seed_and_differ_by_faults() {
+fn groups_have_one_scenario_and_seed_and_differ_by_faults_and_navigation() {
     let folder = tempfile::tempdir().unwrap();
     let plan = plan(folder.path());
     let cases: Vec<&Case> = plan.cases.iter().collect();

@@ -182,6 +182,11 @@ impl Done {
         Self { plan, ..Self::default() }
     }
 
+    /// Takes another plan, with the same calibration.
+    pub(super) fn plan(&mut self, plan: PlannedWork) {
+        self.plan = plan;
+    }
+
     /// Returns the planned work.
     #[must_use]
     pub fn planned(&self) -> Work {

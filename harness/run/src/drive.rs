@@ -73,6 +73,11 @@ impl Steps {
         }
     }
 
+    /// Sets the number of steps after which the loop ends.
+    pub(super) fn last(&mut self, total: u64) {
+        self.total = total;
+    }
+
     /// Epoch that the source delivered in the last step.
     pub(super) fn epoch(&self) -> &Epoch {
         &self.epoch

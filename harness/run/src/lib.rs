@@ -15,6 +15,8 @@
 mod aligned;
 pub mod assemble;
 pub mod at_rest;
+mod beginning;
+mod branch;
 pub mod branches;
 pub mod done;
 pub mod drive;
@@ -43,6 +45,7 @@ pub mod scores_text;
 mod solution;
 pub mod stem;
 pub mod stepped;
+mod trunk;
 pub mod twin;
 pub mod unit;
 pub mod watch;

@@ -1,6 +1,6 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
-use super::branches::BranchPlan;
+use super::beginning::BranchPlan;
 use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
 use super::with_twin::run_with_twin;
 use octant_base::control::Control;

@@ -1,6 +1,7 @@
 //! The beginning of a run with faults, kept for runs with some of its faults.
 
-use super::branches::{Branch, BranchPlan, Parts, beginning, until_due};
+use super::beginning::{BranchPlan, Parts, beginning, until_due};
+use super::branch::Branch;
 use super::drive::{Books, Steps};
 use super::faulted::Faulted;
 use super::host::RunHost;

@@ -160,6 +160,11 @@ impl Watcher {
         }
     }
 
+    /// Takes the plan of a run that differs from the present one by its navigation.
+    pub(super) fn plan(&mut self, plan: PlannedWork) {
+        self.done.plan(plan);
+    }
+
     /// Sets which quantities the unit of a recording tells, from the recording's metadata. A recording
     /// without a statement has all of them.
     pub fn recorded(&mut self, run: &BTreeMap<String, String>) {

@@ -3,7 +3,8 @@
 //! The recorded run is the trunk here, with its station at its side. Before the first fault sets in the twin
 //! branches off, on a thread of its own.
 
-use super::branches::{Beginning, Branch, BranchPlan, Parts, beginning, until_due};
+use super::beginning::{Beginning, BranchPlan, Parts, beginning, until_due};
+use super::branch::Branch;
 use super::drive::{Books, Ended, Steps};
 use super::host::RunHost;
 use super::in_time::{CONTROL_EPOCHS, InTime};

@@ -23,6 +23,13 @@ impl PlantSource {
         Ok(Self { plant: Plant::new(config)?, total: samples, left: samples })
     }
 
+    /// Sets the number of samples in all; those that it has delivered count.
+    #[must_use]
+    pub fn lasting(self, samples: u64) -> Self {
+        let delivered = self.total - self.left;
+        Self { total: samples, left: samples.saturating_sub(delivered), ..self }
+    }
+
     /// Returns the plant.
     #[must_use]
     pub fn plant(&self) -> &Plant {

@@ -6,7 +6,7 @@ use super::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VR
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{SIXTEEN, from_degrees};
-use octant_calibration::state_machine::STATE_FORMAT;
+use octant_calibration::state_machine::{CoreConfigError, STATE_FORMAT};
 use octant_earth::frames::{c_nc, quaternion_from_matrix};
 use octant_earth::units::*;
 use octant_earth::{UnitQuaternion, Vector3};
@@ -187,6 +187,41 @@ fn every_state_is_read_back() {
         assert!(loaded.concluded().is_none(), "a stored state has no covariance of the past");
         assert_eq!(shown(&loaded), shown(&core), "{name}");
     }
+}
+
+#[test]
+fn a_navigation_planned_while_the_calibration_runs_is_that_of_the_configuration() {
+    let roomy = std::thread::Builder::new().stack_size(16 << 20);
+    roomy.spawn(navigations_are_planned_anew).unwrap().join().unwrap();
+}
+
+fn navigations_are_planned_anew() {
+    let mut first = config(kalman(), Screening::hardened(Base::Still));
+    first.calibration.as_mut().unwrap().duration_s = 250.0;
+    let rotation = from_degrees(&[(0.0, 0.0, 1.0), (90.0, 0.0, 2.0)], 1).unwrap();
+    let other = NavigationPlan { duration_s: Some(10.0), rotation, dwell_s: 3.0 };
+    let plans = [first.navigation.clone(), Some(other), None];
+    let end = Core::new(&first).unwrap().calibration_samples() as usize;
+    for navigation in plans {
+        let planned = CoreConfig { navigation: navigation.clone(), ..first.clone() };
+        for at in [0, 1, end / 2, end - 1] {
+            let mut core = after(&first, at);
+            core.plan_navigation(navigation.clone()).unwrap();
+            go_on(&mut core, at, end + 700);
+            assert!(core.table().is_some(), "{:?}", core.refusal());
+            assert_eq!(bytes(&core), bytes(&after(&planned, end + 700)), "{at} {navigation:?}");
+        }
+        // When it has begun it is too late.
+        let mut core = after(&first, end);
+        let before = bytes(&core);
+        assert_eq!(core.plan_navigation(navigation), Err(CoreConfigError::CalibrationOver));
+        assert_eq!(bytes(&core), before);
+    }
+    let mut core = after(&first, 100);
+    let before = bytes(&core);
+    let endless = NavigationPlan { dwell_s: f64::NAN, ..first.navigation.clone().unwrap() };
+    assert!(core.plan_navigation(Some(endless)).is_err());
+    assert_eq!(bytes(&core), before, "a plan that is refused changes nothing");
 }
 
 /// Every field of a core but the covariance at the end of its calibration.

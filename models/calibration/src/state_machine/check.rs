@@ -53,6 +53,9 @@ pub enum CoreConfigError {
         /// Value found, s.
         found_s: f64,
     },
+    /// A navigation can't be planned any more.
+    #[error("plan another navigation: the calibration has ended")]
+    CalibrationOver,
     /// A test for identical counts that every sample would fail.
     #[error("the number of identical samples is {found}, at least 2 are expected")]
     StuckSamples {

@@ -25,7 +25,7 @@ pub use judgement::CalibrationRefusal;
 pub use state::FORMAT as STATE_FORMAT;
 
 use crate::compensation::Compensation;
-use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, Site};
+use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, NavigationPlan, Site};
 use crate::continuity::{Continuity, POINTS, block_ticks};
 use crate::covariance::SolutionCovariance;
 use crate::filter::CalibrationFilter;
@@ -144,6 +144,12 @@ fn ticks(duration_s: f64, sample_s: f64) -> u64 {
     (duration_s / sample_s + 0.5) as u64
 }
 
+/// Samples of a navigation; one without a duration never ends.
+fn navigation_ticks(plan: Option<&NavigationPlan>, sample_s: f64) -> u64 {
+    let duration_s = plan.and_then(|plan| plan.duration_s);
+    duration_s.map_or(u64::MAX, |duration_s| ticks(duration_s, sample_s))
+}
+
 fn strapdown_at(site: &Site, q_nb: &UnitQuaternion<f64>, velocity: Vector3<f64>) -> Strapdown {
     let Site { latitude_rad, longitude_rad, height_m } = *site;
     Strapdown::new(q_nb, velocity, latitude_rad, longitude_rad, height_m, Vertical::Free)
@@ -214,9 +220,7 @@ impl Core {
             gimbals: Gimbals::default(),
             answered: Default::default(),
         };
-        if let Some(duration_s) = config.navigation.as_ref().and_then(|plan| plan.duration_s) {
-            core.navigation_ticks = ticks(duration_s, sample_s);
-        }
+        core.navigation_ticks = navigation_ticks(config.navigation.as_ref(), sample_s);
         if let Some(calibration) = &config.calibration {
             core.start_calibration(calibration)?;
         }
@@ -224,6 +228,26 @@ impl Core {
             core.leave_alignment();
         }
         Ok(core)
+    }
+
+    /// Plans another navigation, or none, after the calibration that runs. Nothing before its end
+    /// depends on that: the core goes on as one that was made with this plan.
+    ///
+    /// # Errors
+    /// If the plan contradicts the configuration, or the calibration has ended; then nothing has
+    /// changed.
+    pub fn plan_navigation(
+        &mut self,
+        navigation: Option<NavigationPlan>,
+    ) -> Result<(), CoreConfigError> {
+        if self.config.calibration.is_none() || matches!(self.mode, Mode::Navigating | Mode::Done) {
+            return Err(CoreConfigError::CalibrationOver);
+        }
+        let config = CoreConfig { navigation, ..self.config.clone() };
+        check::check(&config)?;
+        self.navigation_ticks = navigation_ticks(config.navigation.as_ref(), self.sample_s);
+        self.config = config;
+        Ok(())
     }
 
     /// Plans the stops. The clock of the calibration starts with the first sample: a coarse
@@ -326,6 +350,12 @@ impl Core {
     #[must_use]
     pub fn config(&self) -> &CoreConfig {
         &self.config
+    }
+
+    /// Number of samples of the calibration, missing ones included; 0 without one.
+    #[must_use]
+    pub fn calibration_samples(&self) -> u64 {
+        self.calibration_ticks
     }
 
     /// Present output: before the first sample, or as at the last step, without flags.
