@@ -5,6 +5,7 @@
 //! | [`names`] | the known name that is nearest to one that isn't known |
 //! | [`display`] | units in which errors are shown |
 //! | [`number`] | numbers as people read them |
+//! | [`decimal`] | times as decimal text |
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
 //! | [`code`] | the file that this code is in |
@@ -19,6 +20,7 @@ pub mod arrow;
 pub mod child;
 pub mod code;
 pub mod control;
+pub mod decimal;
 pub mod display;
 pub mod hash;
 pub mod interrupt;

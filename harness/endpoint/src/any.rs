@@ -2,7 +2,7 @@
 
 use super::{
     Conclusion, Endpoint, EndpointError, FmuEndpoint, InProcess, LiveEndpoint, RemoteClock, Sent,
-    Tells,
+    SolutionEndpoint, Tells,
 };
 use octant_faults::wire::Wired;
 use octant_realtime::clock::MonotonicTime;
@@ -16,6 +16,7 @@ enum Kind {
     InProcess(Box<InProcess>),
     Fmu(Box<FmuEndpoint>),
     Live(Box<LiveEndpoint>),
+    Solution(Box<SolutionEndpoint>),
 }
 
 macro_rules! of {
@@ -28,7 +29,8 @@ macro_rules! of {
     };
 }
 
-of!(InProcess => InProcess, FmuEndpoint => Fmu, LiveEndpoint => Live);
+of!(InProcess => InProcess, FmuEndpoint => Fmu, LiveEndpoint => Live,
+    SolutionEndpoint => Solution);
 
 macro_rules! each {
     ($any:expr, $endpoint:ident => $call:expr) => {
@@ -36,6 +38,7 @@ macro_rules! each {
             Kind::InProcess($endpoint) => $call,
             Kind::Fmu($endpoint) => $call,
             Kind::Live($endpoint) => $call,
+            Kind::Solution($endpoint) => $call,
         }
     };
 }

@@ -6,12 +6,14 @@ mod fmu;
 mod in_process;
 mod live;
 mod served;
+mod solution;
 
 pub use any::AnyEndpoint;
 pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
+pub use solution::SolutionEndpoint;
 
 use octant_calibration::CoreConfig;
 use octant_calibration::covariance::SolutionCovariance;
@@ -26,6 +28,7 @@ use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
 use octant_scenario::{self as scenario, Scenario};
+use octant_trajectory::PairsError;
 
 /// Realisation of the calibration core.
 pub trait Endpoint {
@@ -127,11 +130,14 @@ pub struct Tells {
     pub velocity: bool,
     /// Attitude.
     pub attitude: bool,
+    /// True if the answers are computed from the samples of the run, which they then have to follow.
+    pub follows: bool,
 }
 
 impl Tells {
     /// All quantities.
-    pub const ALL: Self = Self { commands: true, position: true, velocity: true, attitude: true };
+    pub const ALL: Self =
+        Self { commands: true, position: true, velocity: true, attitude: true, follows: true };
 }
 
 /// Statement of a core at the end of a run, as far as its realisation provides one.
@@ -184,6 +190,9 @@ pub enum EndpointOpenError {
     /// An FMU can't be used.
     #[error(transparent)]
     Use(#[from] UseError),
+    /// A solution can't be used.
+    #[error(transparent)]
+    Solution(#[from] Box<PairsError>),
     /// A device can't be used.
     #[error("begin a session with the device: {0}")]
     Live(#[from] SessionError),
@@ -223,6 +232,10 @@ pub fn open(
     scenario: &Scenario,
     config: &CoreConfig,
 ) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
+    if let scenario::SourceSpec::Solution(spec) = &scenario.source {
+        let endpoint = SolutionEndpoint::open(scenario, spec).map_err(Box::new)?;
+        return Ok(Some(endpoint.into()));
+    }
     match &scenario.endpoint {
         scenario::EndpointSpec::InProcess => Ok(None),
         scenario::EndpointSpec::Fmu(fmu) => {

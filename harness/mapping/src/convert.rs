@@ -244,17 +244,3 @@ pub(super) fn article(word: &str) -> String {
     let vowel = word.starts_with(['A', 'E', 'I', 'O', 'a', 'e', 'i', 'o']);
     format!("{} {word}", if vowel { "an" } else { "a" })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_conversion_and_its_inverse() {
-        let celsius = ChannelConversion { factor: 1.0, offset: 273.15 };
-        assert_eq!(celsius.to_si(20.0), 293.15);
-        assert!((celsius.from_si(293.15) - 20.0).abs() < 1e-12);
-        assert_eq!(ChannelConversion::IDENTITY.to_si(-0.0).to_bits(), (-0.0f64).to_bits());
-        assert_eq!(ChannelConversion::IDENTITY.from_si(-0.0).to_bits(), (-0.0f64).to_bits());
-    }
-}

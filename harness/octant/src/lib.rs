@@ -39,6 +39,7 @@ mod run;
 mod run_folder;
 mod run_system;
 mod score;
+mod score_solution;
 #[cfg(feature = "dashboard")]
 mod screen;
 mod selftest;

@@ -1,6 +1,7 @@
-//! `octant score`: scoring alone, from a recording that has truth and outputs.
+//! `octant score`: scoring alone, from a recording that has truth and outputs, or of a solution that is made already.
 
 use crate::failure::Failure;
+use crate::score_solution::SolutionArguments;
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::display::{DisplayUnits, UnitChoice};
@@ -19,8 +20,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder of a run, or a recording, an MCAP file.
-    #[arg(value_name = "RUN")]
-    run: PathBuf,
+    #[arg(value_name = "RUN", required_unless_present = "solution")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    solution: SolutionArguments,
     /// Units of errors on the terminal, instead of the scenario's: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
     /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
     #[arg(long, value_name = "UNIT,UNIT")]
@@ -70,7 +73,14 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = &crate::run_folder::recording_of(&arguments.run)?;
+    let Some(run) = &arguments.run else {
+        let Some(solution) = &arguments.solution.solution else {
+            return Err(Failure::input("expected a run, or --solution"));
+        };
+        let units = arguments.units.map(|units| units.settings()).unwrap_or_default();
+        return arguments.solution.command(solution, (units, arguments.json));
+    };
+    let path = &crate::run_folder::recording_of(run)?;
     let (scenario, method, seed) = scenario_of(path)?;
     let (watcher, last_event) = super::report::watch(path, &scenario, method)?;
     let navigation = match watcher.drift() {

@@ -88,6 +88,7 @@ mod scenario_errors;
 mod scenario_files;
 mod scenario_schema;
 mod score;
+mod score_solution;
 mod selftest;
 mod solution;
 mod source_uri;

@@ -50,6 +50,35 @@ pub struct NavigationContext {
     pub height_m: f64,
     /// Length of the navigation, s.
     pub navigation_s: f64,
+    /// What is in doubt because the times of solution and reference may differ.
+    pub timing: Option<TimeDoubt>,
+}
+
+/// How far two clocks may differ, and how quickly the reference changes meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeDoubt {
+    /// Expanded uncertainty (95 %) of the difference, s.
+    pub uncertainty_s: f64,
+    /// Largest speed of the reference, m/s.
+    pub speed_mps: f64,
+    /// Largest acceleration, m/s².
+    pub acceleration_mps2: f64,
+    /// Largest turning rate of the case, rad/s.
+    pub turning_radps: f64,
+}
+
+impl TimeDoubt {
+    /// Expanded uncertainty that follows for a measure of the navigation, in its unit.
+    fn of(&self, bare: &str, against: &NavigationContext) -> f64 {
+        let Self { uncertainty_s, speed_mps, acceleration_mps2, turning_radps } = *self;
+        if is_of_position(bare) {
+            of_position(bare, speed_mps * uncertainty_s, against)
+        } else if bare.contains("velocity") {
+            over_time(bare, acceleration_mps2 * uncertainty_s, against)
+        } else {
+            over_time(bare, (turning_radps * uncertainty_s).to_degrees() * 60.0, against)
+        }
+    }
 }
 
 /// Description of the decision rule for the readers of a result.
@@ -80,15 +109,19 @@ impl Decision {
         against: &NavigationContext,
     ) -> Result<f64, UnknownUncertainty> {
         let bare = measure.trim_matches('|');
+        let of_timing =
+            against.timing.filter(|_| is_referred(bare) && bare.contains("navigation."));
+        let of_timing = of_timing.map_or(0.0, |timing| timing.of(bare, against));
         if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
-            return Ok(stated.uncertainty);
+            return Ok(libm::hypot(stated.uncertainty, of_timing));
         }
         if !is_referred(bare) {
             return Ok(0.0);
         }
         match self.position_m {
             Some(position_m) if bare.contains("navigation.") && is_of_position(bare) => {
-                Ok(of_position(bare, position_m, against))
+                // Neither knows of the other.
+                Ok(libm::hypot(of_position(bare, position_m, against), of_timing))
             }
             _ if against.simulated || self.rule == Some(DecisionRule::SimpleAcceptance) => Ok(0.0),
             _ => Err(UnknownUncertainty),
@@ -116,6 +149,14 @@ impl Decision {
             }
         };
         let mut known = Vec::new();
+        if let Some(timing) = &against.timing {
+            known.push(format!(
+                "times of solution and reference ± {} s at up to {:.3} m/s and {:.3} deg/s",
+                timing.uncertainty_s,
+                timing.speed_mps,
+                timing.turning_radps.to_degrees()
+            ));
+        }
         if let Some(position_m) = self.position_m {
             known.push(format!("reference position ± {position_m} m"));
         }
@@ -156,7 +197,6 @@ fn is_of_position(bare: &str) -> bool {
 fn of_position(bare: &str, position_m: f64, against: &NavigationContext) -> f64 {
     let (sin, cos) = (libm::sin(against.latitude_rad), libm::cos(against.latitude_rad));
     let arcmin = |radius_m: f64| (position_m / radius_m).to_degrees() * 60.0;
-    let hours = (against.navigation_s / 3600.0).max(f64::MIN_POSITIVE);
     let band = if bare.contains("radial") {
         position_m / NMI_M
     } else if bare.contains("longitude") {
@@ -164,6 +204,12 @@ fn of_position(bare: &str, position_m: f64, against: &NavigationContext) -> f64 
     } else {
         arcmin(meridian_radius_m(sin) + against.height_m)
     };
+    over_time(bare, band, against)
+}
+
+/// Uncertainty of a measure over time that follows from that of each value.
+fn over_time(bare: &str, band: f64, against: &NavigationContext) -> f64 {
+    let hours = (against.navigation_s / 3600.0).max(f64::MIN_POSITIVE);
     // Slope: the reference is wrong by the whole uncertainty at one end, and by the same in the other
     // direction at the other end. Rate: in a regression through the origin, a constant error c leaves
     // 3c/2T.

@@ -1,7 +1,7 @@
 //! Guard bands of decisions.
 
 use octant_requirements::decision::{
-    Decision, DecisionRule, NavigationContext, Uncertainty, in_band,
+    Decision, DecisionRule, NavigationContext, TimeDoubt, Uncertainty, in_band,
 };
 
 const HERE: NavigationContext = NavigationContext {
@@ -9,7 +9,41 @@ const HERE: NavigationContext = NavigationContext {
     latitude_rad: std::f64::consts::FRAC_PI_3,
     height_m: 0.0,
     navigation_s: 86_400.0,
+    timing: None,
 };
+
+#[test]
+fn what_moves_is_in_doubt_by_the_difference_of_the_clocks() {
+    let timing = TimeDoubt {
+        uncertainty_s: 0.1,
+        speed_mps: 10.0,
+        acceleration_mps2: 0.5,
+        turning_radps: 0.02,
+    };
+    let moving = NavigationContext { timing: Some(timing), ..HERE };
+    let band = |position_m, measure: &str| decision(position_m).uncertainty(measure, &moving);
+    // 10 m/s for 0.1 s are a metre; a reference that is uncertain by 0.75 m makes 1.25 of it.
+    let radial = "navigation.radial_error_nmi.max";
+    assert!((band(Some(0.75), radial).unwrap() - 1.25 / 1852.0).abs() < 1e-15);
+    assert!(band(None, radial).is_err(), "the reference itself is unknown");
+    let stated = |measure: &str, uncertainty| Decision {
+        uncertainties: vec![Uncertainty { measure: measure.to_owned(), uncertainty }],
+        ..Decision::default()
+    };
+    for (measure, expected) in [
+        ("navigation.heading_error_arcmin.max", 0.002_f64.to_degrees() * 60.0),
+        ("navigation.velocity_north_error_mps.rms", 0.05),
+    ] {
+        assert!(decision(None).uncertainty(measure, &moving).is_err(), "{measure}");
+        // Added to what is stated.
+        let found = stated(measure, 0.3).uncertainty(measure, &moving).unwrap();
+        assert!((found - (0.3_f64.powi(2) + expected.powi(2)).sqrt()).abs() < 1e-12, "{found}");
+    }
+    assert_eq!(stated(radial, 2.0).uncertainty("calibration.nis_mean", &moving), Ok(0.0));
+    assert!(
+        decision(None).decided(&moving).text.contains("times of solution and reference ± 0.1 s")
+    );
+}
 
 fn decision(position_m: Option<f64>) -> Decision {
     Decision { position_m, ..Decision::default() }

@@ -14,7 +14,7 @@ use octant_evidence::disposition::Dispositions;
 use octant_report::counterfactual::in_words;
 use octant_report::{ReportData, ReportProvenance, SolutionSeries, StopLabel};
 use octant_requirements::Verdict;
-use octant_requirements::decision::{DecisionRule, NavigationContext};
+use octant_requirements::decision::{DecisionRule, NavigationContext, TimeDoubt};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_scenario::{MotionSpec, Scenario};
@@ -124,6 +124,7 @@ pub fn assemble_with(
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
         navigation_s: done.navigation_s.unwrap_or_default(),
+        timing: timing(scenario, &primary),
     };
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
@@ -203,6 +204,15 @@ pub fn assemble_with(
         provenance: ReportProvenance::default(),
     };
     Ok(Run { summary, report })
+}
+
+/// What is in doubt because the times of a solution and its reference may differ.
+fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
+    let SourceSpec::Solution(spec) = &scenario.source else { return None };
+    let [speed_mps, acceleration_mps2, turning_radps] = run.watcher.moved.rates();
+    let uncertainty_s = spec.offset_uncertainty_s;
+    let doubt = TimeDoubt { uncertainty_s, speed_mps, acceleration_mps2, turning_radps };
+    (uncertainty_s > 0.0).then_some(doubt)
 }
 
 /// Lists the texts of a scenario's requirements by their ids.

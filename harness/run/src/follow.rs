@@ -52,6 +52,7 @@ impl RunFollower {
     pub fn new(tells: Option<Tells>) -> Self {
         Self {
             told: tells
+                .filter(|tells| tells.follows)
                 .map_or([false; 3], |tells| [tells.position, tells.velocity, tells.attitude]),
             parts: [Standing::default(); 3],
             longest: [(0, 0); 3],

@@ -45,6 +45,7 @@ pub mod scores_text;
 mod solution;
 pub mod stem;
 pub mod stepped;
+mod true_motion;
 mod trunk;
 pub mod twin;
 pub mod unit;

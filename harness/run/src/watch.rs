@@ -9,6 +9,7 @@ use super::done::{Done, PlannedWork};
 use super::filtered::FilteredSeries;
 use super::follow::RunFollower;
 use super::solution::{attitude_error, errors, velocity_error};
+use super::true_motion::TrueMotion;
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
@@ -88,6 +89,8 @@ pub struct Watcher {
     pub nis: Vec<NisPoint>,
     /// Errors of attitude and velocity over the last navigation.
     pub solution: SolutionSeries,
+    /// Motion of the truth while the unit navigates.
+    pub moved: TrueMotion,
     /// Gimbal angles.
     pub gimbals: Vec<GimbalPoint>,
     /// Parameters as last reported.
@@ -152,6 +155,7 @@ impl Watcher {
             convergence: Vec::new(),
             nis: Vec::new(),
             solution: SolutionSeries::default(),
+            moved: TrueMotion::default(),
             gimbals: Vec::new(),
             last_parameters: None,
             last_mode: Mode::default(),
@@ -419,6 +423,7 @@ impl Watcher {
             return;
         }
         self.scored_ns = Some(now_ns);
+        self.moved.push(now_ns, truth);
         self.drift_samples += 1;
         let sample = DriftSample {
             t_s: (now_ns - start_ns) as f64 * 1e-9,

@@ -29,6 +29,7 @@ pub mod resolve;
 mod schema;
 pub mod suite;
 mod tour;
+pub mod trajectory;
 mod unit;
 mod write;
 

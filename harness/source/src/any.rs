@@ -4,7 +4,9 @@ use super::fmu::instrument::FmuSource;
 use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
 use super::measured::MeasuredReference;
-use super::{Epoch, LiveSource, PlantSource, Replay, Source, SourceError, TextSource};
+use super::{
+    Epoch, LiveSource, PlantSource, Replay, SolutionSource, Source, SourceError, TextSource,
+};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
@@ -29,6 +31,7 @@ enum Kind {
     Replay(Box<Replay>),
     Text(Box<TextSource>),
     Live(Box<LiveSource>),
+    Solution(Box<SolutionSource>),
 }
 
 macro_rules! of {
@@ -42,7 +45,7 @@ macro_rules! of {
 }
 
 of!(PlantSource => Plant, MovedPlant => Moved, FmuSource => Fmu, Replay => Replay,
-    TextSource => Text, LiveSource => Live);
+    TextSource => Text, LiveSource => Live, SolutionSource => Solution);
 
 macro_rules! each {
     ($any:expr, $source:ident => $call:expr) => {
@@ -53,6 +56,7 @@ macro_rules! each {
             Kind::Replay($source) => $call,
             Kind::Text($source) => $call,
             Kind::Live($source) => $call,
+            Kind::Solution($source) => $call,
         }
     };
 }

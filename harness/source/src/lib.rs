@@ -4,7 +4,6 @@
 mod any;
 pub mod configure;
 mod counting;
-mod decimal;
 mod fields;
 mod fmu;
 mod foreign;
@@ -18,6 +17,7 @@ mod reference_mcap;
 mod reference_text;
 mod replay;
 mod rows;
+mod solution;
 mod text;
 
 pub use any::AnySource;
@@ -25,6 +25,7 @@ pub use from_scenario::{check, open};
 pub use live::LiveSource;
 pub use plant::PlantSource;
 pub use replay::Replay;
+pub use solution::SolutionSource;
 pub use text::TextSource;
 
 use octant_plant::Truth;
@@ -113,6 +114,9 @@ pub enum SourceError {
     /// A file name could not be expanded.
     #[error(transparent)]
     FileName(octant_scenario::FileNameError),
+    /// The files of a solution can't be compared.
+    #[error(transparent)]
+    Solution(Box<octant_trajectory::PairsError>),
     /// The table can't be driven as the scenario asks.
     #[error("turn the table: {0}")]
     Table(octant_turntable::Error),

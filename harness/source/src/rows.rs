@@ -1,8 +1,8 @@
 //! Reads rows of a delimited text file and keeps the position for error messages.
 
 use super::SourceError;
-use super::decimal::decimal_ns;
 use csv::StringRecord;
+use octant_base::decimal::decimal_ns;
 use octant_base::number::counted;
 use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
 use std::fs::File;
@@ -152,7 +152,7 @@ impl Rows {
     /// Returns a field as a time, ns.
     pub(super) fn time_ns(&self, index: usize, unit: TimeUnit) -> Result<u64, SourceError> {
         let text = self.field(index)?;
-        decimal_ns(text, unit).ok_or_else(|| {
+        decimal_ns(text, unit.nanosecond_exponent()).ok_or_else(|| {
             let reason = format!("found {text:?}, expected a time from 0 to 2^64 ns");
             self.column_error(index, reason)
         })

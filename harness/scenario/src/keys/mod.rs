@@ -19,6 +19,7 @@ mod screening;
 mod source;
 mod suite;
 pub(crate) mod table;
+mod trajectory;
 
 pub(crate) use calibration::{
     AidingKeys, AlignmentKeys, AlignmentMethod, CalibrationKeys, EstimatorName, InitialKeys,
@@ -47,6 +48,7 @@ pub(crate) use source::{
 };
 pub(crate) use suite::{CaseKeys, SuiteKeys};
 pub(crate) use table::{At, FromTable, Keys, Raw};
+pub(crate) use trajectory::{ReferenceTrajectoryKeys, SolutionKeys, TrajectoryForm};
 
 /// Keys of a scenario.
 pub(crate) const SCENARIO: &Section = ScenarioKeys::SECTION;

@@ -5,6 +5,7 @@ use super::fmu::SourceFmuKeys;
 use super::table::{
     At, Of, Value, boolean, choice, integer, keys, numbers, table, text, time, within,
 };
+use super::trajectory::{ReferenceTrajectoryKeys, SolutionKeys};
 use crate::error::Problem;
 use crate::quantity::UnitDimension;
 use crate::read::reader::Reader;
@@ -17,6 +18,7 @@ keys! {
             ("plant", "simulated"),
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
+            ("solution", "no samples: an instrument's own solution, which is scored: solution:FILE"),
             (
                 "fmu",
                 "an FMU: Octant's plant, another instrument, or the ship under the plant: fmu:FILE",
@@ -42,6 +44,12 @@ keys! {
             = table::<SourceReferenceKeys>(),
             absent("the source brings its own, or there is none"),
             "The reference of a calibration, where the source brings none: what is known of the motion of text, another program's MCAP file or an instrument on a port, or what was measured and recorded beside the samples.";
+        solution: Option<SolutionKeys>
+            = table::<SolutionKeys>(), derived("solution: the defaults of its keys"),
+            "How the solution of source.uri is read.";
+        trajectory: At<Option<ReferenceTrajectoryKeys>>
+            = table::<ReferenceTrajectoryKeys>(), absent("needed by solution:FILE"),
+            "The reference trajectory that a solution is scored against.";
         live: Option<SourceLiveKeys>
             = table::<SourceLiveKeys>(),
             derived("serial, udp, can and slcan: the defaults of its keys"),
@@ -172,11 +180,11 @@ impl Value for RecordedColumn {
     }
 }
 
-const fn column() -> Of<RecordedColumn> {
+pub(super) const fn column() -> Of<RecordedColumn> {
     Of::kind(Kind::Column)
 }
 
-const fn time_unit() -> Of<TimeUnit> {
+pub(super) const fn time_unit() -> Of<TimeUnit> {
     choice! {
         "s" => TimeUnit::Second, "seconds";
         "ms" => TimeUnit::Millisecond, "milliseconds";

@@ -4,6 +4,7 @@ use super::file_name::FileName;
 use super::fmu::Fmu;
 use super::instrument::Instrument;
 use crate::recorded::{McapMapping, TextMapping};
+use crate::trajectory::SolutionSpec;
 
 /// Source of the samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,13 +24,15 @@ pub enum SourceSpec {
     Fmu(Box<Fmu>),
     /// A real instrument on a port.
     Live(Instrument),
+    /// An instrument's own solution, with the trajectory that it is scored against.
+    Solution(Box<SolutionSpec>),
 }
 
 impl SourceSpec {
     /// True for a recording, whose samples don't follow gimbal commands.
     #[must_use]
     pub fn is_recorded(&self) -> bool {
-        matches!(self, Self::Replay { .. } | Self::Text(_))
+        matches!(self, Self::Replay { .. } | Self::Text(_) | Self::Solution(_))
     }
 
     /// True if this program's plant makes the samples; an FMU may move its case.
@@ -51,7 +54,7 @@ impl SourceSpec {
             Self::Plant | Self::Fmu(_) => true,
             // An octant recording that contains truth comes from a simulation.
             Self::Replay { mapping: None, .. } => has_truth,
-            Self::Replay { .. } | Self::Text(_) | Self::Live(_) => false,
+            Self::Replay { .. } | Self::Text(_) | Self::Live(_) | Self::Solution(_) => false,
         }
     }
 
@@ -96,6 +99,7 @@ impl SourceSpec {
             Self::Text(mapping) => {
                 mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
             }
+            Self::Solution(spec) => vec![spec.solution.file.clone(), spec.reference.file.clone()],
             Self::Plant | Self::Fmu(_) | Self::Live(_) => Vec::new(),
         }
     }
@@ -104,7 +108,7 @@ impl SourceSpec {
     /// plant, which has it.
     pub(crate) fn without_truth(&self) -> Option<&'static str> {
         match self {
-            Self::Plant => None,
+            Self::Plant | Self::Solution(_) => None,
             Self::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
             Self::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
             Self::Fmu(_) => Some("source.fmu.map has no truth"),
@@ -120,6 +124,10 @@ impl SourceSpec {
             Self::Plant => None,
             Self::Replay { .. } | Self::Text(_) => {
                 Some(("source", "recorded samples, no truth".to_owned()))
+            }
+            Self::Solution(spec) => {
+                let files = [&spec.solution, &spec.reference].map(|trajectory| &*trajectory.file.0);
+                Some(("source", format!("solution {} against {}", files[0], files[1])))
             }
             Self::Fmu(fmu) => {
                 let name = if fmu.is_motion() { "motion of the case" } else { "source" };

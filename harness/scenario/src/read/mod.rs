@@ -13,6 +13,7 @@ mod reference;
 pub mod requirement;
 mod sequence;
 mod source;
+mod trajectory;
 
 pub(crate) use reader::Reader;
 
@@ -86,6 +87,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
     let reference = reference::read(&keys, &scenario)?;
     let scenario = Scenario { reference, ..scenario };
     check_once(&keys, &scenario)?;
+    trajectory::check(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {
         drive::check_reach(keys, &scenario)?;
     }

@@ -23,7 +23,10 @@ pub(super) fn read(
     let tells_nothing = match &scenario.source {
         SourceSpec::Text(_) | SourceSpec::Replay { mapping: Some(_), .. } => true,
         SourceSpec::Live(_) => of_reference.is_some(),
-        SourceSpec::Plant | SourceSpec::Fmu(_) | SourceSpec::Replay { mapping: None, .. } => false,
+        SourceSpec::Plant
+        | SourceSpec::Fmu(_)
+        | SourceSpec::Solution(_)
+        | SourceSpec::Replay { mapping: None, .. } => false,
     };
     if of_reference.is_some() && !tells_nothing {
         return Err(of_reference.problem(format!(

@@ -31,10 +31,13 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpe
         Some(("fmu", file)) if !file.is_empty() => {
             Ok(SourceSpec::Fmu(Box::new(super::fmu::source(keys, file, sample_period_ns)?)))
         }
+        Some(("solution", file)) if !file.is_empty() => {
+            Ok(SourceSpec::Solution(Box::new(super::trajectory::solution(keys, file)?)))
+        }
         _ if octant_link::Uri::is_one(uri) => Ok(SourceSpec::Live(instrument(keys)?)),
         _ => Err(keys.uri.problem(format!(
-            "found {uri:?}, expected plant, replay:FILE, text:FILE, fmu:FILE, serial:PORT, \
-             udp:HOST:PORT, can:INTERFACE or slcan:PORT"
+            "found {uri:?}, expected plant, replay:FILE, text:FILE, solution:FILE, fmu:FILE, \
+             serial:PORT, udp:HOST:PORT, can:INTERFACE or slcan:PORT"
         ))),
     }
 }

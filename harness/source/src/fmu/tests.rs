@@ -2,6 +2,7 @@ use super::*;
 use crate::Epoch;
 use crate::configure::configurations;
 use octant_fmu_host::description::{Causality, Description, VariableType};
+use octant_mapping::convert::ChannelConversion;
 use octant_mapping::testing::{Scripted, With, description, variable};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalAngles, GimbalCommand, Reference, Status};
@@ -446,4 +447,13 @@ fn what_doesnt_fit_a_motion_is_told() {
         let error = error.map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains(expected), "{map}:\n  {error}\n  {expected}");
     }
+}
+
+#[test]
+fn a_conversion_and_its_inverse() {
+    let celsius = ChannelConversion { factor: 1.0, offset: 273.15 };
+    assert_eq!(celsius.to_si(20.0), 293.15);
+    assert!((celsius.from_si(293.15) - 20.0).abs() < 1e-12);
+    assert_eq!(ChannelConversion::IDENTITY.to_si(-0.0).to_bits(), (-0.0f64).to_bits());
+    assert_eq!(ChannelConversion::IDENTITY.from_si(-0.0).to_bits(), (-0.0f64).to_bits());
 }

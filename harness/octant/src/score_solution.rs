@@ -1,0 +1,133 @@
+//! `octant score --solution`: the solution of any instrument, scored against a reference trajectory.
+
+use crate::evidenced::{self, RunRequest};
+use crate::failure::Failure;
+use crate::source_uri::from_here;
+use clap::Args;
+use octant_requirements::Verdict;
+use octant_scenario::{FilePlaces, Scenario, SourceSpec};
+use octant_trajectory::{TrajectorySurvey, point::SECOND_NS};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct SolutionArguments {
+    /// Solution of an instrument, instead of a run: columns of text (.csv), NMEA 0183 (.nmea), RTKLIB (.pos), SBET.
+    #[arg(long, value_name = "FILE", requires = "reference", conflicts_with = "run")]
+    pub(super) solution: Option<PathBuf>,
+    /// Reference trajectory that the solution is scored against, in one of the same forms.
+    #[arg(long, value_name = "FILE", requires = "solution")]
+    reference: Option<PathBuf>,
+    /// Scenario with requirements, uncertainties, and the columns of the files.
+    #[arg(long, value_name = "SCENARIO", requires = "solution")]
+    scenario: Option<PathBuf>,
+    /// Duration that is scored, and has to be there, such as "24 h"; by default the whole solution.
+    #[arg(long, value_name = "TIME", requires = "solution")]
+    duration: Option<String>,
+    /// Time at the beginning of the solution that isn't scored, such as its alignment.
+    #[arg(long, value_name = "TIME", requires = "solution")]
+    skip: Option<String>,
+    /// What is added to the solution's times to get those of the reference.
+    #[arg(long, value_name = "TIME", requires = "solution", allow_negative_numbers = true)]
+    offset: Option<String>,
+    /// How far the offset may be wrong (95 %).
+    #[arg(long, value_name = "TIME", requires = "solution")]
+    offset_uncertainty: Option<String>,
+    /// Change a key of the scenario, such as source.solution.latitude=lat.
+    #[arg(long, value_name = "KEY=VALUE", requires = "solution")]
+    set: Vec<String>,
+    /// Folder of the evidence; by default a new one in ./runs.
+    #[arg(long, value_name = "DIR", requires = "solution")]
+    out: Option<PathBuf>,
+    /// Replace the folder if it holds a run already.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Make a score without requirements inconclusive.
+    #[arg(long, requires = "solution")]
+    require: bool,
+}
+
+/// The scenario of a solution without one of its own.
+const SCENARIO: &str = "schema = 1\n[procedure.navigation]\n";
+
+impl SolutionArguments {
+    pub(super) fn command(
+        &self,
+        solution: &Path,
+        (units, json): (Vec<String>, bool),
+    ) -> Result<Verdict, Failure> {
+        let mut set =
+            vec![format!("source.uri={}", from_here(&format!("solution:{}", solution.display()))?)];
+        if let Some(reference) = &self.reference {
+            let path = std::path::absolute(reference).map_err(|error| {
+                Failure::input(format!("failed to find {}: {error}", reference.display()))
+            })?;
+            set.push(format!("source.trajectory.file={}", path.display()));
+        }
+        let keys = [
+            ("procedure.navigation.duration", &self.duration),
+            ("source.solution.skip", &self.skip),
+            ("source.trajectory.offset", &self.offset),
+            ("source.trajectory.offset_uncertainty", &self.offset_uncertainty),
+        ];
+        set.extend(
+            keys.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?))),
+        );
+        set.extend(units);
+        set.extend(self.set.iter().cloned());
+        let text = self.scenario.is_none().then(|| titled(solution));
+        let path = self.scenario.clone().unwrap_or_else(|| solution.to_owned());
+        // What the caller sets counts.
+        let found = found(&path, text.as_deref(), &set)?;
+        let set = [&found[..], &set].concat();
+        evidenced::run(&RunRequest {
+            scenario: path,
+            places: FilePlaces::default(),
+            text,
+            set,
+            out: self.out.clone(),
+            force: self.force,
+            require: self.require,
+            json,
+            ..RunRequest::default()
+        })
+    }
+}
+
+/// The scenario of a solution, with its name as the title.
+fn titled(solution: &Path) -> String {
+    let name = solution.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
+    format!("title = {}\n{SCENARIO}", serde_json::Value::from(&*name))
+}
+
+/// Keys that follow from the solution itself: the rate of its points, and where it begins.
+fn found(path: &Path, text: Option<&str>, set: &[String]) -> Result<Vec<String>, Failure> {
+    let scenario = match text {
+        None => Scenario::load(path, set),
+        Some(text) => {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            Scenario::parse(text, &path.display().to_string(), folder, set)
+        }
+    };
+    let scenario = scenario.map_err(Failure::input)?;
+    let SourceSpec::Solution(spec) = &scenario.source else {
+        return Err(Failure::input("failed to score a solution: another source is set"));
+    };
+    let file = spec.solution.file.path(&scenario.folder).map_err(Failure::input)?;
+    let survey = TrajectorySurvey::of(&file, &spec.solution.format).map_err(Failure::input)?;
+    if survey.period_ns > SECOND_NS {
+        return Err(Failure::input(format!(
+            "{}: its points are {} s apart, expected 1 s or less",
+            file.display(),
+            octant_base::number::plain(survey.period_ns as f64 * 1e-9, 9)
+        )));
+    }
+    let rate = octant_base::number::plain(1e9 / survey.period_ns as f64, 9);
+    let deg = |rad: f64| format!("{:.9} deg", rad.to_degrees());
+    Ok(vec![
+        format!("imu.rate={rate} Hz"),
+        format!("record.rate={rate} Hz"),
+        format!("site.latitude={}", deg(survey.first.latitude_rad)),
+        format!("site.longitude={}", deg(survey.first.longitude_rad)),
+        format!("site.height={:.3} m", survey.first.height_m),
+    ])
+}

@@ -1,0 +1,183 @@
+//! The solution of any instrument, scored against a reference trajectory.
+
+use crate::common::program::program;
+use octant_earth::ellipsoid::Ellipsoid;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::process::Output;
+
+/// A ship on a circle of 2 km around 45° N, 10° E, 5 m/s; one row a second.
+const RADIUS_M: f64 = 2000.0;
+const SPEED_MPS: f64 = 5.0;
+
+/// Latitude, longitude, deg; velocity north, east, m/s; heading, deg.
+fn circle(t_s: f64) -> [f64; 5] {
+    let (s, c) = (SPEED_MPS / RADIUS_M * t_s).sin_cos();
+    let earth = Ellipsoid::at(45.0_f64.to_radians(), 0.0);
+    let north = (RADIUS_M * s / earth.meridian_radius_m).to_degrees();
+    let across_m = earth.transverse_radius_m * earth.cos_latitude;
+    let east = (RADIUS_M * (1.0 - c) / across_m).to_degrees();
+    let heading = (SPEED_MPS / RADIUS_M * t_s).rem_euclid(TAU).to_degrees();
+    [45.0 + north, 10.0 + east, SPEED_MPS * c, SPEED_MPS * s, heading]
+}
+
+const HEADER: &str = "time_s,latitude_deg,longitude_deg,velocity_north_mps,velocity_east_mps,\
+                      roll_deg,pitch_deg,heading_deg\n";
+
+fn rows(times_s: impl Iterator<Item = f64>, of: impl Fn(f64) -> [f64; 5], zero_s: f64) -> String {
+    let row = |t: f64| {
+        let [latitude, longitude, north, east, heading] = of(t);
+        let time = t + zero_s;
+        format!("{time:.3},{latitude:.12},{longitude:.12},{north:.9},{east:.9},0,0,{heading:.9}\n")
+    };
+    HEADER.to_owned() + &times_s.map(row).collect::<String>()
+}
+
+/// The circle with a drift in latitude of an arcminute an hour, and a heading that is 3′ off.
+fn drifting(t: f64) -> [f64; 5] {
+    let [latitude, longitude, north, east, heading] = circle(t);
+    [latitude + t / 3600.0 / 60.0, longitude, north + 0.01, east, heading + 0.05]
+}
+
+fn seconds(from: u32, to: u32) -> impl Iterator<Item = f64> {
+    (from..=to).map(f64::from)
+}
+
+fn score(folder: &Path, arguments: &[&str]) -> Output {
+    let files =
+        ["score", "--solution", "ins.csv", "--reference", "ref.csv", "--out", "out", "--force"];
+    program(&[&files[..], arguments].concat()).current_dir(folder).output().unwrap()
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("out/summary.json")).unwrap()).unwrap()
+}
+
+const REQUIRED: &str = "schema = 1\ntitle = \"sea trial\"\n[procedure.navigation]\n\
+    [[requirements]]\nid = \"NAV-1\"\ntext = \"Stays near.\"\n\
+    measure = \"navigation.radial_error_nmi.max\"\nlimit = \"1.5 nmi\"\n\
+    [decision]\nrule = \"simple-acceptance\"\n\
+    [source]\nuri = \"solution:ins.csv\"\n[source.trajectory]\nfile = \"ref.csv\"\n";
+
+#[test]
+fn a_drift_is_scored_as_it_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    // The reference has another zero, another rate and begins earlier.
+    let halves = (0..=14_600).map(|k| f64::from(k) * 0.5);
+    std::fs::write(here.join("ref.csv"), rows(halves, circle, 1000.0)).unwrap();
+    std::fs::write(here.join("ins.csv"), rows(seconds(60, 7260), drifting, 0.0)).unwrap();
+    std::fs::write(here.join("trial.toml"), REQUIRED).unwrap();
+    let ended = score(here, &["--scenario", "trial.toml", "--offset", "1000 s"]);
+    assert_eq!(ended.status.code(), Some(1), "{ended:?}");
+    let found = summary(here);
+    let navigation = &found["navigation"];
+    let number = |path: &str| navigation.pointer(path).unwrap().as_f64().unwrap();
+    assert!((number("/duration_h") - 2.0).abs() < 1e-3, "{navigation}");
+    // The drift is 2′ and 60 s of it at the end.
+    let minutes = 7260.0 / 3600.0;
+    assert!((number("/latitude_error_arcmin/final") - minutes).abs() < 1e-5, "{navigation}");
+    assert!(number("/longitude_error_arcmin/max") < 1e-5, "{navigation}");
+    assert!((number("/heading_error_arcmin/rms") - 3.0).abs() < 1e-4, "{navigation}");
+    assert!((number("/velocity_north_error_mps/rms") - 0.01).abs() < 1e-6, "{navigation}");
+    assert_eq!(found["verdict"]["verdict"], "fail", "{found}");
+    // What is there can be rendered and judged again, and is evidence.
+    for command in [&["report", "out"][..], &["score", "out/recording.mcap"], &["verify", "out"]] {
+        let ended = program(command).current_dir(here).output().unwrap();
+        let status = ended.status.code();
+        assert!(status == Some(0) || (command[0] == "verify" && status == Some(1)), "{ended:?}");
+    }
+    let ended = score(
+        here,
+        &[
+            "--scenario",
+            "trial.toml",
+            "--offset",
+            "1000 s",
+            "--set",
+            "requirements.NAV-1.limit=3 nmi",
+        ],
+    );
+    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+}
+
+#[test]
+fn less_than_the_duration_is_no_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let required = REQUIRED.replace("1.5 nmi", "30 nmi");
+    std::fs::write(here.join("trial.toml"), required).unwrap();
+    let run = |solution: String, reference: String, more: &[&str]| {
+        std::fs::write(here.join("ins.csv"), solution).unwrap();
+        std::fs::write(here.join("ref.csv"), reference).unwrap();
+        let arguments = [&["--scenario", "trial.toml", "--offset", "0 s"], more].concat();
+        let ended = score(here, &arguments);
+        let text = String::from_utf8_lossy(&ended.stdout).into_owned()
+            + &String::from_utf8_lossy(&ended.stderr);
+        (ended.status.code(), text)
+    };
+    let reference = || rows(seconds(0, 3600), circle, 0.0);
+    let solution = || rows(seconds(0, 3600), drifting, 0.0);
+    let (status, text) = run(solution(), reference(), &[]);
+    assert_eq!(status, Some(0), "{text}");
+    // The reference ends early.
+    let (status, text) = run(solution(), rows(seconds(0, 3000), circle, 0.0), &[]);
+    assert_eq!(status, Some(3), "{text}");
+    // The solution ends early.
+    let (status, text) =
+        run(rows(seconds(0, 1800), drifting, 0.0), reference(), &["--duration", "1 h"]);
+    assert_eq!(status, Some(3), "{text}");
+    // A part is asked for.
+    let (status, text) =
+        run(solution(), rows(seconds(0, 3000), circle, 0.0), &["--duration", "30 min"]);
+    assert_eq!(status, Some(0), "{text}");
+    // A gap in the middle.
+    let gap = || seconds(0, 1000).chain(seconds(1500, 3600));
+    for (solution, reference) in
+        [(rows(gap(), drifting, 0.0), reference()), (solution(), rows(gap(), circle, 0.0))]
+    {
+        let (status, text) = run(solution, reference, &[]);
+        assert_eq!(status, Some(3), "{text}");
+        assert!(
+            text.contains("of the solution are missing, incomplete, or have no reference"),
+            "{text}"
+        );
+    }
+    // The reference is its own solution.
+    let (status, text) = run(reference(), reference(), &[]);
+    assert_eq!(status, Some(3), "{text}");
+    assert!(text.contains("exactly those of the reference"), "{text}");
+}
+
+#[test]
+fn files_that_do_not_fit_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("ins.csv"), rows(seconds(0, 100), drifting, 0.0)).unwrap();
+    std::fs::write(here.join("ref.csv"), rows(seconds(0, 100), circle, 5000.0)).unwrap();
+    for (arguments, words) in [
+        (&[][..], "expected source.trajectory.offset"),
+        (&["--offset", "0 s"], "no point of"),
+        (&["--offset", "0 s", "--reference", "none.csv"], "cannot be used multiple times"),
+        (&["--offset", "0 s", "--set", "source.solution.latitude=lat"], "found no column \"lat\""),
+        (&["--offset", "0 s", "--set", "source.solution.format=nmea"], "found no sentence"),
+        (&["--offset", "0 s", "--set", "endpoint.uri=udp:127.0.0.1:9"], "expected no endpoint"),
+        (
+            &["--offset", "0 s", "--set", "procedure.calibration.duration=1 h"],
+            "without a calibration",
+        ),
+    ] {
+        let ended = score(here, arguments);
+        let text = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(text.contains(words), "{arguments:?}: {text}");
+        assert!(!here.join("out").exists(), "{arguments:?}");
+    }
+    // Rows that are further apart than a second.
+    std::fs::write(here.join("ins.csv"), rows((0..9).map(|k| f64::from(k) * 10.0), drifting, 0.0))
+        .unwrap();
+    let ended = score(here, &["--offset", "5000 s"]);
+    let text = String::from_utf8_lossy(&ended.stderr);
+    assert!(text.contains("its points are 10 s apart, expected 1 s or less"), "{text}");
+}

@@ -1,0 +1,82 @@
+//! Keys of an instrument's own solution, and of the trajectory that it is scored against.
+
+use super::definition::Kind;
+use super::source::{column, time_unit};
+use super::table::{At, Of, choice, integer, keys, text, time};
+use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+
+/// Form of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum TrajectoryForm {
+    Csv,
+    Nmea,
+    Rtklib,
+    Sbet,
+}
+
+const BY_NAME: &str =
+    "by the name's ending: nmea and nma; pos; sbet and out; others are columns of text";
+const THERE: &str = "the name of Octant's exports, where the header has it";
+
+/// Keys of a file with positions over time.
+macro_rules! trajectory {
+    ($(#[$attribute:meta])* $name:ident { $($more:tt)* }) => {
+        keys! {
+            $(#[$attribute])*
+            pub(crate) struct $name {
+                $($more)*
+                format: Option<TrajectoryForm> = choice! {
+                        "csv" => TrajectoryForm::Csv, "columns of text";
+                        "nmea" => TrajectoryForm::Nmea, "sentences of NMEA 0183 (IEC 61162-1)";
+                        "rtklib" => TrajectoryForm::Rtklib, "a solution of RTKLIB, .pos";
+                        "sbet" => TrajectoryForm::Sbet, "a smoothed best estimate of trajectory, binary";
+                    }, derived(BY_NAME), "What the file is.";
+                delimiter: Delimiter = choice! {
+                        "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
+                        "comma" => Delimiter::Character(b','), ",";
+                        "semicolon" => Delimiter::Character(b';'), ";";
+                        "tab" => Delimiter::Character(b'\t'), "one tab";
+                    }, "comma", "Columns of text: what separates them.";
+                skip_lines: usize = integer(0, 1_000_000), "0", "Columns of text: lines to skip at the start.";
+                comment: String = text(), "#", "Columns of text: lines that start with this are skipped.";
+                time_column: At<Option<RecordedColumn>> = column(), derived(THERE),
+                    "Time of each row, in time_unit, or as 2027-03-31T08:00:00.5Z: its column, a name in the header or a number from 1.";
+                time_unit: TimeUnit = time_unit(), "s", "Unit of a time that is a number.";
+                latitude: At<Option<RecordedColumn>> = column(), derived(THERE), "Geodetic latitude.";
+                longitude: At<Option<RecordedColumn>> = column(), derived(THERE), "Longitude, east of Greenwich.";
+                height: At<Option<RecordedColumn>> = column(), derived(THERE), "Height above the ellipsoid, m.";
+                north: At<Option<RecordedColumn>> = column(), derived(THERE), "Velocity over ground, north.";
+                east: At<Option<RecordedColumn>> = column(), derived(THERE), "Velocity over ground, east.";
+                heading: At<Option<RecordedColumn>> = column(), derived(THERE), "Heading from north by east.";
+                pitch: At<Option<RecordedColumn>> = column(), derived(THERE), "Pitch, positive with the bow up.";
+                roll: At<Option<RecordedColumn>> = column(), derived(THERE), "Roll, positive with the starboard side down.";
+                angle_unit: At<String> = Of::<String>::kind(Kind::Choice(&[("deg", ""), ("rad", "")])), "deg",
+                    "Unit of the columns of angles: position and attitude.";
+                velocity_unit: At<String> = Of::<String>::kind(Kind::Choice(&[("m/s", ""), ("kn", ""), ("mm/s", "")])), "m/s",
+                    "Unit of the columns of velocities.";
+            }
+        }
+    };
+}
+
+trajectory! {
+    /// `[source.solution]`.
+    SolutionKeys {
+        skip: f64 = time(0.0, 1e6, "from 0 to 1e6 s"), "0 s",
+            "Time at its beginning that isn't scored, such as an alignment.";
+    }
+}
+
+trajectory! {
+    /// `[source.trajectory]`.
+    ReferenceTrajectoryKeys {
+        file: String = text(), required, "Its file. Relative to the scenario.";
+        offset: Option<f64> = time(-1e6, 1e6, "from -1e6 to 1e6 s"),
+            absent("0 s, if both files tell the time on a scale that is known; else it has to be given"),
+            "What is added to the solution's times to get those of this file.";
+        offset_uncertainty: f64 = time(0.0, 60.0, "from 0 to 60 s"), "0 s",
+            "How far that may be wrong, 95 %: what moves by it is in doubt, and so are the verdicts.";
+        gap: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "2 s",
+            "Rows further apart than this have a gap between them, in which nothing is scored.";
+    }
+}

@@ -1,0 +1,125 @@
+//! Reads `[source.solution]` and `[source.trajectory]`.
+
+use crate::error::Problem;
+use crate::keys::{
+    At, ReferenceTrajectoryKeys, ScenarioKeys, SolutionKeys, SourceKeys, TrajectoryForm,
+};
+use crate::model::{EndpointSpec, FileName, Scenario, SourceSpec};
+use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+use crate::trajectory::{SolutionSpec, TrajectoryColumns, TrajectoryFormat, TrajectorySpec};
+
+/// Reads the solution of `source.uri = "solution:FILE"`.
+pub(super) fn solution(keys: &SourceKeys, file: &str) -> Result<SolutionSpec, Problem> {
+    let Some(trajectory) = &*keys.trajectory else {
+        return Err(keys.trajectory.problem(
+            "missing, expected the trajectory that the solution of source.uri is scored against",
+        ));
+    };
+    let solution = match &keys.solution {
+        Some(solution) => solution.format(file)?,
+        None => format_of(None, file, || Ok(TrajectoryColumns::default()))?,
+    };
+    let reference = trajectory.format(&trajectory.file)?;
+    let spec = |file: &str, format| TrajectorySpec { file: FileName(file.to_owned()), format };
+    Ok(SolutionSpec {
+        solution: spec(file, solution),
+        skip_ns: keys.solution.as_ref().map_or(0, |keys| (keys.skip * 1e9).round() as i64),
+        reference: spec(&trajectory.file, reference),
+        offset_ns: trajectory.offset.map(|offset_s| (offset_s * 1e9).round() as i64),
+        offset_uncertainty_s: trajectory.offset_uncertainty,
+        gap_ns: (trajectory.gap * 1e9).round() as i64,
+    })
+}
+
+/// Refuses what has no meaning for a solution that is made already.
+pub(super) fn check(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Problem> {
+    if !matches!(scenario.source, SourceSpec::Solution(_)) {
+        return Ok(());
+    }
+    let problem = |what: &str| {
+        Err(keys
+            .source
+            .uri
+            .problem(format!("a solution is made already, and nothing is run: expected {what}")))
+    };
+    if scenario.calibration.is_some() || scenario.baseline.is_some() {
+        return problem("[procedure.navigation] alone, without a calibration or a baseline");
+    }
+    if scenario.navigation.is_none() {
+        return problem("[procedure.navigation]");
+    }
+    if scenario.endpoint != EndpointSpec::InProcess {
+        return problem("no endpoint");
+    }
+    if keys.faults.as_ref().is_some_and(|faults| !faults.is_empty()) {
+        return problem("no faults");
+    }
+    if scenario.realtime.by_clock {
+        return problem("realtime.pace = \"free\"");
+    }
+    Ok(())
+}
+
+impl Default for TrajectoryColumns {
+    fn default() -> Self {
+        Self {
+            delimiter: Delimiter::Character(b','),
+            skip_lines: 0,
+            comment: "#".to_owned(),
+            time: (None, TimeUnit::Second),
+            position: [const { None }; 3],
+            velocity: [const { None }; 2],
+            attitude: [const { None }; 3],
+            angle_rad: 1.0_f64.to_radians(),
+            velocity_mps: 1.0,
+        }
+    }
+}
+
+/// What a file is: as the scenario says, or by its name.
+fn format_of(
+    form: Option<TrajectoryForm>,
+    file: &str,
+    columns: impl FnOnce() -> Result<TrajectoryColumns, Problem>,
+) -> Result<TrajectoryFormat, Problem> {
+    let name = file.to_ascii_lowercase();
+    let ends = |endings: &[&str]| {
+        endings
+            .iter()
+            .any(|ending| name.rsplit_once('.').is_some_and(|(_, found)| found == *ending))
+    };
+    Ok(match form {
+        Some(TrajectoryForm::Nmea) => TrajectoryFormat::Nmea,
+        Some(TrajectoryForm::Rtklib) => TrajectoryFormat::Rtklib,
+        Some(TrajectoryForm::Sbet) => TrajectoryFormat::Sbet,
+        None if ends(&["nmea", "nma"]) => TrajectoryFormat::Nmea,
+        None if ends(&["pos"]) => TrajectoryFormat::Rtklib,
+        None if ends(&["sbet", "out"]) => TrajectoryFormat::Sbet,
+        Some(TrajectoryForm::Csv) | None => TrajectoryFormat::Csv(Box::new(columns()?)),
+    })
+}
+
+macro_rules! columns_of {
+    ($($keys:ty),+) => { $(
+        impl $keys {
+            fn format(&self, file: &str) -> Result<TrajectoryFormat, Problem> {
+                format_of(self.format, file, || {
+                    let column = |key: &At<Option<RecordedColumn>>| key.value.clone();
+                    Ok(TrajectoryColumns {
+                        delimiter: self.delimiter,
+                        skip_lines: self.skip_lines,
+                        comment: self.comment.clone(),
+                        time: (column(&self.time_column), self.time_unit),
+                        position: [&self.latitude, &self.longitude, &self.height].map(column),
+                        velocity: [&self.north, &self.east].map(column),
+                        attitude: [&self.roll, &self.pitch, &self.heading].map(column),
+                        angle_rad: super::source::unit_si(&self.angle_unit)?,
+                        velocity_mps: super::source::unit_si(&self.velocity_unit)?,
+                    })
+                })
+            }
+        }
+    )+ };
+}
+
+columns_of!(SolutionKeys, ReferenceTrajectoryKeys);

@@ -1,0 +1,67 @@
+//! Files with positions over time: an instrument's own solution, and what it is scored against.
+
+use crate::model::FileName;
+use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+
+/// A file with positions over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrajectorySpec {
+    /// The file.
+    pub file: FileName,
+    /// What it is.
+    pub format: TrajectoryFormat,
+}
+
+/// What a file is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TrajectoryFormat {
+    /// Columns of text.
+    Csv(Box<TrajectoryColumns>),
+    /// Sentences of NMEA 0183 (IEC 61162-1).
+    Nmea,
+    /// A solution of RTKLIB.
+    Rtklib,
+    /// A smoothed best estimate of trajectory: records of 17 doubles.
+    Sbet,
+}
+
+/// Columns of a text file; `None`: the name that Octant's exports have, where the header has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrajectoryColumns {
+    /// What separates columns.
+    pub delimiter: Delimiter,
+    /// Lines to skip at the start.
+    pub skip_lines: usize,
+    /// Lines that start with this are skipped; empty: none.
+    pub comment: String,
+    /// Time, and its unit where it is a number.
+    pub time: (Option<RecordedColumn>, TimeUnit),
+    /// Latitude, longitude and height.
+    pub position: [Option<RecordedColumn>; 3],
+    /// Velocity over ground, north and east.
+    pub velocity: [Option<RecordedColumn>; 2],
+    /// Roll, pitch and heading.
+    pub attitude: [Option<RecordedColumn>; 3],
+    /// Radians in a unit of the angles.
+    pub angle_rad: f64,
+    /// Metres per second in a unit of the velocities.
+    pub velocity_mps: f64,
+}
+
+/// A solution, and the trajectory that it is scored against.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolutionSpec {
+    /// The instrument's solution.
+    pub solution: TrajectorySpec,
+    /// Time at its beginning that isn't scored, ns.
+    pub skip_ns: i64,
+    /// The reference.
+    pub reference: TrajectorySpec,
+    /// What is added to the solution's times to get those of the reference, ns; `None`: nothing, if both
+    /// tell the time on a scale that is known.
+    pub offset_ns: Option<i64>,
+    /// How far that may be wrong (95 %), s.
+    pub offset_uncertainty_s: f64,
+    /// Longest time between two rows of the reference that is no gap, ns.
+    pub gap_ns: i64,
+}

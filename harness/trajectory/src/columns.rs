@@ -1,0 +1,269 @@
+//! Columns of text.
+
+use super::point::{TimeScale, TrajectoryPoint};
+use super::reader::{LINE_BYTES_MAX, Points};
+use csv::StringRecord;
+use octant_base::decimal::decimal_ns;
+use octant_base::number::counted;
+use octant_scenario::recorded::{Delimiter, RecordedColumn, TimeUnit};
+use octant_scenario::trajectory::TrajectoryColumns;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::time::UNIX_EPOCH;
+
+/// Names of the columns in Octant's exports, in the order of time, position, velocity, attitude.
+const NAMES: [&str; 9] = [
+    "time_s",
+    "latitude_deg",
+    "longitude_deg",
+    "height_m",
+    "velocity_north_mps",
+    "velocity_east_mps",
+    "roll_deg",
+    "pitch_deg",
+    "heading_deg",
+];
+
+pub(crate) struct ColumnsReader {
+    lines: Lines,
+    time: (usize, TimeUnit),
+    position: [usize; 2],
+    height: Option<usize>,
+    velocity: Option<[usize; 2]>,
+    attitude: Option<[usize; 3]>,
+    angle_rad: f64,
+    velocity_mps: f64,
+    scale: TimeScale,
+}
+
+impl ColumnsReader {
+    pub(crate) fn new(file: File, columns: &TrajectoryColumns) -> Result<Self, String> {
+        let mut lines = Lines::new(file, columns);
+        let TrajectoryColumns { time, position, velocity, attitude, .. } = columns;
+        let chosen: Vec<&Option<RecordedColumn>> =
+            [&time.0].into_iter().chain(position).chain(velocity).chain(attitude).collect();
+        lines.skip(columns.skip_lines)?;
+        // Without a single name or default, all columns are numbers and there may be no header.
+        let named = chosen.iter().any(|column| !matches!(column, Some(RecordedColumn::Number(_))));
+        let only_numbers =
+            chosen.iter().all(|c| matches!(c, None | Some(RecordedColumn::Number(_))))
+                && time.0.is_some()
+                && position[0].is_some();
+        let header = if named && !only_numbers { Some(lines.header()?) } else { None };
+        let place = |index: usize| -> Result<Option<usize>, String> {
+            let name = match chosen[index] {
+                Some(RecordedColumn::Number(0)) => {
+                    return Err("found column 0, expected a number from 1".to_owned());
+                }
+                Some(RecordedColumn::Number(number)) => return Ok(Some(number - 1)),
+                Some(RecordedColumn::Name(name)) => name.as_str(),
+                None => NAMES[index],
+            };
+            let Some(header) = &header else { return Ok(None) };
+            let same = |wanted: &str| header.iter().position(|found| found == wanted);
+            let found = same(name).or_else(|| same(&format!("true_{name}")));
+            match (found, chosen[index]) {
+                (None, Some(_)) => {
+                    let names: Vec<&str> = header.iter().collect();
+                    Err(format!("found no column {name:?}, the header has {}", names.join(", ")))
+                }
+                (found, _) => Ok(found),
+            }
+        };
+        let needed = |index: usize| {
+            place(index)?.ok_or_else(|| {
+                let names = header.as_ref().map(|h| h.iter().collect::<Vec<_>>().join(", "));
+                format!(
+                    "found no column {:?}{}; expected it, or the scenario to say which column it is",
+                    NAMES[index],
+                    names.map_or_else(String::new, |names| format!(", the header has {names}"))
+                )
+            })
+        };
+        let all = |indices: &[usize]| -> Result<Option<Vec<usize>>, String> {
+            let found: Vec<Option<usize>> =
+                indices.iter().map(|index| place(*index)).collect::<Result<_, _>>()?;
+            match found.iter().flatten().count() {
+                0 => Ok(None),
+                n if n == indices.len() => Ok(Some(found.into_iter().flatten().collect())),
+                _ => {
+                    let names: Vec<&str> = indices.iter().map(|index| NAMES[*index]).collect();
+                    Err(format!("found some of {}, expected all or none", names.join(", ")))
+                }
+            }
+        };
+        Ok(Self {
+            time: (needed(0)?, time.1),
+            position: [needed(1)?, needed(2)?],
+            height: place(3)?,
+            velocity: all(&[4, 5])?.map(|found| [found[0], found[1]]),
+            attitude: all(&[6, 7, 8])?.map(|found| [found[0], found[1], found[2]]),
+            angle_rad: columns.angle_rad,
+            velocity_mps: columns.velocity_mps,
+            scale: TimeScale::Own,
+            lines,
+        })
+    }
+
+    /// Reads the time of a row: a number, or a date with a time.
+    fn time_ns(&mut self) -> Result<i64, String> {
+        let (index, unit) = self.time;
+        let text = self.lines.field(index)?;
+        let (found, scale) = if text.contains(':') {
+            let time = octant_base::utc::parse(text).ok();
+            let since = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+            (since.and_then(|since| i64::try_from(since.as_nanos()).ok()), TimeScale::Utc)
+        } else {
+            let ns = decimal_ns(text, unit.nanosecond_exponent());
+            (ns.and_then(|ns| i64::try_from(ns).ok()), TimeScale::Own)
+        };
+        self.scale = scale;
+        found.ok_or_else(|| {
+            let found = self.lines.field(index).unwrap_or_default();
+            self.lines.error(index, &format!("found {found:?}, expected a time"))
+        })
+    }
+}
+
+impl Points for ColumnsReader {
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
+        if !self.lines.advance()? {
+            return Ok(None);
+        }
+        let time_ns = self.time_ns()?;
+        let lines = &self.lines;
+        let angle = |index: usize| Ok::<_, String>(lines.number(index)? * self.angle_rad);
+        let [latitude_rad, longitude_rad] = [angle(self.position[0])?, angle(self.position[1])?];
+        let height_m = self.height.map_or(Ok(0.0), |index| lines.number(index))?;
+        let velocity_mps = match self.velocity {
+            None => None,
+            Some(columns) => {
+                let mps = |index| Ok::<_, String>(lines.number(index)? * self.velocity_mps);
+                Some([mps(columns[0])?, mps(columns[1])?])
+            }
+        };
+        let attitude_rad = match self.attitude {
+            None => None,
+            Some([roll, pitch, heading]) => Some([angle(roll)?, angle(pitch)?, angle(heading)?]),
+        };
+        Ok(Some(TrajectoryPoint {
+            time_ns,
+            latitude_rad,
+            longitude_rad,
+            height_m,
+            velocity_mps,
+            attitude_rad,
+        }))
+    }
+
+    fn place(&self) -> String {
+        format!("line {}", self.lines.line)
+    }
+
+    fn scale(&self) -> TimeScale {
+        self.scale
+    }
+}
+
+/// Rows of a file, with the number of the line.
+struct Lines {
+    file: BufReader<File>,
+    delimiter: Delimiter,
+    comment: String,
+    text: String,
+    line: u64,
+    fields: StringRecord,
+}
+
+impl Lines {
+    fn new(file: File, columns: &TrajectoryColumns) -> Self {
+        Self {
+            file: BufReader::with_capacity(1 << 16, file),
+            delimiter: columns.delimiter,
+            comment: columns.comment.clone(),
+            text: String::new(),
+            line: 0,
+            fields: StringRecord::new(),
+        }
+    }
+
+    fn skip(&mut self, lines: usize) -> Result<(), String> {
+        for _ in 0..lines {
+            if !self.read_line()? {
+                let lines = counted(lines, "line", "lines");
+                return Err(format!("the file ends within the {lines} to skip"));
+            }
+        }
+        Ok(())
+    }
+
+    fn header(&mut self) -> Result<StringRecord, String> {
+        if self.advance()? {
+            Ok(self.fields.clone())
+        } else {
+            Err("the file ends, expected a line with the names of the columns".to_owned())
+        }
+    }
+
+    fn read_line(&mut self) -> Result<bool, String> {
+        self.text.clear();
+        self.line += 1;
+        let read = (&mut self.file).take(LINE_BYTES_MAX).read_line(&mut self.text);
+        match read {
+            Err(error) => Err(format!("line {}: {error}", self.line)),
+            Ok(0) => Ok(false),
+            Ok(n) if n as u64 == LINE_BYTES_MAX && !self.text.ends_with('\n') => {
+                Err(format!("line {}: longer than {LINE_BYTES_MAX} bytes", self.line))
+            }
+            Ok(_) => Ok(true),
+        }
+    }
+
+    /// Advances to the next row; `false` at the end.
+    fn advance(&mut self) -> Result<bool, String> {
+        loop {
+            if !self.read_line()? {
+                return Ok(false);
+            }
+            let line = self.text.trim_start_matches('\u{feff}').trim_end_matches(['\r', '\n']);
+            let is_comment = !self.comment.is_empty() && line.starts_with(&self.comment);
+            if line.trim().is_empty() || is_comment {
+                continue;
+            }
+            self.fields.clear();
+            match self.delimiter {
+                Delimiter::Blanks => self.fields.extend(line.split_ascii_whitespace()),
+                Delimiter::Character(delimiter) => {
+                    let mut reader = csv::ReaderBuilder::new()
+                        .delimiter(delimiter)
+                        .has_headers(false)
+                        .flexible(true)
+                        .trim(csv::Trim::All)
+                        .from_reader(line.as_bytes());
+                    let read = reader.read_record(&mut self.fields);
+                    read.map_err(|error| format!("line {}: {error}", self.line))?;
+                }
+            }
+            return Ok(true);
+        }
+    }
+
+    fn field(&self, index: usize) -> Result<&str, String> {
+        self.fields.get(index).ok_or_else(|| {
+            let found = counted(self.fields.len(), "column", "columns");
+            format!("line {}: found {found}, expected {} or more", self.line, index + 1)
+        })
+    }
+
+    fn number(&self, index: usize) -> Result<f64, String> {
+        let text = self.field(index)?;
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.error(index, &format!("found {text:?}, expected a finite number"))),
+        }
+    }
+
+    fn error(&self, index: usize, reason: &str) -> String {
+        format!("line {}: column {}: {reason}", self.line, index + 1)
+    }
+}

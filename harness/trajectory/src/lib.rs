@@ -1,0 +1,29 @@
+//! Positions over time, as other instruments and programs write them.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`point`] | a position with velocity and attitude at a time, and the scale of that time |
+//! | [`reader`] | files: columns of text, NMEA 0183, RTKLIB, SBET |
+//! | [`survey`] | what a file holds, from one pass through it |
+//! | [`track`] | a reference trajectory at any time |
+//! | [`pairs`] | the points of a solution, each with its reference |
+//!
+//! Nothing here is scored: a source and an endpoint of the harness give the points of two files to the run.
+
+mod columns;
+mod nmea;
+pub mod pairs;
+pub mod point;
+pub mod reader;
+mod rtklib;
+mod sbet;
+pub mod survey;
+#[cfg(test)]
+mod tests;
+pub mod track;
+
+pub use pairs::{PairsError, SolutionPair, SolutionPairs};
+pub use point::{TimeScale, TrajectoryPoint};
+pub use reader::{TrajectoryError, TrajectoryReader};
+pub use survey::TrajectorySurvey;
+pub use track::ReferenceTrack;

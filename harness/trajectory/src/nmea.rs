@@ -1,0 +1,316 @@
+//! Sentences of NMEA 0183 (IEC 61162-1): position, speed and course, and the attitude of PASHR.
+//!
+//! Sentences with the same time of day belong to one point: GGA, GNS, GLL and RMC give the position, RMC and VTG the
+//! velocity, PASHR roll, pitch and heading. Sentences without a time belong to the point before them. The date comes with
+//! RMC and ZDA. A point without a valid position is left out.
+
+use super::point::{SECOND_NS, TimeScale, TrajectoryPoint};
+use super::reader::{LINE_BYTES_MAX, Points};
+use octant_base::decimal::decimal_ns;
+use octant_earth::units::NAUTICAL_MILE_M;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Seek};
+
+const DAY_NS: i64 = 86_400 * SECOND_NS;
+
+/// Lines within which a file has to show what it is.
+const LINES_TO_LOOK_AT: u64 = 10_000;
+
+pub(crate) struct NmeaReader {
+    lines: NmeaLines,
+    /// Day of the present point, ns since 1970.
+    day_ns: i64,
+    begun: Option<Begun>,
+}
+
+/// A point whose sentences are still coming.
+#[derive(Clone, Copy, Debug, Default)]
+struct Begun {
+    of_day_ns: i64,
+    position: Option<[f64; 2]>,
+    height_m: Option<f64>,
+    velocity_mps: Option<[f64; 2]>,
+    attitude_rad: Option<[f64; 3]>,
+}
+
+impl NmeaReader {
+    pub(crate) fn new(file: File) -> Result<Self, String> {
+        let mut lines = NmeaLines::new(file);
+        let first_day_ns = first_day(&mut lines)?;
+        let mut file = lines.file.into_inner();
+        file.rewind().map_err(|error| error.to_string())?;
+        Ok(Self { lines: NmeaLines::new(file), day_ns: first_day_ns, begun: None })
+    }
+
+    /// Takes a sentence; returns the point that it ends.
+    fn take(&mut self, sentence: &Sentence<'_>) -> Option<TrajectoryPoint> {
+        let mut ended = None;
+        if let Some(of_day_ns) = sentence.of_day_ns {
+            match self.begun {
+                Some(begun) if begun.of_day_ns == of_day_ns => {}
+                begun => {
+                    ended = begun.and_then(|begun| self.point(&begun));
+                    if begun.is_some_and(|begun| of_day_ns + DAY_NS / 2 < begun.of_day_ns) {
+                        self.day_ns += DAY_NS;
+                    }
+                    self.begun = Some(Begun { of_day_ns, ..Begun::default() });
+                }
+            }
+            if let Some(day_ns) = sentence.day_ns {
+                self.day_ns = day_ns;
+            }
+        }
+        if let Some(begun) = &mut self.begun {
+            begun.position = begun.position.or(sentence.position);
+            begun.height_m = begun.height_m.or(sentence.height_m);
+            begun.velocity_mps = begun.velocity_mps.or(sentence.velocity_mps);
+            begun.attitude_rad = begun.attitude_rad.or(sentence.attitude_rad);
+        }
+        ended
+    }
+
+    fn point(&self, begun: &Begun) -> Option<TrajectoryPoint> {
+        let [latitude_rad, longitude_rad] = begun.position?;
+        Some(TrajectoryPoint {
+            time_ns: self.day_ns + begun.of_day_ns,
+            latitude_rad,
+            longitude_rad,
+            height_m: begun.height_m.unwrap_or(0.0),
+            velocity_mps: begun.velocity_mps,
+            attitude_rad: begun.attitude_rad,
+        })
+    }
+}
+
+impl Points for NmeaReader {
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
+        loop {
+            if !self.lines.advance()? {
+                let begun = self.begun.take();
+                return Ok(begun.and_then(|begun| self.point(&begun)));
+            }
+            let text = std::mem::take(&mut self.lines.text);
+            let ended = Sentence::of(&text).and_then(|sentence| self.take(&sentence));
+            self.lines.text = text;
+            if ended.is_some() {
+                return Ok(ended);
+            }
+        }
+    }
+
+    fn place(&self) -> String {
+        format!("line {}", self.lines.line)
+    }
+
+    fn scale(&self) -> TimeScale {
+        TimeScale::Utc
+    }
+}
+
+/// Finds the day of the first point.
+fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
+    let mut first_ns = None;
+    let mut sentences = 0_u64;
+    while lines.advance()? && (sentences > 0 || lines.line <= LINES_TO_LOOK_AT) {
+        let Some(sentence) = Sentence::of(&lines.text) else { continue };
+        sentences += 1;
+        let first_ns = *first_ns.get_or_insert(sentence.of_day_ns.unwrap_or_default());
+        if let (Some(day_ns), Some(of_day_ns)) = (sentence.day_ns, sentence.of_day_ns) {
+            // Sentences of the evening may come before the first date of the next morning.
+            let evening = of_day_ns + DAY_NS / 2 < first_ns;
+            return Ok(if evening { day_ns - DAY_NS } else { day_ns });
+        }
+    }
+    Err(if sentences == 0 {
+        "found no sentence of NMEA 0183 with a position, a speed or an attitude, and a right checksum"
+            .to_owned()
+    } else {
+        format!("found {sentences} sentences and no date, expected an RMC or a ZDA")
+    })
+}
+
+/// What a sentence says.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sentence<'a> {
+    kind: &'a str,
+    of_day_ns: Option<i64>,
+    day_ns: Option<i64>,
+    position: Option<[f64; 2]>,
+    height_m: Option<f64>,
+    velocity_mps: Option<[f64; 2]>,
+    attitude_rad: Option<[f64; 3]>,
+}
+
+impl<'a> Sentence<'a> {
+    /// Reads a line; `None` if it has no sentence that counts here, or a damaged one.
+    fn of(line: &'a str) -> Option<Self> {
+        // Loggers write stamps of their own before a sentence.
+        let body = &line[line.rfind('$')? + 1..];
+        let (body, checksum) = body.trim_end().rsplit_once('*')?;
+        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+        if u8::from_str_radix(checksum, 16).ok()? != sum {
+            return None;
+        }
+        let (kind, fields) = body.split_once(',')?;
+        let fields: Vec<&str> = fields.split(',').collect();
+        let kind = if kind == "PASHR" { kind } else { kind.get(kind.len().checked_sub(3)?..)? };
+        let field = |index: usize| fields.get(index).copied().unwrap_or_default();
+        let number = |index: usize| field(index).parse::<f64>().ok().filter(|x| x.is_finite());
+        let position = |at: usize| {
+            Some([angle(field(at), field(at + 1))?, angle(field(at + 2), field(at + 3))?])
+        };
+        let of_day_ns = |index: usize| of_day(field(index));
+        let velocity = |speed_kn: Option<f64>, course_deg: Option<f64>| {
+            let speed_mps = speed_kn? * (NAUTICAL_MILE_M / 3600.0);
+            // At rest there is no course.
+            let course_deg = course_deg.or((speed_mps == 0.0).then_some(0.0))?;
+            let (sine, cosine) = libm::sincos(course_deg.to_radians());
+            Some([speed_mps * cosine, speed_mps * sine])
+        };
+        let none = Self { kind, ..Self::default() };
+        let sentence = match kind {
+            "GGA" | "GNS" => {
+                let is_fix = match kind {
+                    "GGA" => number(5).is_some_and(|quality| quality > 0.0),
+                    _ => field(5).bytes().any(|mode| mode != b'N'),
+                };
+                let separation = number(if kind == "GGA" { 10 } else { 9 });
+                let height_m =
+                    number(8).zip(separation).map(|(above_geoid, geoid)| above_geoid + geoid);
+                let position = position(1).filter(|_| is_fix);
+                Self { of_day_ns: of_day_ns(0), position, height_m, ..none }
+            }
+            "GLL" => {
+                let position = position(0).filter(|_| field(5) == "A");
+                Self { of_day_ns: of_day_ns(4), position, ..none }
+            }
+            "RMC" => {
+                let valid = field(1) == "A";
+                Self {
+                    of_day_ns: of_day_ns(0),
+                    day_ns: short_date(field(8)),
+                    position: position(2).filter(|_| valid),
+                    velocity_mps: velocity(number(6), number(7)).filter(|_| valid),
+                    ..none
+                }
+            }
+            "ZDA" => {
+                let day = |index: usize| field(index).parse::<i64>().ok();
+                let day_ns = date(day(3)?, day(2)?, day(1)?);
+                Self { of_day_ns: of_day_ns(0), day_ns, ..none }
+            }
+            "VTG" => {
+                let valid = !matches!(field(8), "N");
+                Self { velocity_mps: velocity(number(4), number(0)).filter(|_| valid), ..none }
+            }
+            "PASHR" => {
+                let [heading, roll, pitch] = [number(1)?, number(3)?, number(4)?];
+                let attitude_rad = Some([roll, pitch, heading].map(f64::to_radians));
+                Self { of_day_ns: of_day_ns(0), attitude_rad, ..none }
+            }
+            _ => return None,
+        };
+        // A sentence with a time that can't be read must not go to the point before it.
+        let needs_time = kind != "VTG";
+        (!needs_time || sentence.of_day_ns.is_some()).then_some(sentence)
+    }
+}
+
+/// An angle of degrees and minutes with a letter, rad.
+fn angle(text: &str, letter: &str) -> Option<f64> {
+    let point = text.find('.').unwrap_or(text.len());
+    let (degrees, minutes) = text.split_at_checked(point.checked_sub(2)?)?;
+    let degrees: f64 = if degrees.is_empty() { 0.0 } else { degrees.parse().ok()? };
+    let minutes: f64 = minutes.parse().ok().filter(|minutes| (0.0..60.0).contains(minutes))?;
+    let sign = match letter {
+        "N" | "E" => 1.0,
+        "S" | "W" => -1.0,
+        _ => return None,
+    };
+    Some((sign * (degrees + minutes / 60.0)).to_radians())
+}
+
+/// Time of day of `hhmmss.ss`, ns.
+fn of_day(text: &str) -> Option<i64> {
+    let whole = |range: std::ops::Range<usize>| text.get(range)?.parse::<u8>().ok();
+    let (hours, minutes) = (whole(0..2)?, whole(2..4)?);
+    let seconds_ns = i64::try_from(decimal_ns(text.get(4..)?, 9)?).ok()?;
+    // A leap second is the 61st.
+    let sound = hours < 24 && minutes < 60 && seconds_ns < 61 * SECOND_NS;
+    sound.then(|| (i64::from(hours) * 3600 + i64::from(minutes) * 60) * SECOND_NS + seconds_ns)
+}
+
+/// Day of `ddmmyy`, ns since 1970.
+fn short_date(text: &str) -> Option<i64> {
+    let part = |range: std::ops::Range<usize>| text.get(range)?.parse::<i64>().ok();
+    let (day, month, year) = (part(0..2)?, part(2..4)?, part(4..6)?);
+    // Two digits: GPS began in 1980.
+    date(if year >= 80 { 1900 + year } else { 2000 + year }, month, day)
+}
+
+fn date(year: i64, month: i64, day: i64) -> Option<i64> {
+    let text = format!("{year:04}-{month:02}-{day:02}T00:00:00Z");
+    let since = octant_base::utc::parse(&text).ok()?.duration_since(std::time::UNIX_EPOCH).ok()?;
+    i64::try_from(since.as_nanos()).ok()
+}
+
+struct NmeaLines {
+    file: BufReader<File>,
+    text: String,
+    line: u64,
+    bytes: Vec<u8>,
+}
+
+impl NmeaLines {
+    fn new(file: File) -> Self {
+        let file = BufReader::with_capacity(1 << 16, file);
+        Self { file, text: String::new(), line: 0, bytes: Vec::new() }
+    }
+
+    /// Reads the next line; `false` at the end. Loggers mix in bytes that aren't text.
+    fn advance(&mut self) -> Result<bool, String> {
+        self.bytes.clear();
+        self.line += 1;
+        let read = (&mut self.file).take(LINE_BYTES_MAX).read_until(b'\n', &mut self.bytes);
+        let read = read.map_err(|error| format!("line {}: {error}", self.line))?;
+        self.text.clear();
+        self.text.push_str(&String::from_utf8_lossy(&self.bytes));
+        Ok(read > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_are_read_as_the_standard_has_them() {
+        // Checksums by `printf %s … | xor`, values by hand.
+        let gga = "$GPGGA,092750.000,5321.6802,N,00630.3372,W,1,8,1.03,61.7,M,55.2,M,,*76";
+        let found = Sentence::of(gga).unwrap();
+        assert_eq!(found.of_day_ns, Some((9 * 3600 + 27 * 60 + 50) * SECOND_NS));
+        let [latitude, longitude] = found.position.unwrap().map(f64::to_degrees);
+        assert!((latitude - (53.0 + 21.6802 / 60.0)).abs() < 1e-12);
+        assert!((longitude + (6.0 + 30.3372 / 60.0)).abs() < 1e-12);
+        assert!((found.height_m.unwrap() - 116.9).abs() < 1e-12);
+        let rmc = "$GPRMC,092750.000,A,5321.6802,N,00630.3372,W,0.02,31.66,280511,,,A*43";
+        let found = Sentence::of(rmc).unwrap();
+        // 28 May 2011.
+        assert_eq!(found.day_ns, Some(1_306_540_800 * SECOND_NS));
+        let [north, east] = found.velocity_mps.unwrap();
+        let speed = 0.02 * 1852.0 / 3600.0;
+        assert!((libm::hypot(north, east) - speed).abs() < 1e-15 && east > 0.0);
+        assert!(Sentence::of(&gga.replace("*76", "*77")).is_none(), "a wrong checksum");
+        assert!(Sentence::of(&format!("2011-05-28 09:27:51 {gga}")).is_some(), "a logger's stamp");
+    }
+
+    #[test]
+    fn angles_and_times_that_are_none_are_refused() {
+        assert_eq!(angle("5361.0", "N"), None);
+        assert_eq!(angle("1", "N"), None);
+        assert_eq!(angle("5321.0", "X"), None);
+        assert_eq!(of_day("246060"), None);
+        assert_eq!(of_day("2359"), None);
+        assert_eq!(short_date("320111"), None);
+    }
+}

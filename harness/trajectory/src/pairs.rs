@@ -1,0 +1,263 @@
+//! The points of a solution, each with the reference at its time.
+//!
+//! Time of the run begins with the first point that has a reference. Points without one are left out, and so are
+//! points that lack a velocity or an attitude that the others have; what is missing is told at the end.
+
+use super::point::{TimeScale, TrajectoryPoint};
+use super::reader::{TrajectoryError, TrajectoryReader};
+use super::survey::TrajectorySurvey;
+use super::track::{ReferencePoint, ReferenceTrack};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_scenario::FileNameError;
+use octant_scenario::trajectory::{SolutionSpec, TrajectorySpec};
+use std::f64::consts::{PI, TAU};
+use std::path::{Path, PathBuf};
+
+/// Share of the points that may be missing.
+const MISSING_SHARE: f64 = 0.01;
+
+/// The files of a solution can't be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum PairsError {
+    /// A file can't be read.
+    #[error(transparent)]
+    File(#[from] TrajectoryError),
+    /// A file name can't be expanded.
+    #[error(transparent)]
+    Name(#[from] FileNameError),
+    /// It isn't known how the times of the two files differ.
+    #[error(
+        "{solution} tells the time in {}, and {reference} in {}: expected source.trajectory.offset, which is \
+         added to the solution's times to get those of the reference, such as \"0 s\"",
+        scales.0.name(), scales.1.name()
+    )]
+    Scales {
+        /// File of the solution.
+        solution: String,
+        /// File of the reference.
+        reference: String,
+        /// Their scales.
+        scales: (TimeScale, TimeScale),
+    },
+    /// The scenario has another place.
+    #[error(
+        "{reference} begins {:.0} km from the site of the scenario: expected site.latitude = \"{:.4} deg\" and \
+         site.longitude = \"{:.4} deg\", or near", off_m / 1e3, position_deg[0], position_deg[1]
+    )]
+    Site {
+        /// File of the reference.
+        reference: String,
+        /// Distance, m.
+        off_m: f64,
+        /// Its first position, deg.
+        position_deg: [f64; 2],
+    },
+    /// The files are of different times.
+    #[error(
+        "no point of {solution} has a reference: it is from {:.3} to {:.3} s, and {reference} from {:.3} to \
+         {:.3} s of the same time",
+        spans_s[0], spans_s[1], spans_s[2], spans_s[3]
+    )]
+    Apart {
+        /// File of the solution.
+        solution: String,
+        /// File of the reference.
+        reference: String,
+        /// Beginning and end of both on the scale of the reference, s.
+        spans_s: [f64; 4],
+    },
+}
+
+/// A point of the solution and the reference at its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolutionPair {
+    /// Number, from 1.
+    pub sequence: u64,
+    /// Time of the run, ns: the first point is at one period.
+    pub time_ns: u64,
+    /// The solution.
+    pub solution: TrajectoryPoint,
+    /// The reference.
+    pub reference: ReferencePoint,
+}
+
+/// Reads both files forward.
+#[derive(Debug)]
+pub struct SolutionPairs {
+    solution: TrajectoryReader,
+    reference: ReferenceTrack,
+    survey: TrajectorySurvey,
+    /// Time of the first point that is scored.
+    from_ns: i64,
+    offset_ns: i64,
+    period_ns: u64,
+    /// Longest time of the run, ns.
+    until_ns: u64,
+    first_ns: Option<i64>,
+    last_ns: u64,
+    pairs: u64,
+    identical: bool,
+    apart: Apart,
+}
+
+/// Words for files of different times.
+#[derive(Clone, Debug)]
+struct Apart {
+    solution: String,
+    reference: String,
+    spans_s: [f64; 4],
+}
+
+/// Largest distance of the first position from the site, m: within it a minute of longitude changes by less
+/// than 2 % at 50° of latitude.
+const SITE_MAX_M: f64 = 100e3;
+
+/// Checks that a reference begins near the site.
+fn near(
+    path: &Path,
+    reference: &TrajectorySurvey,
+    [latitude_rad, longitude_rad]: [f64; 2],
+) -> Result<(), PairsError> {
+    let TrajectoryPoint { latitude_rad: first_rad, longitude_rad: first_east_rad, .. } =
+        reference.first;
+    let earth = Ellipsoid::at(latitude_rad, 0.0);
+    let east_rad = (first_east_rad - longitude_rad + PI).rem_euclid(TAU) - PI;
+    let off_m = libm::hypot(
+        (first_rad - latitude_rad) * earth.meridian_radius_m,
+        east_rad * earth.transverse_radius_m * earth.cos_latitude,
+    );
+    if off_m <= SITE_MAX_M {
+        return Ok(());
+    }
+    let position_deg = [first_rad.to_degrees(), first_east_rad.to_degrees()];
+    Err(PairsError::Site { reference: path.display().to_string(), off_m, position_deg })
+}
+
+impl SolutionPairs {
+    /// Opens both files, relative to a folder; they begin near the site, whose latitude converts units. A run of `duration_s` ends then; without one, with the files.
+    ///
+    /// # Errors
+    /// If a file can't be read to its end, or the times of both can't be compared.
+    pub fn open(
+        spec: &SolutionSpec,
+        (folder, site_rad): (&Path, [f64; 2]),
+        period_ns: u64,
+        duration_s: Option<f64>,
+    ) -> Result<Self, PairsError> {
+        let path = |trajectory: &TrajectorySpec| -> Result<PathBuf, FileNameError> {
+            trajectory.file.path(folder)
+        };
+        let (of_solution, of_reference) = (path(&spec.solution)?, path(&spec.reference)?);
+        let survey = TrajectorySurvey::of(&of_solution, &spec.solution.format)?;
+        let reference = TrajectorySurvey::of(&of_reference, &spec.reference.format)?;
+        let name = |path: &Path| path.display().to_string();
+        near(&of_reference, &reference, site_rad)?;
+        let (solution_name, reference_name) = (name(&of_solution), name(&of_reference));
+        let scales = (survey.scale, reference.scale);
+        let known_ns = scales.0.offset_to(scales.1, survey.span_ns.0, reference.span_ns.0);
+        let offset_ns = match (known_ns, spec.offset_ns) {
+            (None, None) => {
+                return Err(PairsError::Scales {
+                    solution: solution_name,
+                    reference: reference_name,
+                    scales,
+                });
+            }
+            (known_ns, given_ns) => known_ns.unwrap_or(0) + given_ns.unwrap_or(0),
+        };
+        let s = |ns: i64| ns as f64 * 1e-9;
+        let spans_s = [
+            s(survey.span_ns.0 + offset_ns),
+            s(survey.span_ns.1 + offset_ns),
+            s(reference.span_ns.0),
+            s(reference.span_ns.1),
+        ];
+        let apart = Apart { solution: solution_name, reference: reference_name, spans_s };
+        let reader = TrajectoryReader::open(&of_reference, &spec.reference.format)?;
+        Ok(Self {
+            solution: TrajectoryReader::open(&of_solution, &spec.solution.format)?,
+            reference: ReferenceTrack::new(reader, spec.gap_ns)?,
+            from_ns: survey.span_ns.0.saturating_add(spec.skip_ns),
+            survey,
+            offset_ns,
+            period_ns,
+            until_ns: duration_s.map_or(u64::MAX, |s| (s * 1e9).round() as u64),
+            first_ns: None,
+            last_ns: 0,
+            pairs: 0,
+            identical: true,
+            apart,
+        })
+    }
+
+    /// What the file of the solution holds.
+    #[must_use]
+    pub fn survey(&self) -> &TrajectorySurvey {
+        &self.survey
+    }
+
+    /// Number of points that a solution without gaps has in the time from its first to its last point, or
+    /// in the duration.
+    #[must_use]
+    pub fn planned(&self) -> u64 {
+        let span_ns = u64::try_from(self.survey.span_ns.1 - self.from_ns).unwrap_or(0);
+        let whole = (span_ns + self.period_ns / 2) / self.period_ns + 1;
+        whole.min((self.until_ns.saturating_add(self.period_ns / 2)) / self.period_ns)
+    }
+
+    /// Returns the next pair; `None` at the end.
+    ///
+    /// # Errors
+    /// If a file is damaged, or no point has a reference.
+    pub fn next_pair(&mut self) -> Result<Option<SolutionPair>, PairsError> {
+        while let Some(point) = self.solution.next()? {
+            let lacks = (self.survey.velocity && point.velocity_mps.is_none())
+                || (self.survey.attitude && point.attitude_rad.is_none());
+            if lacks || point.time_ns < self.from_ns {
+                continue;
+            }
+            let Some(reference) = self.reference.at(point.time_ns + self.offset_ns)? else {
+                continue;
+            };
+            let first_ns = *self.first_ns.get_or_insert(point.time_ns);
+            let since_ns = u64::try_from(point.time_ns - first_ns).unwrap_or(0);
+            let time_ns = since_ns.saturating_add(self.period_ns);
+            if time_ns > self.until_ns.saturating_add(self.period_ns / 2) {
+                break;
+            }
+            self.pairs += 1;
+            self.last_ns = time_ns;
+            self.identical &= point.latitude_rad == reference.latitude_rad
+                && point.longitude_rad == reference.longitude_rad;
+            return Ok(Some(SolutionPair {
+                sequence: self.pairs,
+                time_ns,
+                solution: point,
+                reference,
+            }));
+        }
+        if self.pairs == 0 {
+            let Apart { solution, reference, spans_s } = self.apart.clone();
+            return Err(PairsError::Apart { solution, reference, spans_s });
+        }
+        Ok(None)
+    }
+
+    /// Describes what makes the comparison so far no evidence; `None`: nothing does.
+    #[must_use]
+    pub fn doubt(&self) -> Option<String> {
+        let expected = (self.last_ns + self.period_ns / 2) / self.period_ns;
+        let missing = expected.saturating_sub(self.pairs);
+        if missing as f64 > MISSING_SHARE * expected as f64 {
+            return Some(format!(
+                "{missing} of {expected} points of the solution are missing, incomplete, or have no reference"
+            ));
+        }
+        (self.identical && self.pairs > 1).then(|| {
+            format!(
+                "all {} positions of the solution are exactly those of the reference",
+                self.pairs
+            )
+        })
+    }
+}

@@ -1,0 +1,123 @@
+//! Files of trajectories, point by point.
+
+use super::columns::ColumnsReader;
+use super::nmea::NmeaReader;
+use super::point::{TimeScale, TrajectoryPoint};
+use super::rtklib::RtklibReader;
+use super::sbet::SbetReader;
+use octant_scenario::trajectory::TrajectoryFormat;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::path::Path;
+
+/// A file can't be read, or isn't what it is said to be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{path}: {reason}")]
+pub struct TrajectoryError {
+    /// The file.
+    pub path: String,
+    /// Place, what was found, and what was expected.
+    pub reason: String,
+}
+
+impl TrajectoryError {
+    pub(crate) fn new(path: &Path, reason: impl Into<String>) -> Self {
+        Self { path: path.display().to_string(), reason: reason.into() }
+    }
+}
+
+/// Longest line of text, bytes: a file of another kind may have no line ends and must not fill the memory.
+pub(crate) const LINE_BYTES_MAX: u64 = 64 * 1024;
+
+/// A form of file.
+pub(crate) trait Points: Send {
+    /// Returns the next point; `None` at the end.
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String>;
+    /// Place of the last point, as in "line 17".
+    fn place(&self) -> String;
+    fn scale(&self) -> TimeScale;
+}
+
+/// Reads the points of a file, in the order of their times.
+pub struct TrajectoryReader {
+    path: std::path::PathBuf,
+    points: Box<dyn Points>,
+    last_ns: Option<i64>,
+}
+
+impl std::fmt::Debug for TrajectoryReader {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TrajectoryReader").field("path", &self.path).finish_non_exhaustive()
+    }
+}
+
+impl TrajectoryReader {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// If it can't be read, or its beginning isn't that of such a file.
+    pub fn open(path: &Path, format: &TrajectoryFormat) -> Result<Self, TrajectoryError> {
+        let fail = |reason| TrajectoryError::new(path, reason);
+        let file = std::fs::File::open(path).map_err(|error| fail(error.to_string()))?;
+        let points: Box<dyn Points> = match format {
+            TrajectoryFormat::Csv(columns) => {
+                Box::new(ColumnsReader::new(file, columns).map_err(fail)?)
+            }
+            TrajectoryFormat::Nmea => Box::new(NmeaReader::new(file).map_err(fail)?),
+            TrajectoryFormat::Rtklib => Box::new(RtklibReader::new(file).map_err(fail)?),
+            TrajectoryFormat::Sbet => Box::new(SbetReader::new(file).map_err(fail)?),
+        };
+        Ok(Self { path: path.to_owned(), points, last_ns: None })
+    }
+
+    /// Scale of the times; that of text is known after its first row.
+    #[must_use]
+    pub fn scale(&self) -> TimeScale {
+        self.points.scale()
+    }
+
+    /// Returns the next point; `None` at the end.
+    ///
+    /// # Errors
+    /// If the file is damaged, a number can't be what it is said to be, or time doesn't run forward.
+    #[expect(clippy::should_implement_trait, reason = "an iterator's `next` can't fail")]
+    pub fn next(&mut self) -> Result<Option<TrajectoryPoint>, TrajectoryError> {
+        let next = self.points.next().map_err(|reason| TrajectoryError::new(&self.path, reason))?;
+        let Some(point) = next else { return Ok(None) };
+        let fail = |reason: String| {
+            let place = self.points.place();
+            Err(TrajectoryError::new(&self.path, format!("{place}: {reason}")))
+        };
+        if let Some(reason) = impossible(&point) {
+            return fail(reason);
+        }
+        if let Some(last_ns) = self.last_ns.filter(|last_ns| point.time_ns <= *last_ns) {
+            return fail(format!(
+                "found a time {:.9} s before the point before it, expected a later one",
+                (last_ns - point.time_ns) as f64 * 1e-9
+            ));
+        }
+        self.last_ns = Some(point.time_ns);
+        Ok(Some(point))
+    }
+}
+
+/// Reason why a point can't be one.
+fn impossible(point: &TrajectoryPoint) -> Option<String> {
+    let [north, east] = point.velocity_mps.unwrap_or_default();
+    let [roll, pitch, heading] = point.attitude_rad.unwrap_or_default();
+    let numbers = [
+        ("latitude", point.latitude_rad.to_degrees(), FRAC_PI_2.to_degrees(), "deg"),
+        ("longitude", point.longitude_rad.to_degrees(), TAU.to_degrees(), "deg"),
+        ("height", point.height_m, 1e7, "m"),
+        ("velocity north", north, 2e4, "m/s"),
+        ("velocity east", east, 2e4, "m/s"),
+        ("roll", roll.to_degrees(), TAU.to_degrees(), "deg"),
+        ("pitch", pitch.to_degrees(), FRAC_PI_2.to_degrees(), "deg"),
+        ("heading", heading.to_degrees(), TAU.to_degrees(), "deg"),
+    ];
+    // A comparison that NaN fails. A limit in another unit rounds.
+    let wrong = numbers.into_iter().find(|(_, value, most, _)| !(value.abs() <= most * 1.000_001));
+    wrong.map(|(name, value, most, unit)| {
+        format!("found {name} {value} {unit}, expected -{most} to {most} {unit}")
+    })
+}

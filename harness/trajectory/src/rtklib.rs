@@ -1,0 +1,191 @@
+//! Solutions of RTKLIB (`.pos`): latitude, longitude and height, with the velocity where it was written.
+//!
+//! Format: RTKLIB 2.4.2 manual, appendix B.1.
+
+use super::point::{SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns};
+use super::reader::{LINE_BYTES_MAX, Points};
+use octant_base::decimal::decimal_ns;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::time::UNIX_EPOCH;
+
+pub(crate) struct RtklibReader {
+    file: BufReader<File>,
+    text: String,
+    line: u64,
+    /// What the names of the columns say; `None`: they haven't come.
+    columns: Option<RtklibColumns>,
+}
+
+/// What a line that begins with `%` says of the rows.
+#[derive(Clone, Copy, Debug)]
+struct RtklibColumns {
+    utc: bool,
+    /// Position of the velocity north, counted from latitude; east follows.
+    velocity: Option<usize>,
+}
+
+impl RtklibReader {
+    pub(crate) fn new(file: File) -> Result<Self, String> {
+        let file = BufReader::with_capacity(1 << 16, file);
+        Ok(Self { file, text: String::new(), line: 0, columns: None })
+    }
+
+    fn read_line(&mut self) -> Result<bool, String> {
+        self.text.clear();
+        self.line += 1;
+        let read = (&mut self.file).take(LINE_BYTES_MAX).read_line(&mut self.text);
+        match read {
+            Err(error) => Err(format!("line {}: {error}", self.line)),
+            Ok(n) if n as u64 == LINE_BYTES_MAX => {
+                Err(format!("line {}: longer than {LINE_BYTES_MAX} bytes", self.line))
+            }
+            Ok(n) => Ok(n > 0),
+        }
+    }
+
+    fn point(&self, columns: RtklibColumns) -> Result<TrajectoryPoint, String> {
+        let separated = |c: char| c.is_whitespace() || c == ',';
+        let fields: Vec<&str> =
+            self.text.split(separated).filter(|field| !field.is_empty()).collect();
+        let [date, time, values @ ..] = fields.as_slice() else {
+            return Err(self.error("found fewer than two columns, expected a time and a position"));
+        };
+        let number = |index: usize| -> Result<f64, String> {
+            let text = values.get(index).copied().unwrap_or_default();
+            let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+            value.ok_or_else(|| {
+                self.error(&format!("column {}: found {text:?}, expected a number", index + 3))
+            })
+        };
+        let time_ns = time_ns(date, time, columns.utc).ok_or_else(|| {
+            self.error(&format!(
+                "found {date:?} and {time:?}, expected a date and a time from 1999 on, or a GPS week \
+                 and its second"
+            ))
+        })?;
+        let velocity_mps = match columns.velocity {
+            Some(north) => Some([number(north)?, number(north + 1)?]),
+            None => None,
+        };
+        Ok(TrajectoryPoint {
+            time_ns,
+            latitude_rad: number(0)?.to_radians(),
+            longitude_rad: number(1)?.to_radians(),
+            height_m: number(2)?,
+            velocity_mps,
+            attitude_rad: None,
+        })
+    }
+
+    fn error(&self, reason: &str) -> String {
+        format!("line {}: {reason}", self.line)
+    }
+}
+
+impl Points for RtklibReader {
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
+        while self.read_line()? {
+            if let Some(comment) = self.text.strip_prefix('%') {
+                if let Some(columns) = columns_of(comment).map_err(|reason| self.error(&reason))? {
+                    self.columns = Some(columns);
+                }
+                continue;
+            }
+            if self.text.trim().is_empty() {
+                continue;
+            }
+            let Some(columns) = self.columns else {
+                return Err(self.error(
+                    "found no line before it that begins with % and names latitude(deg) and longitude(deg), \
+                     as a solution of RTKLIB has it",
+                ));
+            };
+            return self.point(columns).map(Some);
+        }
+        Ok(None)
+    }
+
+    fn place(&self) -> String {
+        format!("line {}", self.line)
+    }
+
+    fn scale(&self) -> TimeScale {
+        TimeScale::Utc
+    }
+}
+
+/// Reads the line with the names of the columns; `None` for another comment.
+fn columns_of(comment: &str) -> Result<Option<RtklibColumns>, String> {
+    let names: Vec<&str> =
+        comment.split([' ', ',', '\t']).filter(|name| !name.is_empty()).collect();
+    let at = |wanted: &str| names.iter().position(|name| *name == wanted);
+    let Some(latitude) = at("latitude(deg)") else {
+        let other = ["x-ecef(m)", "e-baseline(m)", "latitude(d'\")"];
+        return match names.iter().find(|name| other.contains(name)) {
+            Some(found) => Err(format!(
+                "found the column {found}, expected latitude(deg): RTKLIB's solution format \"Lat/Lon/Height\" \
+                 in \"ddd.ddddddd\""
+            )),
+            None => Ok(None),
+        };
+    };
+    let utc = match names.first() {
+        Some(&"UTC") => true,
+        Some(&"GPST") => false,
+        found => {
+            return Err(format!(
+                "found times in {}, expected GPST or UTC",
+                found.copied().unwrap_or_default()
+            ));
+        }
+    };
+    let velocity = at("vn(m/s)").map(|north| north - latitude);
+    Ok(Some(RtklibColumns { utc, velocity }))
+}
+
+/// Time of a row, UTC.
+fn time_ns(date: &str, time: &str, utc: bool) -> Option<i64> {
+    if let Ok(week) = date.parse::<u16>() {
+        let of_week_ns = i64::try_from(decimal_ns(time, 9)?).ok()?;
+        return gps_to_utc_ns(i64::from(week) * WEEK_NS + of_week_ns);
+    }
+    let (time, fraction) = time.split_once('.').unwrap_or((time, ""));
+    let whole = octant_base::utc::parse(&format!("{}T{time}Z", date.replace('/', "-"))).ok()?;
+    let whole_s = whole.duration_since(UNIX_EPOCH).ok()?.as_secs();
+    let fraction_ns = i64::try_from(decimal_ns(&format!("0.{fraction}0"), 9)?).ok()?;
+    let as_if_ns = i64::try_from(whole_s).ok()?.checked_mul(SECOND_NS)?.checked_add(fraction_ns)?;
+    if utc {
+        return Some(as_if_ns);
+    }
+    // Of GPS time the calendar is that of UTC without leap seconds.
+    gps_to_utc_ns(as_if_ns.checked_sub(GPS_EPOCH_NS)?)
+}
+
+/// Beginning of GPS time, ns since 1970.
+const GPS_EPOCH_NS: i64 = 315_964_800 * SECOND_NS;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_all_three_forms_are_the_same() {
+        // 2017-01-01T00:00:00 UTC is second 18 of GPS week 1930.
+        let utc_ns = 1_483_228_800 * SECOND_NS + 250_000_000;
+        assert_eq!(time_ns("2017/01/01", "00:00:00.250", true), Some(utc_ns));
+        assert_eq!(time_ns("2017/01/01", "00:00:18.25", false), Some(utc_ns));
+        assert_eq!(time_ns("1930", "18.250", false), Some(utc_ns));
+        for (date, time) in [("2017/13/01", "00:00:00"), ("x", "1"), ("1930", "-1"), ("1", "0")] {
+            assert_eq!(time_ns(date, time, false), None, "{date} {time}");
+        }
+    }
+
+    #[test]
+    fn other_solutions_are_named() {
+        let found = columns_of("  GPST  x-ecef(m)  y-ecef(m)").unwrap_err();
+        assert!(found.contains("x-ecef(m)") && found.contains("latitude(deg)"), "{found}");
+        assert!(columns_of(" JST latitude(deg) longitude(deg)").unwrap_err().contains("JST"));
+        assert!(columns_of(" program   : RTKPOST ver.2.4.2").unwrap().is_none());
+    }
+}

@@ -1,0 +1,79 @@
+//! SBET, "smoothed best estimate of trajectory": records of 17 doubles, little endian, without a header.
+//!
+//! Time is in seconds of the GPS week, angles in rad. Velocities are left out: the programs that write such files
+//! don't agree about their axes. Heading counts from the platform's x axis, which the wander angle turns away from
+//! north; they don't agree about its sign either, so an attitude is taken where it is zero.
+
+use super::point::{TimeScale, TrajectoryPoint};
+use super::reader::Points;
+use std::fs::File;
+use std::io::{BufReader, Read};
+
+const FIELDS: usize = 17;
+const RECORD: usize = 8 * FIELDS;
+
+pub(crate) struct SbetReader {
+    file: BufReader<File>,
+    records: u64,
+}
+
+impl SbetReader {
+    pub(crate) fn new(file: File) -> Result<Self, String> {
+        let bytes = file.metadata().map_err(|error| error.to_string())?.len();
+        if bytes == 0 || !bytes.is_multiple_of(RECORD as u64) {
+            return Err(format!("found {bytes} bytes, expected records of {RECORD} bytes"));
+        }
+        Ok(Self { file: BufReader::with_capacity(1 << 16, file), records: 0 })
+    }
+}
+
+impl Points for SbetReader {
+    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
+        let mut bytes = [0; RECORD];
+        let begun = self.file.read(&mut bytes[..1]).map_err(|error| error.to_string())?;
+        if begun == 0 {
+            return Ok(None);
+        }
+        self.records += 1;
+        let read = self.file.read_exact(&mut bytes[1..]);
+        read.map_err(|error| format!("{}: {error}", self.place()))?;
+        let mut fields = [0.0; FIELDS];
+        for (field, bytes) in fields.iter_mut().zip(bytes.as_chunks().0) {
+            *field = f64::from_le_bytes(*bytes);
+        }
+        let [
+            time_s,
+            latitude_rad,
+            longitude_rad,
+            height_m,
+            _,
+            _,
+            _,
+            roll,
+            pitch,
+            heading,
+            wander,
+            ..,
+        ] = fields;
+        if !(0.0..1e9).contains(&time_s) {
+            let place = self.place();
+            return Err(format!("{place}: found time {time_s} s, expected seconds of a GPS week"));
+        }
+        Ok(Some(TrajectoryPoint {
+            time_ns: (time_s * 1e9).round() as i64,
+            latitude_rad,
+            longitude_rad,
+            height_m,
+            velocity_mps: None,
+            attitude_rad: (wander == 0.0).then_some([roll, pitch, heading]),
+        }))
+    }
+
+    fn place(&self) -> String {
+        format!("record {}", self.records)
+    }
+
+    fn scale(&self) -> TimeScale {
+        TimeScale::GpsWeek
+    }
+}

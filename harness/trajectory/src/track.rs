@@ -1,0 +1,106 @@
+//! A reference trajectory at any time.
+//!
+//! Between two points the position follows the cubic that has their velocities (Hermite), or a line where the file
+//! has none: with an acceleration a, a line over the time T is wrong by a T²/8 at most. Velocity goes along a line,
+//! attitude along the shortest turn.
+
+use super::point::TrajectoryPoint;
+use super::reader::{TrajectoryError, TrajectoryReader};
+use octant_earth::UnitQuaternion;
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::frames::{c_nc, quaternion_from_matrix};
+use std::f64::consts::{PI, TAU};
+
+/// What a reference says at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferencePoint {
+    /// Geodetic latitude, rad.
+    pub latitude_rad: f64,
+    /// Longitude, rad.
+    pub longitude_rad: f64,
+    /// Height above the ellipsoid, m.
+    pub height_m: f64,
+    /// Velocity over ground, north and east, m/s.
+    pub velocity_mps: Option<[f64; 2]>,
+    /// Attitude `q_nc` of the case.
+    pub q_nc: Option<UnitQuaternion<f64>>,
+}
+
+/// Attitude of the case as a quaternion `q_nc` from roll, pitch and heading.
+#[must_use]
+pub fn q_nc([roll, pitch, heading]: [f64; 3]) -> UnitQuaternion<f64> {
+    quaternion_from_matrix(&c_nc(heading, pitch, roll))
+}
+
+/// Reads a reference forward, for times that run forward.
+#[derive(Debug)]
+pub struct ReferenceTrack {
+    reader: TrajectoryReader,
+    gap_ns: i64,
+    before: Option<TrajectoryPoint>,
+    after: Option<TrajectoryPoint>,
+}
+
+impl ReferenceTrack {
+    /// A track whose points have a gap between them if they are further apart than `gap_ns`.
+    ///
+    /// # Errors
+    /// If the file can't be read.
+    pub fn new(mut reader: TrajectoryReader, gap_ns: i64) -> Result<Self, TrajectoryError> {
+        let after = reader.next()?;
+        Ok(Self { reader, gap_ns, before: None, after })
+    }
+
+    /// Returns the reference at a time of its file, ns; `None` before its beginning, after its end and in a gap.
+    ///
+    /// # Errors
+    /// If the file is damaged.
+    pub fn at(&mut self, time_ns: i64) -> Result<Option<ReferencePoint>, TrajectoryError> {
+        while let Some(after) = self.after.filter(|after| after.time_ns <= time_ns) {
+            self.before = Some(after);
+            self.after = self.reader.next()?;
+        }
+        Ok(match (&self.before, &self.after) {
+            (Some(before), Some(after)) if after.time_ns - before.time_ns <= self.gap_ns => {
+                Some(between(before, after, time_ns))
+            }
+            // On a point itself nothing is interpolated.
+            (Some(before), _) if before.time_ns == time_ns => {
+                Some(between(before, before, time_ns))
+            }
+            _ => None,
+        })
+    }
+}
+
+fn between(a: &TrajectoryPoint, b: &TrajectoryPoint, time_ns: i64) -> ReferencePoint {
+    let length_s = (b.time_ns - a.time_ns) as f64 * 1e-9;
+    let share = if length_s > 0.0 { (time_ns - a.time_ns) as f64 * 1e-9 / length_s } else { 0.0 };
+    let line = |a: f64, b: f64| a + (b - a) * share;
+    let height_m = line(a.height_m, b.height_m);
+    let east_rad = (b.longitude_rad - a.longitude_rad + PI).rem_euclid(TAU) - PI;
+    let north_rad = b.latitude_rad - a.latitude_rad;
+    let velocities = a.velocity_mps.zip(b.velocity_mps);
+    let mut moved = [north_rad * share, east_rad * share];
+    if let Some((va, vb)) = velocities {
+        let [ra, rb] = [(a, va), (b, vb)].map(|(point, [north, east])| {
+            let earth = Ellipsoid::at(point.latitude_rad, point.height_m);
+            let across_m = earth.transverse_radius_m * earth.cos_latitude;
+            [north / earth.meridian_radius_m, east / across_m].map(|rate| rate * length_s)
+        });
+        let (s, ends) = (share, [north_rad, east_rad]);
+        for axis in 0..2 {
+            moved[axis] = s * s * (3.0 - 2.0 * s) * ends[axis]
+                + s * (1.0 - s) * ((1.0 - s) * ra[axis] - s * rb[axis]);
+        }
+    }
+    let turns = a.attitude_rad.zip(b.attitude_rad).map(|(a, b)| (q_nc(a), q_nc(b)));
+    ReferencePoint {
+        latitude_rad: a.latitude_rad + moved[0],
+        longitude_rad: a.longitude_rad + moved[1],
+        height_m,
+        velocity_mps: velocities.map(|(a, b)| [line(a[0], b[0]), line(a[1], b[1])]),
+        // Two attitudes on opposite sides have no shortest turn; the first is as good as any.
+        q_nc: turns.map(|(a, b)| a.try_slerp(&b, share, 1e-12).unwrap_or(a)),
+    }
+}
