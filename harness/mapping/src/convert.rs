@@ -8,8 +8,10 @@ use octant_scenario::channel::{Channel, Class};
 /// SI value = factor · value + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelConversion {
-    factor: f64,
-    offset: f64,
+    /// SI units in a unit of the value.
+    pub factor: f64,
+    /// SI value of zero.
+    pub offset: f64,
 }
 
 impl ChannelConversion {

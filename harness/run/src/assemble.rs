@@ -17,7 +17,7 @@ use octant_requirements::Verdict;
 use octant_requirements::decision::{DecisionRule, NavigationContext, TimeDoubt};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
-use octant_scenario::{MotionSpec, Scenario};
+use octant_scenario::{MotionSpec, Scenario, SourceSpec};
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;

@@ -36,7 +36,10 @@ pub fn configurations(
     let truth = match &scenario.source {
         SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
         SourceKind::Fmu(fmu) => crate::fmu::truth_at_start(scenario, fmu, &plant)?,
-        SourceKind::Replay { .. } | SourceKind::Text(_) | SourceKind::Live(_) => None,
+        SourceKind::Replay { .. }
+        | SourceKind::Text(_)
+        | SourceKind::Live(_)
+        | SourceKind::Solution(_) => None,
     };
     let (q_nb, velocity) = match truth {
         Some(truth) => {

@@ -43,7 +43,7 @@ impl NmeaReader {
     }
 
     /// Takes a sentence; returns the point that it ends.
-    fn take(&mut self, sentence: &Sentence<'_>) -> Option<TrajectoryPoint> {
+    fn take(&mut self, sentence: &Sentence) -> Option<TrajectoryPoint> {
         let mut ended = None;
         if let Some(of_day_ns) = sentence.of_day_ns {
             match self.begun {
@@ -131,8 +131,7 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
 
 /// What a sentence says.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sentence<'a> {
-    kind: &'a str,
+struct Sentence {
     of_day_ns: Option<i64>,
     day_ns: Option<i64>,
     position: Option<[f64; 2]>,
@@ -141,9 +140,9 @@ struct Sentence<'a> {
     attitude_rad: Option<[f64; 3]>,
 }
 
-impl<'a> Sentence<'a> {
+impl Sentence {
     /// Reads a line; `None` if it has no sentence that counts here, or a damaged one.
-    fn of(line: &'a str) -> Option<Self> {
+    fn of(line: &str) -> Option<Self> {
         // Loggers write stamps of their own before a sentence.
         let body = &line[line.rfind('$')? + 1..];
         let (body, checksum) = body.trim_end().rsplit_once('*')?;
@@ -167,7 +166,7 @@ impl<'a> Sentence<'a> {
             let (sine, cosine) = libm::sincos(course_deg.to_radians());
             Some([speed_mps * cosine, speed_mps * sine])
         };
-        let none = Self { kind, ..Self::default() };
+        let none = Self::default();
         let sentence = match kind {
             "GGA" | "GNS" => {
                 let is_fix = match kind {
