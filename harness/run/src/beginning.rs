@@ -108,7 +108,7 @@ impl Parts {
         let Self { source, mut endpoint, mut steps, mut watcher, revision, ended } = self;
         endpoint.plan_navigation(ahead.navigation.clone())?;
         steps.last(ahead.samples);
-        watcher.plan(ahead.work.clone());
+        watcher.done.plan(ahead.work.clone());
         Ok(Self {
             source: source.lasting(ahead.samples),
             endpoint,

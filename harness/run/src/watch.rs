@@ -64,7 +64,7 @@ pub struct Watcher {
     tells: Tells,
     check: AnswerCheck,
     follow: RunFollower,
-    done: Done,
+    pub(super) done: Done,
     drift: DriftScorer,
     drift_samples: u64,
     /// Moment of which the solution is to be noted with the next truth.
@@ -162,11 +162,6 @@ impl Watcher {
             misbehaved: None,
             bench_broke: None,
         }
-    }
-
-    /// Takes the plan of a run that differs from the present one by its navigation.
-    pub(super) fn plan(&mut self, plan: PlannedWork) {
-        self.done.plan(plan);
     }
 
     /// Sets which quantities the unit of a recording tells, from the recording's metadata. A recording

@@ -1,7 +1,7 @@
 //! Columns of text.
 
 use super::point::{TimeScale, TrajectoryPoint};
-use super::reader::{LINE_BYTES_MAX, Points};
+use super::points::{LINE_BYTES_MAX, Points};
 use csv::StringRecord;
 use octant_base::decimal::decimal_ns;
 use octant_base::number::counted;

@@ -14,6 +14,7 @@ mod columns;
 mod nmea;
 pub mod pairs;
 pub mod point;
+mod points;
 pub mod reader;
 mod rtklib;
 mod sbet;

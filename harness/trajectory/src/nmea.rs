@@ -5,7 +5,7 @@
 //! RMC and ZDA. A point without a valid position is left out.
 
 use super::point::{SECOND_NS, TimeScale, TrajectoryPoint};
-use super::reader::{LINE_BYTES_MAX, Points};
+use super::points::{LINE_BYTES_MAX, Points};
 use octant_base::decimal::decimal_ns;
 use octant_earth::units::NAUTICAL_MILE_M;
 use std::fs::File;

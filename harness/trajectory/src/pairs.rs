@@ -20,14 +20,14 @@ const MISSING_SHARE: f64 = 0.01;
 #[derive(Debug, thiserror::Error)]
 pub enum PairsError {
     /// A file can't be read.
-    #[error(transparent)]
+    #[error("read {0}")]
     File(#[from] TrajectoryError),
     /// A file name can't be expanded.
     #[error(transparent)]
     Name(#[from] FileNameError),
     /// It isn't known how the times of the two files differ.
     #[error(
-        "{solution} tells the time in {}, and {reference} in {}: expected source.trajectory.offset, which is \
+        "compare {solution}, which tells the time in {}, with {reference}, in {}: expected source.trajectory.offset, which is \
          added to the solution's times to get those of the reference, such as \"0 s\"",
         scales.0.name(), scales.1.name()
     )]
@@ -41,7 +41,7 @@ pub enum PairsError {
     },
     /// The scenario has another place.
     #[error(
-        "{reference} begins {:.0} km from the site of the scenario: expected site.latitude = \"{:.4} deg\" and \
+        "score against {reference}, which begins {:.0} km from the site of the scenario: expected site.latitude = \"{:.4} deg\" and \
          site.longitude = \"{:.4} deg\", or near", off_m / 1e3, position_deg[0], position_deg[1]
     )]
     Site {
@@ -54,8 +54,8 @@ pub enum PairsError {
     },
     /// The files are of different times.
     #[error(
-        "no point of {solution} has a reference: it is from {:.3} to {:.3} s, and {reference} from {:.3} to \
-         {:.3} s of the same time",
+        "compare {solution} with {reference}: found no point that has a reference; the solution is from {:.3} to {:.3} s, and the reference from {:.3} to {:.3} s \
+         of the same time",
         spans_s[0], spans_s[1], spans_s[2], spans_s[3]
     )]
     Apart {
@@ -172,6 +172,10 @@ impl SolutionPairs {
             s(reference.span_ns.0),
             s(reference.span_ns.1),
         ];
+        if spans_s[1] < spans_s[2] || spans_s[3] < spans_s[0] {
+            let (solution, reference) = (solution_name, reference_name);
+            return Err(PairsError::Apart { solution, reference, spans_s });
+        }
         let apart = Apart { solution: solution_name, reference: reference_name, spans_s };
         let reader = TrajectoryReader::open(&of_reference, &spec.reference.format)?;
         Ok(Self {

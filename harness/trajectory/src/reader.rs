@@ -3,6 +3,7 @@
 use super::columns::ColumnsReader;
 use super::nmea::NmeaReader;
 use super::point::{TimeScale, TrajectoryPoint};
+use super::points::Points;
 use super::rtklib::RtklibReader;
 use super::sbet::SbetReader;
 use octant_scenario::trajectory::TrajectoryFormat;
@@ -23,18 +24,6 @@ impl TrajectoryError {
     pub(crate) fn new(path: &Path, reason: impl Into<String>) -> Self {
         Self { path: path.display().to_string(), reason: reason.into() }
     }
-}
-
-/// Longest line of text, bytes: a file of another kind may have no line ends and must not fill the memory.
-pub(crate) const LINE_BYTES_MAX: u64 = 64 * 1024;
-
-/// A form of file.
-pub(crate) trait Points: Send {
-    /// Returns the next point; `None` at the end.
-    fn next(&mut self) -> Result<Option<TrajectoryPoint>, String>;
-    /// Place of the last point, as in "line 17".
-    fn place(&self) -> String;
-    fn scale(&self) -> TimeScale;
 }
 
 /// Reads the points of a file, in the order of their times.
@@ -111,9 +100,10 @@ fn impossible(point: &TrajectoryPoint) -> Option<String> {
         ("height", point.height_m, 1e7, "m"),
         ("velocity north", north, 2e4, "m/s"),
         ("velocity east", east, 2e4, "m/s"),
-        ("roll", roll.to_degrees(), TAU.to_degrees(), "deg"),
+        // Angles may run on over a whole turn.
+        ("roll", roll.to_degrees(), 720.0, "deg"),
         ("pitch", pitch.to_degrees(), FRAC_PI_2.to_degrees(), "deg"),
-        ("heading", heading.to_degrees(), TAU.to_degrees(), "deg"),
+        ("heading", heading.to_degrees(), 720.0, "deg"),
     ];
     // A comparison that NaN fails. A limit in another unit rounds.
     let wrong = numbers.into_iter().find(|(_, value, most, _)| !(value.abs() <= most * 1.000_001));

@@ -3,7 +3,7 @@
 //! Format: RTKLIB 2.4.2 manual, appendix B.1.
 
 use super::point::{SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns};
-use super::reader::{LINE_BYTES_MAX, Points};
+use super::points::{LINE_BYTES_MAX, Points};
 use octant_base::decimal::decimal_ns;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};

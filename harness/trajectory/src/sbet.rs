@@ -5,7 +5,7 @@
 //! north; they don't agree about its sign either, so an attitude is taken where it is zero.
 
 use super::point::{TimeScale, TrajectoryPoint};
-use super::reader::Points;
+use super::points::Points;
 use std::fs::File;
 use std::io::{BufReader, Read};
 

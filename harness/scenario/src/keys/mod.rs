@@ -7,6 +7,7 @@
 
 mod calibration;
 mod campaign;
+mod columns;
 mod connection;
 mod definition;
 mod drive;

@@ -1,14 +1,11 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
+use super::columns::{column, time_unit};
 use super::definition::Kind;
 use super::fmu::SourceFmuKeys;
-use super::table::{
-    At, Of, Value, boolean, choice, integer, keys, numbers, table, text, time, within,
-};
+use super::table::{At, Of, boolean, choice, integer, keys, numbers, table, text, time, within};
 use super::trajectory::{ReferenceTrajectoryKeys, SolutionKeys};
-use crate::error::Problem;
 use crate::quantity::UnitDimension;
-use crate::read::reader::Reader;
 use crate::recorded::{Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TimeUnit};
 
 keys! {
@@ -170,28 +167,6 @@ keys! {
 
 const SPLIT_DOC: &str = "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).";
 const FILE_DOC: &str = "File of these columns, where it isn't that of source.uri.";
-
-impl Value for RecordedColumn {
-    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
-        Ok(match String::read(table, key)? {
-            Some(name) => Some(Self::Name(name)),
-            None => usize::read(table, key)?.map(Self::Number),
-        })
-    }
-}
-
-pub(super) const fn column() -> Of<RecordedColumn> {
-    Of::kind(Kind::Column)
-}
-
-pub(super) const fn time_unit() -> Of<TimeUnit> {
-    choice! {
-        "s" => TimeUnit::Second, "seconds";
-        "ms" => TimeUnit::Millisecond, "milliseconds";
-        "us" => TimeUnit::Microsecond, "microseconds";
-        "ns" => TimeUnit::Nanosecond, "nanoseconds";
-    }
-}
 
 /// Conversion of a sensor's raw numbers, whatever they come from.
 pub(crate) struct SignalKeys<'a> {

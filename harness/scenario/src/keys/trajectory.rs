@@ -1,7 +1,7 @@
 //! Keys of an instrument's own solution, and of the trajectory that it is scored against.
 
+use super::columns::{column, time_unit};
 use super::definition::Kind;
-use super::source::{column, time_unit};
 use super::table::{At, Of, choice, integer, keys, text, time};
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
 

@@ -14,6 +14,7 @@ pub mod requirement;
 mod sequence;
 mod source;
 mod trajectory;
+mod unit_of;
 
 pub(crate) use reader::Reader;
 

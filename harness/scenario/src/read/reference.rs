@@ -1,6 +1,6 @@
 //! Reads the reference of a source that brings none, from `[source.reference]`.
 
-use super::source::unit_si;
+use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{
     At, CalibrationKeys, Reference, ReferenceKind, ScenarioKeys, SourceReferenceKeys,

@@ -1,6 +1,7 @@
 //! Reads the source of the samples from `[source]`.
 
 use super::instrument_port::instrument;
+use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
 use crate::model::{FileName, SourceSpec};
@@ -159,13 +160,6 @@ fn check_rate(rate: &At<f64>, split: u32, sample_period_ns: u64) -> Result<(), P
          {sample_period_ns} ns: expected the same",
         rate.text
     )))
-}
-
-/// SI value of a unit.
-pub(super) fn unit_si(unit: &At<String>) -> Result<f64, Problem> {
-    crate::quantity::parse(&format!("1 {}", **unit))
-        .map(|quantity| quantity.si)
-        .map_err(|_| unit.problem(format!("found the unknown unit {:?}", **unit)))
 }
 
 /// Column along a body axis: `si = (raw − offset) · scale`.

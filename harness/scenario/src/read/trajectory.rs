@@ -1,5 +1,6 @@
 //! Reads `[source.solution]` and `[source.trajectory]`.
 
+use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{
     At, ReferenceTrajectoryKeys, ScenarioKeys, SolutionKeys, SourceKeys, TrajectoryForm,
@@ -113,8 +114,8 @@ macro_rules! columns_of {
                         position: [&self.latitude, &self.longitude, &self.height].map(column),
                         velocity: [&self.north, &self.east].map(column),
                         attitude: [&self.roll, &self.pitch, &self.heading].map(column),
-                        angle_rad: super::source::unit_si(&self.angle_unit)?,
-                        velocity_mps: super::source::unit_si(&self.velocity_unit)?,
+                        angle_rad: unit_si(&self.angle_unit)?,
+                        velocity_mps: unit_si(&self.velocity_unit)?,
                     })
                 })
             }
