@@ -88,6 +88,9 @@ impl SolutionArguments {
             force: self.force,
             require: self.require,
             json,
+            call: Some(
+                std::iter::once("octant".to_owned()).chain(std::env::args().skip(1)).collect(),
+            ),
             ..RunRequest::default()
         })
     }

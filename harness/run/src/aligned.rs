@@ -3,12 +3,16 @@
 use super::watch::Watcher;
 use octant_calibration::config::{Estimator, Prior};
 use octant_calibration::covariance::SolutionCovariance;
-use octant_scenario::{AlignmentSpec, MotionSpec, Scenario};
+use octant_scenario::{AlignmentSpec, MotionSpec, Scenario, SourceSpec};
 use octant_score::alignment::SolutionUncertainty;
 use octant_score::summary::{AlignmentReference, AlignmentResult, SolutionScore};
 
 /// Builds the result of a method's alignment; `None` if the unit never had an attitude.
 pub(super) fn alignment(scenario: &Scenario, watcher: &Watcher) -> Option<AlignmentResult> {
+    if matches!(scenario.source, SourceSpec::Solution(_)) {
+        // Whoever made the solution aligned, and nothing is known of it.
+        return None;
+    }
     let point = watcher.aligned.as_ref()?;
     let prior = watcher.prior.as_ref().map(prior_of);
     Some(AlignmentResult {

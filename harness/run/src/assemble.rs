@@ -394,7 +394,8 @@ pub fn parameter_lines(parameters: &BTreeMap<String, ParameterScore>) -> String 
             p.unit
         );
     }
-    if !left.is_empty() {
+    // A solution that came from elsewhere has no parameters at all.
+    if !out.is_empty() && !left.is_empty() {
         let _ = writeln!(out, "  not estimated: {}", left.join(" "));
     }
     out

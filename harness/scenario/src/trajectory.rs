@@ -28,6 +28,9 @@ pub enum TrajectoryFormat {
 /// Columns of a text file; `None`: the name that Octant's exports have, where the header has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrajectoryColumns {
+    /// True if names with `true_` before them come first: Octant's exports have a solution and its truth side by
+    /// side.
+    pub truth_first: bool,
     /// What separates columns.
     pub delimiter: Delimiter,
     /// Lines to skip at the start.

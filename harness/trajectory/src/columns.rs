@@ -50,6 +50,8 @@ impl ColumnsReader {
                 && time.0.is_some()
                 && position[0].is_some();
         let header = if named && !only_numbers { Some(lines.header()?) } else { None };
+        let has_truth =
+            header.iter().flatten().any(|name| name == format!("true_{}", NAMES[1]).as_str());
         let place = |index: usize| -> Result<Option<usize>, String> {
             let name = match chosen[index] {
                 Some(RecordedColumn::Number(0)) => {
@@ -61,7 +63,12 @@ impl ColumnsReader {
             };
             let Some(header) = &header else { return Ok(None) };
             let same = |wanted: &str| header.iter().position(|found| found == wanted);
-            let found = same(name).or_else(|| same(&format!("true_{name}")));
+            // Where a table has the truth beside a solution, what it lacks isn't taken from the solution.
+            let truth = same(&format!("true_{name}"));
+            let found = match (has_truth, columns.truth_first && index > 0) {
+                (true, true) => truth,
+                _ => same(name).or(truth),
+            };
             match (found, chosen[index]) {
                 (None, Some(_)) => {
                     let names: Vec<&str> = header.iter().collect();
@@ -233,6 +240,10 @@ impl Lines {
             self.fields.clear();
             match self.delimiter {
                 Delimiter::Blanks => self.fields.extend(line.split_ascii_whitespace()),
+                Delimiter::Character(delimiter) if !line.contains('"') => {
+                    self.fields.extend(line.split(char::from(delimiter)).map(str::trim));
+                }
+                // Quotes are rare in data; the csv crate has their rules.
                 Delimiter::Character(delimiter) => {
                     let mut reader = csv::ReaderBuilder::new()
                         .delimiter(delimiter)

@@ -6,7 +6,7 @@
 use super::point::{TimeScale, TrajectoryPoint};
 use super::reader::{TrajectoryError, TrajectoryReader};
 use super::survey::TrajectorySurvey;
-use super::track::{ReferencePoint, ReferenceTrack};
+use super::track::{ReferencePoint, ReferenceTrack, q_nc};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_scenario::FileNameError;
 use octant_scenario::trajectory::{SolutionSpec, TrajectorySpec};
@@ -96,7 +96,8 @@ pub struct SolutionPairs {
     first_ns: Option<i64>,
     last_ns: u64,
     pairs: u64,
-    identical: bool,
+    /// True as long as every position, velocity and attitude of the solution is that of the reference.
+    identical: [bool; 3],
     apart: Apart,
 }
 
@@ -189,7 +190,7 @@ impl SolutionPairs {
             first_ns: None,
             last_ns: 0,
             pairs: 0,
-            identical: true,
+            identical: [true; 3],
             apart,
         })
     }
@@ -231,8 +232,15 @@ impl SolutionPairs {
             }
             self.pairs += 1;
             self.last_ns = time_ns;
-            self.identical &= point.latitude_rad == reference.latitude_rad
-                && point.longitude_rad == reference.longitude_rad;
+            let same = [
+                point.latitude_rad == reference.latitude_rad
+                    && point.longitude_rad == reference.longitude_rad,
+                point.velocity_mps.is_some() && point.velocity_mps == reference.velocity_mps,
+                point.attitude_rad.is_some_and(|attitude| Some(q_nc(attitude)) == reference.q_nc),
+            ];
+            for (identical, same) in self.identical.iter_mut().zip(same) {
+                *identical &= same;
+            }
             return Ok(Some(SolutionPair {
                 sequence: self.pairs,
                 time_ns,
@@ -257,11 +265,10 @@ impl SolutionPairs {
                 "{missing} of {expected} points of the solution are missing, incomplete, or have no reference"
             ));
         }
-        (self.identical && self.pairs > 1).then(|| {
-            format!(
-                "all {} positions of the solution are exactly those of the reference",
-                self.pairs
-            )
+        let names = ["positions", "velocities", "attitudes"];
+        let identical = names.iter().zip(self.identical).find(|(_, identical)| *identical);
+        identical.filter(|_| self.pairs > 1).map(|(name, _)| {
+            format!("all {} {name} of the solution are exactly those of the reference", self.pairs)
         })
     }
 }

@@ -46,6 +46,16 @@ fn columns_are_found_by_the_names_of_exports() {
     let points = all(&file(folder.path(), "truth.csv", text), &csv()).unwrap();
     assert_eq!(points[0].longitude_rad, 2.0_f64.to_radians());
     assert_eq!(points[0].latitude_rad, 9.0_f64.to_radians());
+    let of_reference = TrajectoryColumns { truth_first: true, ..TrajectoryColumns::default() };
+    let format = TrajectoryFormat::Csv(Box::new(of_reference));
+    let points = all(&folder.path().join("truth.csv"), &format).unwrap();
+    assert_eq!(points[0].latitude_rad, 3.0_f64.to_radians());
+    // A solution's heading isn't the truth because the truth has none.
+    let text = "time_s,latitude_deg,true_longitude_deg,true_latitude_deg,longitude_deg,roll_deg,pitch_deg,heading_deg\n\
+        1,9,2,3,4,5,6,7\n";
+    let side_by_side = file(folder.path(), "both.csv", text);
+    assert_eq!(all(&side_by_side, &format).unwrap()[0].attitude_rad, None);
+    assert!(all(&side_by_side, &csv()).unwrap()[0].attitude_rad.is_some());
 }
 
 #[test]

@@ -1541,6 +1541,59 @@ class SourceReference(Section):
     up: int | str
     """Velocity up, in place of down. Takes a column number from 1, or a column's name. Left out: down is given."""
 
+class SourceSolution(Section):
+    """How the solution of source.uri is read. Takes a table with skip, format, delimiter, skip_lines, comment,
+    time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll, angle_unit,
+    velocity_unit. Default: solution: the defaults of its keys."""
+
+    angle_unit: Literal["deg", "rad"]
+    """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
+    comment: str
+    """Columns of text: lines that start with this are skipped. Takes a text in quotes. Default: "#"."""
+    delimiter: Literal["whitespace", "comma", "semicolon", "tab"]
+    """Columns of text: what separates them. Takes one of "whitespace", "comma", "semicolon", "tab". Default:
+    "comma"."""
+    east: int | str
+    """Velocity over ground, east. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    format: Literal["csv", "nmea", "rtklib", "sbet"]
+    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet". Default: by the name's ending: nmea and
+    nma; pos; sbet and out; others are columns of text."""
+    heading: int | str
+    """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    height: int | str
+    """Height above the ellipsoid, m. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    latitude: int | str
+    """Geodetic latitude. Takes a column number from 1, or a column's name. Default: the name of Octant's
+    exports, where the header has it."""
+    longitude: int | str
+    """Longitude, east of Greenwich. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    north: int | str
+    """Velocity over ground, north. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    pitch: int | str
+    """Pitch, positive with the bow up. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    roll: int | str
+    """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
+    the name of Octant's exports, where the header has it."""
+    skip: str
+    """Time at its beginning that isn't scored, such as an alignment. Takes a time such as "12 h". Default: "0
+    s"."""
+    skip_lines: int
+    """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
+    time_column: int | str
+    """Time of each row, in time_unit, or as 2027-03-31T08:00:00.5Z: its column, a name in the header or a number
+    from 1. Takes a column number from 1, or a column's name. Default: the name of Octant's exports, where the
+    header has it."""
+    time_unit: Literal["s", "ms", "us", "ns"]
+    """Unit of a time that is a number. Takes one of "s", "ms", "us", "ns". Default: "s"."""
+    velocity_unit: Literal["m/s", "kn", "mm/s"]
+    """Unit of the columns of velocities. Takes one of "m/s", "kn", "mm/s". Default: "m/s"."""
+
 class SourceTextAccelerometer(Section):
     """Columns of the accelerometers. Takes a table with file, x, y, z, unit, quantity, scale, offset, axes."""
 
@@ -1644,8 +1697,71 @@ class SourceText(Section):
     time_unit: Literal["s", "ms", "us", "ns"]
     """Unit of the time stamp. Takes one of "s", "ms", "us", "ns". Default: "s"."""
 
+class SourceTrajectory(Section):
+    """The reference trajectory that a solution is scored against. Takes a table with file, offset,
+    offset_uncertainty, gap, format, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+    longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
+    solution:FILE."""
+
+    angle_unit: Literal["deg", "rad"]
+    """Unit of the columns of angles: position and attitude. Takes one of "deg", "rad". Default: "deg"."""
+    comment: str
+    """Columns of text: lines that start with this are skipped. Takes a text in quotes. Default: "#"."""
+    delimiter: Literal["whitespace", "comma", "semicolon", "tab"]
+    """Columns of text: what separates them. Takes one of "whitespace", "comma", "semicolon", "tab". Default:
+    "comma"."""
+    east: int | str
+    """Velocity over ground, east. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    file: str
+    """Its file. Relative to the scenario. Takes a text in quotes."""
+    format: Literal["csv", "nmea", "rtklib", "sbet"]
+    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet". Default: by the name's ending: nmea and
+    nma; pos; sbet and out; others are columns of text."""
+    gap: str
+    """Rows further apart than this have a gap between them, in which nothing is scored. Takes a time such as "12
+    h". Default: "2 s"."""
+    heading: int | str
+    """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    height: int | str
+    """Height above the ellipsoid, m. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    latitude: int | str
+    """Geodetic latitude. Takes a column number from 1, or a column's name. Default: the name of Octant's
+    exports, where the header has it."""
+    longitude: int | str
+    """Longitude, east of Greenwich. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    north: int | str
+    """Velocity over ground, north. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    offset: str
+    """What is added to the solution's times to get those of this file. Takes a time such as "12 h". Left out: 0
+    s, if both files tell the time on a scale that is known; else it has to be given."""
+    offset_uncertainty: str
+    """How far that may be wrong, 95 %: what moves by it is in doubt, and so are the verdicts. Takes a time such
+    as "12 h". Default: "0 s"."""
+    pitch: int | str
+    """Pitch, positive with the bow up. Takes a column number from 1, or a column's name. Default: the name of
+    Octant's exports, where the header has it."""
+    roll: int | str
+    """Roll, positive with the starboard side down. Takes a column number from 1, or a column's name. Default:
+    the name of Octant's exports, where the header has it."""
+    skip_lines: int
+    """Columns of text: lines to skip at the start. Takes a whole number from 0 to 1000000. Default: 0."""
+    time_column: int | str
+    """Time of each row, in time_unit, or as 2027-03-31T08:00:00.5Z: its column, a name in the header or a number
+    from 1. Takes a column number from 1, or a column's name. Default: the name of Octant's exports, where the
+    header has it."""
+    time_unit: Literal["s", "ms", "us", "ns"]
+    """Unit of a time that is a number. Takes one of "s", "ms", "us", "ns". Default: "s"."""
+    velocity_unit: Literal["m/s", "kn", "mm/s"]
+    """Unit of the columns of velocities. Takes one of "m/s", "kn", "mm/s". Default: "m/s"."""
+
 class Source(Section):
-    """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, live."""
+    """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
+    live."""
 
     @property
     def fmu(self) -> SourceFmu:
@@ -1676,14 +1792,30 @@ class Source(Section):
     @reference.setter
     def reference(self, value: SourceReference | Mapping[str, Any]) -> None: ...
     @property
+    def solution(self) -> SourceSolution:
+        """How the solution of source.uri is read. Takes a table with skip, format, delimiter, skip_lines,
+        comment, time_column, time_unit, latitude, longitude, height, north, east, heading, pitch, roll,
+        angle_unit, velocity_unit. Default: solution: the defaults of its keys."""
+    @solution.setter
+    def solution(self, value: SourceSolution | Mapping[str, Any]) -> None: ...
+    @property
     def text(self) -> SourceText:
         """How the text files are read. Takes a table with rate, split, delimiter, skip_lines, header, comment,
         time_column, time_unit, gyro, accelerometer, gimbal. Default: needed by text:FILE."""
     @text.setter
     def text(self, value: SourceText | Mapping[str, Any]) -> None: ...
+    @property
+    def trajectory(self) -> SourceTrajectory:
+        """The reference trajectory that a solution is scored against. Takes a table with file, offset,
+        offset_uncertainty, gap, format, delimiter, skip_lines, comment, time_column, time_unit, latitude,
+        longitude, height, north, east, heading, pitch, roll, angle_unit, velocity_unit. Left out: needed by
+        solution:FILE."""
+    @trajectory.setter
+    def trajectory(self, value: SourceTrajectory | Mapping[str, Any]) -> None: ...
     uri: str
     """Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.
-    Takes one of "plant", "replay", "text", "fmu", "serial", "udp", "can", "slcan". Default: "plant"."""
+    Takes one of "plant", "replay", "text", "solution", "fmu", "serial", "udp", "can", "slcan". Default:
+    "plant"."""
 
 class TurntableDrive(Section):
     """A real table that the core's set points turn, under a real instrument. It can hurt people: read
@@ -1831,7 +1963,8 @@ class Scenario(Section):
     def site(self, value: Site | Mapping[str, Any]) -> None: ...
     @property
     def source(self) -> Source:
-        """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, live."""
+        """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
+        live."""
     @source.setter
     def source(self, value: Source | Mapping[str, Any]) -> None: ...
     title: str

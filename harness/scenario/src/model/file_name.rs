@@ -31,6 +31,12 @@ pub enum FileNameError {
 }
 
 impl FileName {
+    /// Name without the folder.
+    #[must_use]
+    pub fn short(&self) -> &str {
+        self.0.rsplit(['/', '\\']).next().unwrap_or(&self.0)
+    }
+
     /// Path of the file: relative to the scenario's folder, with `${OCTANT_RECORDINGS}` expanded.
     ///
     /// # Errors

@@ -206,7 +206,12 @@ impl Scenario {
             Method::Primary => self.calibration.as_ref(),
             Method::Baseline => self.baseline.as_ref(),
         };
-        let Some(calibration) = calibration else { return "navigation alone".to_owned() };
+        let Some(calibration) = calibration else {
+            return match &self.source {
+                SourceSpec::Solution(spec) => format!("solution {}", spec.solution.file.short()),
+                _ => "navigation alone".to_owned(),
+            };
+        };
         let estimator = match &calibration.estimator {
             core::Estimator::Kalman(_) => {
                 let g = ParameterGroup::GDependent;

@@ -126,7 +126,7 @@ impl SourceSpec {
                 Some(("source", "recorded samples, no truth".to_owned()))
             }
             Self::Solution(spec) => {
-                let files = [&spec.solution, &spec.reference].map(|trajectory| &*trajectory.file.0);
+                let files = [&spec.solution, &spec.reference].map(|file| file.file.short());
                 Some(("source", format!("solution {} against {}", files[0], files[1])))
             }
             Self::Fmu(fmu) => {

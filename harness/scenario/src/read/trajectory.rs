@@ -64,6 +64,7 @@ pub(super) fn check(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Prob
 impl Default for TrajectoryColumns {
     fn default() -> Self {
         Self {
+            truth_first: false,
             delimiter: Delimiter::Character(b','),
             skip_lines: 0,
             comment: "#".to_owned(),
@@ -101,12 +102,13 @@ fn format_of(
 }
 
 macro_rules! columns_of {
-    ($($keys:ty),+) => { $(
+    ($($keys:ty: $truth_first:literal),+) => { $(
         impl $keys {
             fn format(&self, file: &str) -> Result<TrajectoryFormat, Problem> {
                 format_of(self.format, file, || {
                     let column = |key: &At<Option<RecordedColumn>>| key.value.clone();
                     Ok(TrajectoryColumns {
+                        truth_first: $truth_first,
                         delimiter: self.delimiter,
                         skip_lines: self.skip_lines,
                         comment: self.comment.clone(),
@@ -123,4 +125,4 @@ macro_rules! columns_of {
     )+ };
 }
 
-columns_of!(SolutionKeys, ReferenceTrajectoryKeys);
+columns_of!(SolutionKeys: false, ReferenceTrajectoryKeys: true);
