@@ -65,8 +65,13 @@ pub(super) fn drift(data: &ReportData) -> Markup {
         chart.render()
     };
     html! {
-        p.hint { "Errors are navigation minus truth. The band is what the noise of the sensors would \
-            leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
+        p.hint {
+            "Errors are navigation minus truth."
+            @if summary.reference.as_ref().is_some_and(|reference| reference.random_walk.is_some()) {
+                " The band is what the noise of the sensors would leave with exact parameters and exact \
+                 initial attitude: on average no calibration gets below it."
+            }
+        }
         h3 { "Position" }
         div.plots {
             (chart("Latitude", 1))

@@ -59,7 +59,9 @@ fn header(data: &ReportData) -> Markup {
         header {
             div.top {
                 div {
-                    div.eyebrow { "Self-calibration run" }
+                    div.eyebrow {
+                        @if summary.calibration.is_some() { "Self-calibration run" } @else { "Navigation" }
+                    }
                     h1 { (summary.scenario) }
                     p.lead { (what_was_done(summary, &data.units)) }
                 }
@@ -115,6 +117,10 @@ pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
             number::plain(c.duration_h, 4),
             c.positions
         ),
+        // A unit that aligned says so. A solution that came from elsewhere has no beginning.
+        (None, Some(n)) if summary.alignment.is_none() => {
+            format!("A solution of {} h was scored.", number::plain(n.duration_h, 4))
+        }
         (None, Some(n)) => format!(
             "The instrument navigated free inertial for {} h with the height {}, without a \
              calibration before it.",

@@ -100,6 +100,7 @@ pub fn assemble_with(
     };
     // Under another rotation the drift has other elements of G, and no reference that is told as that of g_zz.
     let g_zz_alone = scenario.navigation.as_ref().is_none_or(|n| leaves_g_zz_alone(&n.rotation));
+    let is_solution = matches!(scenario.source, SourceSpec::Solution(_));
     let references = reference(&ReferenceInput {
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
@@ -110,7 +111,10 @@ pub fn assemble_with(
         angle_random_walk: scenario.imu.angle_random_walk,
         velocity_random_walk: scenario.imu.velocity_random_walk,
         calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
-        navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s),
+        // The noise of an instrument that made a solution elsewhere isn't known.
+        navigation_s: (scenario.navigation.as_ref())
+            .filter(|_| !is_solution)
+            .and_then(|n| n.duration_s),
         true_g_zz: primary.truth.filter(|_| g_zz_alone).map(|truth| truth.g_dependent[8]),
         estimated_g_zz: g_zz(&primary),
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
@@ -277,6 +281,11 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
             let coefficient = number::significant(coefficient / unit, 4);
             facts.push((name.to_owned(), format!("{coefficient} {symbol}")));
         }
+    }
+    if matches!(scenario.source, SourceSpec::Solution(_)) {
+        // The rest of the scenario is about an instrument that isn't there.
+        let of_solution = ["site", "sample rate"];
+        facts.retain(|(name, _)| of_solution.contains(&name.as_str()));
     }
     facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
     if let Some(drive) = &scenario.drive {
