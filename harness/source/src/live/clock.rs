@@ -50,7 +50,7 @@ impl Clock {
         let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
         let first =
             if since_ns < 0.0 { self.utc.checked_sub(since) } else { self.utc.checked_add(since) };
-        let first = first.map(|at| octant_base::utc::nanos(at));
+        let first = first.map(octant_base::utc::nanos);
         let skew =
             estimate.skew.map_or("unknown".to_owned(), |skew| format!("{:+.3} ppm", skew * 1e6));
         let words = format!(
