@@ -1,6 +1,6 @@
 //! The other process: it hosts one FMU and executes requests.
 
-use super::super::instance::call::Mark;
+use super::super::instance::call::{Mark, UNLOADING};
 use super::super::instance::open::{FmuOpenError, open_folder};
 use super::super::instance::{
     FmuMessage, Instance, InstanceError, StepOutcome, Stepped, VariableGroup,
@@ -49,7 +49,7 @@ pub enum FmuServeError {
     },
 }
 
-/// Serves the process that started this one, until that has finished with the FMU.
+/// Serves the process at the other end of the socket, until that has finished with the FMU.
 ///
 /// # Errors
 /// If no such process started this one: standard input and output are not those that it provides.
@@ -66,6 +66,9 @@ pub fn serve() -> Result<(), FmuServeError> {
         Ok((socket.into(), shared))
     };
     let (socket, shared) = connect().map_err(|error| FmuServeError::NotStarted { error })?;
+    // Without the guard nothing would end what the FMU starts.
+    rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
+        .map_err(|error| FmuServeError::Watch { error: error.into() })?;
     // The mapping stays to the end of the process: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
     watch_parent(&socket)?;
@@ -125,7 +128,12 @@ impl Host {
         loop {
             let request = self.next(&mut done)?;
             match request {
-                Some(Request::Quit) => return Ok(()),
+                Some(Request::Quit) => {
+                    drop(instance);
+                    // Destructors that weren't run yet are run when this process ends.
+                    Mark(Some(self.shared.word(Word::Function))).set(UNLOADING);
+                    return message::write(&mut self.socket, &Reply::Ok(Answer::Done(())));
+                }
                 Some(request) => {
                     let reply = self.reply(&mut *instance, request);
                     self.gather(&mut *instance);
