@@ -18,6 +18,7 @@ mod run;
 mod screening;
 mod source;
 mod suite;
+mod system;
 pub(crate) mod table;
 
 pub(crate) use calibration::{
@@ -46,6 +47,7 @@ pub(crate) use source::{
     McapKeys, ReferenceKind, SignalKeys, SourceKeys, SourceLiveKeys, SourceReferenceKeys, TextKeys,
 };
 pub(crate) use suite::{CaseKeys, SuiteKeys};
+pub(crate) use system::SystemRequirementsKeys;
 pub(crate) use table::{At, FromTable, Keys, Raw};
 
 /// Keys of a scenario.
