@@ -5,7 +5,7 @@
 //! its parent, because it is a subreaper. The guard runs no code of the FMU, so that no crash ends
 //! it. Requests and answers don't go through it: the FMU's process has the same socket and memory.
 
-use super::host::FmuServeError;
+use super::error::FmuServeError;
 use super::shared::{Shared, Word};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, WaitOptions};

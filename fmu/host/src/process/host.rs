@@ -5,6 +5,7 @@ use super::super::instance::open::{FmuOpenError, open_folder};
 use super::super::instance::{
     FmuMessage, Instance, InstanceError, StepOutcome, Stepped, VariableGroup,
 };
+use super::error::FmuServeError;
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -19,35 +20,6 @@ use std::sync::atomic::Ordering;
 
 /// Largest number of messages held for the other process.
 const MESSAGES_MAX: usize = 10_000;
-
-/// Reason why the process of an FMU ends early.
-#[derive(Debug, thiserror::Error)]
-pub enum FmuServeError {
-    /// No process that provides its input and output started this one.
-    #[error("octant fmu host is started by octant itself, for an FMU that runs apart ({error})")]
-    NotStarted {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The other process can't be watched.
-    #[error("{error}")]
-    Watch {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The thread that watches the other process can't be started.
-    #[error("start a thread: {error}")]
-    Thread {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The other process is gone.
-    #[error("octant fmu host lost the process that it serves: {error}")]
-    Lost {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-}
 
 /// Serves the process at the other end of the socket, until that has finished with the FMU.
 ///

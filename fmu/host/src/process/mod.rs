@@ -7,6 +7,7 @@
 //! | `shared` | memory of both processes, for exchanges |
 //! | `watch` | the child process: its time limit, and its end |
 //! | `remote` | the FMU seen from this process |
+//! | [`error`] | reasons why the process of an FMU ends early |
 //! | [`guard`] | the process between both: `octant fmu host` |
 //! | [`host`] | the other process: `octant fmu host --unguarded` |
 //!
@@ -17,6 +18,8 @@
 //! process ends, for whatever reason, the socket closes, and the other process ends too, with every
 //! process that the FMU started: the guard between them ends these.
 
+#[cfg(target_os = "linux")]
+pub mod error;
 #[cfg(target_os = "linux")]
 pub mod guard;
 #[cfg(target_os = "linux")]
