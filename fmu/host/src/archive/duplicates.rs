@@ -13,7 +13,7 @@ pub(super) type Header = [u8; HEADER];
 
 /// Result of the comparison of two entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Comparison {
+pub(super) enum ContentComparison {
     Identical,
     Different,
     /// The entries can't be compared: they are damaged, encrypted or larger than the limit.
@@ -27,18 +27,18 @@ pub(super) fn compare(
     one: &Header,
     other: &Header,
     left: &mut u64,
-) -> Comparison {
+) -> ContentComparison {
     // Offset, sizes, checksum and method: the same bytes of the file.
     if one[42..46] == other[42..46] && one[10..28] == other[10..28] {
-        return Comparison::Identical;
+        return ContentComparison::Identical;
     }
     if size_of(one) != size_of(other) {
-        return Comparison::Different;
+        return ContentComparison::Different;
     }
     match (contents(source, one, left), contents(source, other, left)) {
-        (Ok(one), Ok(other)) if one == other => Comparison::Identical,
-        (Ok(_), Ok(_)) => Comparison::Different,
-        _ => Comparison::Unknown,
+        (Ok(one), Ok(other)) if one == other => ContentComparison::Identical,
+        (Ok(_), Ok(_)) => ContentComparison::Different,
+        _ => ContentComparison::Unknown,
     }
 }
 

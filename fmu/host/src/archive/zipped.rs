@@ -1,6 +1,6 @@
 //! A zip archive: its entries are examined, and read with every byte counted.
 
-use super::duplicates::{Comparison, HEADER, Header, compare};
+use super::duplicates::{ContentComparison, HEADER, Header, compare};
 use super::entry::{ArchiveEntry, Odd, Oddity};
 use super::error::ArchiveError;
 use super::limits::ArchiveLimits;
@@ -323,12 +323,12 @@ fn duplicates(
     for Duplicate { name, headers: [one, other] } in twice {
         let name = names::printable(name);
         let found = match compare(source, one, other, &mut left) {
-            Comparison::Identical => {
+            ContentComparison::Identical => {
                 oddities.push(Odd { entry: name, what: Oddity::Duplicate });
                 continue;
             }
-            Comparison::Different => "is there twice, with different contents",
-            Comparison::Unknown => "is there twice, with contents that can't be compared",
+            ContentComparison::Different => "is there twice, with different contents",
+            ContentComparison::Unknown => "is there twice, with contents that can't be compared",
         };
         let expected = "one entry of a name";
         problems.push(NameProblem { name, found: found.into(), expected });
