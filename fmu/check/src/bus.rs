@@ -74,24 +74,20 @@ fn manifest(
     findings: &mut Findings,
 ) -> Option<Manifest> {
     let place = Place { line: Some(root.line()), ..place };
-    if root.name() != "fmiLayeredStandardManifest" {
-        let found = format!("<{}>", root.name());
-        findings.add(&LAYERED_MANIFEST, place, found, "<fmiLayeredStandardManifest>");
-        return None;
-    }
+    // The root element may have any name and other content: only its attributes are standardized.
     for attribute in ["fmi-ls-name", "fmi-ls-version", "fmi-ls-description"] {
         if root.text_of(NAMESPACE, attribute).is_none() {
             let found = format!("no {attribute} of the namespace {NAMESPACE}");
             findings.add(&LAYERED_MANIFEST, place, found, "the attribute");
         }
     }
-    let name = root.text_of(NAMESPACE, "fmi-ls-name").unwrap_or(folder);
-    if name != folder {
-        let found = format!("the manifest of {name:?} in extra/{folder}/");
-        findings.add(&LAYERED_MANIFEST, place, found, "a folder of the standard's name");
-    }
-    if name != NAME {
+    if root.text_of(NAMESPACE, "fmi-ls-name").unwrap_or(folder) != NAME {
         return None;
+    }
+    // Which folder it is, the layered standard says.
+    if folder != NAME {
+        let found = format!("the manifest of {NAME} in extra/{folder}/");
+        findings.add(&BUS_MANIFEST, place, found, format!("extra/{NAME}/"));
     }
     let version = root.text_of(NAMESPACE, "fmi-ls-version").unwrap_or_default();
     if !version.is_empty() && version != "1.0.0" {

@@ -61,7 +61,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// Sets the standard of the FMU for later findings.
+    /// Sets the standard of the FMU, for all findings.
     pub(super) fn of(&mut self, standard: Standard) {
         self.standard = Some(standard);
     }
@@ -86,13 +86,17 @@ impl Findings {
             subject: place.subject.to_owned(),
             found: found.into(),
             expected: expected.into(),
-            clause: clause(rule, self.standard),
+            // The standard may not be known yet.
+            clause: String::new(),
         });
     }
 
     /// Returns all findings: worst first, each severity in the order of the file; and the number of
     /// findings of each rule that weren't kept.
     pub(super) fn finish(mut self) -> (Vec<RuleFinding>, BTreeMap<&'static str, usize>) {
+        for finding in &mut self.kept {
+            finding.clause = clause(finding.rule, self.standard, &finding.subject);
+        }
         self.kept.sort_by_key(|finding| std::cmp::Reverse(finding.rule.severity));
         let more = self
             .counts
@@ -109,17 +113,30 @@ impl Findings {
     }
 }
 
-/// Clause of a rule in a standard.
-fn clause(rule: &CheckRule, standard: Option<Standard>) -> String {
-    let (name, section) = match standard {
-        Some(Standard::Fmi3) => ("FMI 3.0", rule.fmi3),
-        Some(Standard::Fmi2) if rule.fmi2.is_empty() => ("FMI 3.0", rule.fmi3),
-        _ => ("FMI 2.0", rule.fmi2),
-    };
-    match section {
+/// Clause of a rule in a standard, or in both while it isn't known which the FMU follows. `subject` is
+/// that of the finding.
+fn clause(rule: &CheckRule, standard: Option<Standard>, subject: &str) -> String {
+    let of = |name: &str, section: &'static str| match section {
         "Octant" | "" => "Octant".into(),
         // A separate standard.
         _ if section.starts_with("FMI-LS-") => section.into(),
-        _ => format!("{name}, {section}"),
+        _ => format!("{name}, {}", of_interface(section, subject)),
+    };
+    match standard {
+        // Parts of FMI 3.0 that FMUs of FMI 2.0 have as well.
+        Some(Standard::Fmi2) if !rule.fmi2.is_empty() => of("FMI 2.0", rule.fmi2),
+        Some(_) => of("FMI 3.0", rule.fmi3),
+        None if rule.fmi2 == "Octant" || rule.fmi2.is_empty() => of("FMI 3.0", rule.fmi3),
+        None => format!("{}; {}", of("FMI 2.0", rule.fmi2), of("FMI 3.0", rule.fmi3)),
+    }
+}
+
+/// Section about the interface that is the subject, where each interface has its own.
+fn of_interface<'s>(section: &'s str, subject: &str) -> &'s str {
+    const EACH: &str = "3.3.1, 4.3.1";
+    match (section, subject) {
+        (EACH, "ModelExchange") => "3.3.1",
+        (EACH, "CoSimulation") => "4.3.1",
+        _ => section,
     }
 }

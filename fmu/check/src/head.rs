@@ -5,7 +5,7 @@ use super::model::Model;
 use super::rules::{
     DESCRIPTION_IDENTIFIER, DESCRIPTION_NAME, DESCRIPTION_TOKEN, DESCRIPTION_VERSION,
     EXPERIMENT_RANGE, EXPERIMENT_STEP, INTERFACE_EARLY_RETURN, INTERFACE_SAME_IDENTIFIER,
-    INTERFACE_STATE, INTERFACE_STATES, INTERFACE_STEP, LOG_UNIQUE,
+    INTERFACE_STATE, INTERFACE_STEP, LOG_UNIQUE,
 };
 use octant_fmu_host::description::xml::Element;
 use std::collections::BTreeSet;
@@ -37,7 +37,6 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
 }
 
 fn interfaces(model: &Model<'_, '_>, findings: &mut Findings) {
-    let description = model.description;
     let states = if model.is_fmi2() { "FMUstate" } else { "FMUState" };
     let mut identifiers = BTreeSet::new();
     for element in model.root.children() {
@@ -73,12 +72,6 @@ fn interfaces(model: &Model<'_, '_>, findings: &mut Findings) {
     if several.len() > 1 {
         let place = model.at(model.root, "");
         findings.add(&INTERFACE_SAME_IDENTIFIER, place, several.join(" and "), "one library");
-    }
-    // FMI 3.0 allows event indicators for other interfaces, which ignore them.
-    if model.is_fmi2() && description.event_indicators > 0 && description.model_exchange.is_none() {
-        let found =
-            format!("{} event indicators without ModelExchange", description.event_indicators);
-        findings.add(&INTERFACE_STATES, model.at(model.root, ""), found, "none");
     }
 }
 

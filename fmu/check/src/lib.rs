@@ -280,6 +280,11 @@ fn archive_findings(archive: &Archive, findings: &mut Findings) {
             Oddity::Windows(ref found) => {
                 (&rules::ARCHIVE_WINDOWS, found.clone(), "a name that every system can hold")
             }
+            Oddity::Duplicate => (
+                &rules::ARCHIVE_DUPLICATE,
+                "the same entry is there twice".to_owned(),
+                "one entry of a name",
+            ),
             Oddity::Headers(ref reason) => {
                 (&rules::ARCHIVE_HEADERS, reason.clone(), "the same as in the directory")
             }

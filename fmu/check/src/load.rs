@@ -1,4 +1,4 @@
-//! Loads the library of an FMU, makes an instance, initializes it and makes one step.
+//! Loads the library of an FMU, makes an instance, initializes it, makes one step and frees it.
 //!
 //! The check runs the FMU's code. In a process of its own the code can crash and hang without harm
 //! to this process; it still has all rights of the user.
@@ -31,14 +31,17 @@ pub fn load(checked: &mut Checked, options: &OpenOptions, step: bool) {
     for (kind, name, interface) in kinds {
         let Some(interface) = interface else { continue };
         let place = Place { subject: name, ..Place::default() };
-        // An FMU that needs its tool can't be judged without it.
+        // An FMU that needs its tool can't be judged without it, and might start it unasked.
         if interface.needs_execution_tool {
             let found = match &description.generation_tool[..] {
                 "" => "it needs the tool that made it".to_owned(),
                 tool => format!("it needs the tool that made it, {tool}"),
             };
-            checked.findings.add(&LOAD_TOOL, place, found, "an FMU that stands alone");
-            continue;
+            let expected = "an FMU that stands alone, or --allow-tool where the tool is installed";
+            checked.findings.add(&LOAD_TOOL, place, found, expected);
+            if !options.allow_tool {
+                continue;
+            }
         }
         let options = OpenOptions { interface: kind, ..options.clone() };
         if let Err(failure) = one(checked, &description, &options, name, step) {
@@ -78,14 +81,25 @@ fn one(
             FmuOpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
             error => Failure { rule: &LOAD_OPENS, found: error.to_string() },
         })?;
-    if !step {
-        return Ok(());
+    if step {
+        first_step(&mut *instance, checked, description, name)?;
     }
+    // What crashes or hangs at the very end comes too late for any result, but not for others.
+    instance.finish().map_err(|error| Failure::of(&error, &LOAD_SURVIVES))
+}
+
+/// Initializes an instance, and makes its first step.
+fn first_step(
+    instance: &mut dyn Instance,
+    checked: &mut Checked,
+    description: &Description,
+    name: &str,
+) -> Result<(), Failure> {
     let experiment = description.default_experiment;
     let start_s = experiment.start_s.filter(|start| start.is_finite()).unwrap_or(0.0);
     let initialize = |error: InstanceError| Failure::of(&error, &LOAD_INSTANTIATES);
     instance.enter_initialization(start_s, None, experiment.tolerance).map_err(initialize)?;
-    if let Some(found) = other_starts(&mut *instance, description).map_err(initialize)? {
+    if let Some(found) = other_starts(instance, description).map_err(initialize)? {
         let place = Place { subject: name, ..Place::default() };
         checked.findings.add(&LOAD_STARTS, place, found, "the start values of the description");
     }

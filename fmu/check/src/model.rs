@@ -3,7 +3,9 @@
 use super::finding::{Findings, Place};
 use super::rules::CheckRule;
 use octant_fmu_host::description::xml::Element;
-use octant_fmu_host::description::{Description, Standard, Variable, VariableType};
+use octant_fmu_host::description::{
+    Causality, Description, Standard, UnitDefinition, Variable, VariableType,
+};
 use std::collections::HashMap;
 
 /// A description and its XML tree.
@@ -20,6 +22,12 @@ pub(super) struct Model<'a, 't> {
     pub(super) by_reference: HashMap<u32, usize>,
     /// Index of the first variable with each name or alias.
     pub(super) by_name: HashMap<&'a str, usize>,
+    /// Units by name.
+    units: HashMap<&'a str, &'a UnitDefinition>,
+    /// Items of the enumeration types by name.
+    enumerations: HashMap<&'a str, &'a [(i64, String)]>,
+    /// Unit of the independent variable.
+    pub(super) independent_unit: Option<&'a str>,
 }
 
 /// A variable with its element.
@@ -53,7 +61,40 @@ impl<'a, 't: 'a> Model<'a, 't> {
                 by_name.entry(alias.name.as_str()).or_insert(index);
             }
         }
-        Self { entry, description, root, variables, by_reference, by_name }
+        let mut units = HashMap::new();
+        for unit in &description.units {
+            units.entry(unit.name.as_str()).or_insert(unit);
+        }
+        let mut enumerations = HashMap::new();
+        for (name, items) in &description.enumerations {
+            enumerations.entry(name.as_str()).or_insert(items.as_slice());
+        }
+        let independent = description
+            .variables
+            .iter()
+            .find(|variable| variable.causality == Causality::Independent);
+        let independent_unit = independent.and_then(|variable| variable.unit.as_deref());
+        Self {
+            entry,
+            description,
+            root,
+            variables,
+            by_reference,
+            by_name,
+            units,
+            enumerations,
+            independent_unit,
+        }
+    }
+
+    /// Finds the unit with this name.
+    pub(super) fn unit(&self, name: &str) -> Option<&'a UnitDefinition> {
+        self.units.get(name).copied()
+    }
+
+    /// Items of an enumeration type: value and name.
+    pub(super) fn enumeration(&self, name: &str) -> Option<&'a [(i64, String)]> {
+        self.enumerations.get(name).copied()
     }
 
     /// Standard of the description.

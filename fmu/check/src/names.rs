@@ -28,10 +28,14 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
             arrays.add(&variable.name);
         }
     }
+    let mut firsts: BTreeMap<&str, &Declared<'_, '_>> = BTreeMap::new();
+    for declared in &model.variables {
+        if let Some((base, _)) = declared.variable.name.rsplit_once('[') {
+            firsts.entry(base).or_insert(declared);
+        }
+    }
     for (base, missing, present) in arrays.gaps() {
-        let index =
-            model.variables.iter().find(|declared| declared.variable.name.starts_with(&base));
-        if let Some(declared) = index {
+        if let Some(declared) = firsts.get(base.as_str()) {
             let found = format!("{base}[…] has {present} elements, but no {base}[{missing}]");
             model.broken(findings, &VARIABLE_ARRAY_GAPS, declared, found, "all elements");
         }

@@ -62,7 +62,9 @@ macro_rules! rules {
 // that importers need.
 rules! {
     ARCHIVE_NAME "archive.name" Error "2.3" "2.5"
-        "Every entry has a name of its own that stays inside the folder, and is a plain file.";
+        "Every entry is a plain file, and its name stays inside the folder; entries of the same name have the same content.";
+    ARCHIVE_DUPLICATE "archive.duplicate" Warning "2.3" "2.5"
+        "Every entry has a name of its own.";
     ARCHIVE_WINDOWS "archive.name-windows" Warning "2.3" "2.5"
         "Windows can hold the names: no colons, no device names, no dots or blanks at an end.";
     ARCHIVE_EXTENSION "archive.extension" Warning "2.3" "2.5"
@@ -82,7 +84,7 @@ rules! {
         "XML files are in UTF-8.";
     DESCRIPTION_READABLE "description.readable" Error "2.2" "2.4"
         "The description has a meaning: it can be read.";
-    DESCRIPTION_IDENTIFIER "description.identifier" Error "2.2.1" "2.4.2"
+    DESCRIPTION_IDENTIFIER "description.identifier" Error "3.3.1, 4.3.1" "2.4.2"
         "A model identifier is a C identifier.";
     DESCRIPTION_TOKEN "description.token" Warning "2.2.1" "2.4.1"
         "The guid or instantiation token isn't empty.";
@@ -112,9 +114,7 @@ rules! {
         "An FMU that returns early after an intermediate update provides intermediate updates.";
     INTERFACE_STEP "interface.step" Error "" "4.4"
         "The fixed internal step is a positive number.";
-    INTERFACE_STATES "interface.states" Error "3.1" "3.1"
-        "A model exchange FMU whose description has state derivatives or event indicators has the interface for them.";
-    INTERFACE_SAME_IDENTIFIER "interface.same-identifier" Note "2.2.1" "2.4.2"
+    INTERFACE_SAME_IDENTIFIER "interface.same-identifier" Note "3.3.1, 4.3.1" "2.4.2"
         "Interfaces with identifiers of their own need a library each.";
 
     LOG_UNIQUE "log.unique" Error "2.2.4" "2.4.5"
@@ -127,9 +127,9 @@ rules! {
 
     UNIT_UNIQUE "unit.unique" Error "2.2.2" "2.4.3"
         "Units have different names, and so have the display units of a unit.";
-    UNIT_DEFINED "unit.defined" Error "2.2.2" "2.4.3"
+    UNIT_DEFINED "unit.defined" Error "2.2.3" "2.4.4, 2.4.7.5"
         "Units and display units that are used are defined.";
-    UNIT_DISPLAY "unit.display" Error "2.2.3" "2.4.4"
+    UNIT_DISPLAY "unit.display" Error "2.2.3" "2.4.4, 2.4.7.5"
         "Who has a display unit has a unit.";
     UNIT_FACTOR "unit.factor" Error "2.2.2" "2.4.3"
         "Factors are finite numbers but 0, offsets are finite.";
@@ -139,9 +139,9 @@ rules! {
         "A unit says what it is in SI, so that importers can convert it.";
     UNIT_MEANING "unit.meaning" Warning "Octant" "Octant"
         "A unit with a common name is what this name commonly means.";
-    UNIT_TYPE "unit.type" Warning "2.2.7" "2.4.7"
+    UNIT_TYPE "unit.type" Warning "2.2.7" "2.4.7.5"
         "The unit of a variable measures the same as the unit of its type.";
-    UNIT_DERIVATIVE "unit.derivative" Warning "2.2.7" "2.4.7"
+    UNIT_DERIVATIVE "unit.derivative" Warning "2.2.7" "2.4.7.5"
         "The unit of a derivative is the unit of the variable per second.";
 
     TYPE_UNIQUE "type.unique" Error "2.2.3" "2.4.4"
@@ -155,7 +155,7 @@ rules! {
 
     VARIABLE_NAME "variable.name" Error "2.2.9" "2.4.7.5.1"
         "Names aren't empty, and have no line breaks or tabs.";
-    VARIABLE_UNIQUE "variable.unique" Error "2.2.7" "2.4.7.4"
+    VARIABLE_UNIQUE "variable.unique" Error "2.2.7" "2.4.7.3, 2.4.7.4"
         "Variables and aliases have different names.";
     VARIABLE_STRUCTURED "variable.structured-name" Error "2.2.9" "2.4.7.5.1"
         "Structured names follow their grammar.";
@@ -183,11 +183,11 @@ rules! {
         "Start values are finite.";
     VARIABLE_START_COUNT "variable.start-count" Error "" "2.4.7.5"
         "An array has one start value, or one for each element.";
-    VARIABLE_RANGE "variable.range" Error "2.2.7" "2.4.4"
+    VARIABLE_RANGE "variable.range" Error "2.2.3" "2.4.4"
         "The minimum isn't above the maximum, and both are numbers.";
-    VARIABLE_NOMINAL "variable.nominal" Error "2.2.7" "2.4.4"
+    VARIABLE_NOMINAL "variable.nominal" Error "2.2.3" "2.4.4"
         "The nominal value is finite and isn't 0.";
-    VARIABLE_NOMINAL_SIGN "variable.nominal-sign" Warning "2.2.7" "2.4.4"
+    VARIABLE_NOMINAL_SIGN "variable.nominal-sign" Warning "2.2.3" "2.4.4"
         "The nominal value is positive.";
     VARIABLE_INDEPENDENT "variable.independent" Error "2.2.7" "2.4.7.4"
         "There is one independent variable (FMI 2.0: at most one), a real scalar.";
@@ -244,7 +244,7 @@ rules! {
     STRUCTURE_CLOCKED "structure.clocked-states" Error "" "2.4.8"
         "The clocked states are the variables that have a previous value.";
     STRUCTURE_DEPENDENCIES "structure.dependencies" Error "2.2.8" "2.4.8"
-        "Dependencies are knowns: inputs, states, parameters, the independent variable; at the start inputs, the independent variable and what is exact.";
+        "Dependencies are knowns: inputs, states, parameters (FMI 2.0: tunable ones), the independent variable; at the start inputs, the independent variable and what is exact.";
     STRUCTURE_DEPENDENCY_ORDER "structure.dependency-order" Warning "2.2.8" ""
         "Dependencies are in the order of the variables, none twice.";
     STRUCTURE_KINDS "structure.kinds" Error "2.2.8" "2.4.8"
@@ -268,9 +268,9 @@ rules! {
         "Icons are files beside terminalsAndIcons.xml, as PNG in any case.";
 
     LAYERED_MANIFEST "layered.manifest" Error "" "2.6"
-        "The manifest of a layered standard has its name, version and description, and lies in a folder of extra/ with its name.";
+        "The root element of a layered standard's manifest, of any name, has the standard's name, version and description.";
     BUS_MANIFEST "bus.manifest" Error "" "FMI-LS-BUS 1.0.0, 2"
-        "An FMU on a bus has a bus terminal and a manifest.";
+        "An FMU on a bus has a bus terminal, and a manifest in the standard's folder.";
     BUS_VERSION "bus.version" Note "" "FMI-LS-BUS 1.0.0, 2"
         "The manifest has a version of FMI-LS-BUS whose rules are checked here.";
     BUS_EVENT_MODE "bus.event-mode" Error "" "FMI-LS-BUS 1.0.0, 3"
@@ -290,11 +290,11 @@ rules! {
 
     FILES_IMPLEMENTATION "files.implementation" Error "2.3" "2.5"
         "There is a binary or there are sources.";
-    FILES_DOCUMENTATION "files.documentation" Note "2.3" "2.5.1"
+    FILES_DOCUMENTATION "files.documentation" Note "2.3" "2.5.1.1"
         "There is documentation/index.html.";
-    FILES_LICENCE "files.licence" Note "2.3" "2.5.1"
+    FILES_LICENCE "files.licence" Note "2.3" "2.5.1.1.1"
         "There is a licence in documentation/licenses.";
-    FILES_LICENCE_ENTRY "files.licence-entry" Error "" "2.5.1"
+    FILES_LICENCE_ENTRY "files.licence-entry" Error "" "2.5.1.1.1"
         "documentation/licenses has a license.txt, license.html or license.spdx.";
     FILES_UNKNOWN "files.unknown" Note "2.3" "2.5.1"
         "Only files and folders of the standard are at the top.";
@@ -305,23 +305,23 @@ rules! {
     SOURCES_IDENTIFIER "sources.identifier" Error "" "2.4.10"
         "A build configuration is of a model identifier of the description, once a platform.";
 
-    BINARY_PLATFORM "binary.platform" Warning "2.3" "2.5.1"
+    BINARY_PLATFORM "binary.platform" Warning "2.3" "2.5.1.4"
         "There is a binary for this machine.";
-    BINARY_FOLDER "binary.folder" Warning "2.3" "2.5.1"
+    BINARY_FOLDER "binary.folder" Warning "2.3" "2.5.1.4.1"
         "Folders of binaries have names of the standard.";
     BINARY_NAME "binary.name" Error "2.3" "2.5.1"
         "A folder of binaries has a library of the model identifier.";
     BINARY_FORMAT "binary.format" Error "2.3" "2.5.1"
         "A library is a shared library.";
-    BINARY_ARCHITECTURE "binary.architecture" Error "2.3" "2.5.1"
+    BINARY_ARCHITECTURE "binary.architecture" Error "2.3" "2.5.1.4.1"
         "A library is for the machine and system that its folder says.";
     BINARY_SYMBOLS "binary.symbols" Error "2.1.1" "2.5"
         "A library exports the functions of its interfaces, of its capabilities and of the types of its variables.";
     BINARY_OPTIONAL_SYMBOLS "binary.optional-symbols" Warning "2.1.1" "2.5"
         "A library exports the functions of what it can't do as well.";
-    BINARY_LIBRARIES "binary.libraries" Warning "2.3" "2.5.1"
+    BINARY_LIBRARIES "binary.libraries" Warning "2.3" "2.5.1.4.1"
         "A library needs no other libraries but those of every system and those beside it.";
-    BINARY_RPATH "binary.rpath" Warning "2.3" "2.5.1"
+    BINARY_RPATH "binary.rpath" Warning "2.3" "2.5.1.4.1"
         "A library that needs one beside it looks for it there: RPATH is $ORIGIN.";
     BINARY_STACK "binary.executable-stack" Warning "Octant" "Octant"
         "A library doesn't ask for an executable stack: new systems refuse to load it.";
@@ -329,15 +329,15 @@ rules! {
         "A library for Linux needs no newer C library than this machine has.";
 
     LOAD_TOOL "load.tool" Note "3.3.1, 4.3.1" "2.4.2"
-        "It runs without the tool that made it; else it isn't loaded here.";
-    LOAD_OPENS "load.opens" Error "2.3" "2.5.1"
+        "It runs without the tool that made it; else it is loaded only with --allow-tool.";
+    LOAD_OPENS "load.opens" Error "2.1.4, 2.3" "2.5.1"
         "The library for this machine can be loaded, and says that it is of the standard.";
     LOAD_SURVIVES "load.survives" Error "2.1" "2.2"
         "Nothing that is called crashes or hangs.";
-    LOAD_INSTANTIATES "load.instantiates" Error "2.1.5" "2.3.1"
+    LOAD_INSTANTIATES "load.instantiates" Error "2.1.5, 2.1.6" "2.3.1"
         "An instance can be made, and initialized with the start values.";
     LOAD_STARTS "load.starts" Warning "2.2.7" "2.4.7.5"
         "Exact variables have the start value of the description when initialization begins.";
-    LOAD_STEPS "load.steps" Error "4.2" "4.2"
+    LOAD_STEPS "load.steps" Error "4.2.2" "4.2"
         "A first step can be done.";
 }

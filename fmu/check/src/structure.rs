@@ -371,15 +371,21 @@ fn dependencies(
             _ => states.contains(&known.reference) || !known.clocks.is_empty(),
         };
         if !is_known {
+            // Both properties decide, and FMI 2.0 tells fixed parameters from tunable ones.
             let found = format!(
-                "{:?} in {} depends on {:?}, which is {}",
+                "{:?} in {} depends on {:?}, which is {}, {}",
                 variable.name,
                 entry.list.name(),
                 known.name,
-                known.causality.name()
+                known.causality.name(),
+                known.variability.name()
             );
             let expected = match entry.list {
                 List::InitialUnknowns => "inputs, the independent variable, and what is exact",
+                _ if model.is_fmi2() => {
+                    "inputs, states, the independent variable and tunable parameters; \
+                     fixed parameters only in the initial unknowns"
+                }
                 _ => "inputs, states, parameters and the independent variable",
             };
             findings.add(&STRUCTURE_DEPENDENCIES, place, found, expected);

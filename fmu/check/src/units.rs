@@ -38,7 +38,7 @@ fn definitions(model: &Model<'_, '_>, findings: &mut Findings) {
         let fraction = name.contains("sqrt(") || name.contains("/2)");
         if unit.child("BaseUnit").is_none() && !plain && !fraction {
             findings.add(&UNIT_BASE, place, "a unit without BaseUnit", "what it is in SI");
-        } else if let Some(base) = model.description.unit(name).and_then(|unit| unit.base) {
+        } else if let Some(base) = model.unit(name).and_then(|unit| unit.base) {
             meaning(model, unit, name, &base, findings);
         }
         let mut displays = BTreeSet::new();
@@ -161,7 +161,7 @@ fn units(
             let found = format!("display unit {display:?} without a unit");
             findings.add(&UNIT_DISPLAY, place, found, "a unit");
         }
-        (Some(unit), display) => match model.description.unit(unit) {
+        (Some(unit), display) => match model.unit(unit) {
             None => findings.add(
                 &UNIT_DEFINED,
                 place,
@@ -204,7 +204,7 @@ fn variable(
             units(model, declared.element, &alias.name, unit, display, findings);
         }
     }
-    let base = |unit: Option<&str>| model.description.unit(unit?)?.base;
+    let base = |unit: Option<&str>| model.unit(unit?)?.base;
     if let Some(name) = variable.declared_type.as_deref() {
         match types.get(name) {
             None => {
@@ -249,12 +249,9 @@ fn derivative(
     };
     let state = model.variables[of].variable;
     // With an independent variable other than time the derivative is by that variable.
-    let time = model
-        .variables
-        .iter()
-        .find(|d| d.variable.causality == octant_fmu_host::description::Causality::Independent)
-        .and_then(|d| d.variable.unit.as_deref());
-    if time.is_some_and(|unit| unit != "s") || variable.kind != VariableType::Float64 {
+    if model.independent_unit.is_some_and(|unit| unit != "s")
+        || variable.kind != VariableType::Float64
+    {
         return;
     }
     if let (Some(rate), Some(value)) = (base(variable.unit.as_deref()), base(state.unit.as_deref()))

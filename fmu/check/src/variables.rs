@@ -169,8 +169,7 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
     ) {
         return;
     }
-    let items =
-        variable.enumeration.as_deref().and_then(|name| model.description.enumeration(name));
+    let items = variable.enumeration.as_deref().and_then(|name| model.enumeration(name));
     for (index, text) in variable.start.iter().enumerate() {
         let of = if variable.start.len() > 1 {
             format!(" of element {}", index + 1)
@@ -264,7 +263,9 @@ fn derivative(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut
     let state = model.variables[index].variable;
     let found = if std::ptr::eq(state, variable) {
         "the derivative of itself".to_owned()
-    } else if !variable.kind.is_float() || !state.kind.is_float() {
+    } else if !variable.kind.is_float() {
+        format!("a derivative that is {}, of {:?}", declared.type_name(), state.name)
+    } else if !state.kind.is_float() {
         format!("the derivative of {:?} ({})", state.name, state.kind.name())
     } else if variable.dimensions != state.dimensions {
         format!("the derivative of {:?}, which has other dimensions", state.name)

@@ -71,6 +71,14 @@ fn a_change_that_breaks_one_rule_is_found_by_this_rule_alone() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// The standard has co-simulation pass over the number of event indicators.
+#[test]
+fn event_indicators_are_ignored_in_co_simulation() {
+    let edits = [(r#"<ModelExchange modelIdentifier="good"/>"#, ""), (r#" reinit="true""#, "")];
+    let (ids, findings) = broken(GOOD2, &edits);
+    assert_eq!(ids, [] as [&str; 0], "{findings:?}");
+}
+
 /// Files of an FMU without any finding.
 fn files(description: &str) -> Vec<(&'static str, Vec<u8>)> {
     let mut files = vec![
@@ -264,7 +272,11 @@ fn what_is_wrong_with_an_archive_is_found_and_the_rest_is_checked() {
     let hostile = patched(good.clone(), b"resources/data.txt", b"../../../data1.txt");
     assert_eq!(finding(hostile), ["archive.name"]);
     let twice = patched(good.clone(), b"terminalsAndIcons/icon.png", b"terminalsAndIcons/plug.png");
-    assert_eq!(finding(twice), ["archive.name", "terminals.icon"]);
+    assert_eq!(finding(twice), ["archive.duplicate", "terminals.icon"]);
+    let mut other = files(GOOD2);
+    other.push(("sources/goods.c000", b"2".to_vec()));
+    let differ = patched(packed(&other), b"resources/data.txt", b"sources/goods.c000");
+    assert_eq!(finding(differ), ["archive.name"]);
     // Fields of the directory's last header: version needed, flags.
     let at = (0..good.len() - 4).rev().find(|&at| &good[at..at + 4] == b"PK\x01\x02").expect("one");
     let mut version = good.clone();
@@ -356,6 +368,58 @@ fn a_finding_says_where_and_why() {
             "clause": "FMI 2.0, 2.2.7",
         })
     );
+}
+
+#[test]
+fn a_finding_cites_the_clause_of_its_standard_and_interface() {
+    let clauses = |good: &str, edits: &[Edit<'_>]| -> Vec<String> {
+        let (_, findings) = broken(good, edits);
+        findings.into_iter().map(|finding| finding.clause).collect()
+    };
+    // Before the version is known, both count.
+    assert_eq!(clauses("", &[]), ["FMI 2.0, 2.2; FMI 3.0, 2.4"]);
+    assert_eq!(clauses(GOOD3, &[("</ModelVariables>", "")]), ["FMI 2.0, 2.2; FMI 3.0, 2.4"]);
+    let state = [(r#"canGetAndSetFMUstate="true""#, "")];
+    assert_eq!(clauses(GOOD2, &state), ["FMI 2.0, 4.3.1"]);
+    let identifiers = [
+        (r#"<ModelExchange modelIdentifier="good""#, r#"<ModelExchange modelIdentifier="good-1""#),
+        (r#"<CoSimulation modelIdentifier="good""#, r#"<CoSimulation modelIdentifier="good-1""#),
+    ];
+    assert_eq!(clauses(GOOD2, &identifiers), ["FMI 2.0, 3.3.1", "FMI 2.0, 4.3.1"]);
+    assert_eq!(clauses(GOOD3, &[(r#"hasEventMode="true""#, "")]), ["FMI 3.0, 4.4"]);
+    // The encoding is found wrong before the version is read.
+    let mut all = files(GOOD3);
+    all[0].1 = edited(GOOD3, &[("UTF-8", "ISO-8859-1")]).into_bytes();
+    let report = survey(packed(&all));
+    assert_eq!(ids(&report.findings), ["description.encoding"]);
+    assert_eq!(report.findings[0].clause, "FMI 3.0, 2.4");
+    // Terminals are of FMI 3.0 in an FMU of FMI 2.0 too.
+    let mut all = files(GOOD2);
+    let (_, terminals) = all.iter_mut().find(|(name, _)| name.ends_with("Icons.xml")).expect("one");
+    *terminals = edited(TERMINALS, &[(r#""sequence""#, r#""any""#)]).into_bytes();
+    assert_eq!(survey(packed(&all)).findings[0].clause, "FMI 3.0, 2.4.9.2");
+}
+
+/// Every rule has a section in each standard in which it can be broken, in the form of the standard.
+#[test]
+fn sections_have_the_form_of_their_standard() {
+    let is_section = |text: &str| {
+        text.split(", ").all(|part| {
+            part.split('.').count() > 1 && part.split('.').all(|n| n.parse::<u8>().is_ok())
+        })
+    };
+    for rule in RULES {
+        for section in [rule.fmi2, rule.fmi3] {
+            let of_bus = section.strip_prefix("FMI-LS-BUS 1.0.0, ");
+            let known = section.is_empty()
+                || section == "Octant"
+                || is_section(section)
+                || of_bus.is_some_and(|of| of.split('.').all(|n| n.parse::<u8>().is_ok()));
+            assert!(known, "{}: {section:?}", rule.id);
+        }
+        assert!(!rule.fmi2.is_empty() || !rule.fmi3.is_empty(), "{}", rule.id);
+        assert_eq!(rule.fmi2 == "Octant", rule.fmi3 == "Octant", "{}", rule.id);
+    }
 }
 
 /// Functions of both interfaces of the description of FMI 2.0.

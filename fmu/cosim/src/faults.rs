@@ -300,9 +300,9 @@ fn given_value(
 }
 
 /// Converts a quantity into a unit.
-fn in_unit_of(text: &str, unit: Option<&WireUnit>, takes: Takes) -> Result<f64, String> {
+pub(super) fn in_unit_of(text: &str, unit: Option<&WireUnit>, takes: Takes) -> Result<f64, String> {
     let Some(unit) = unit else {
-        return Err("and the input has no unit: expected a plain number".to_owned());
+        return Err("and the variable has no unit: expected a plain number".to_owned());
     };
     let expected = || format!("expected a quantity in {:?} or another unit of the same", unit.name);
     let quantity = quantity_of(text).map_err(|_| expected())?;

@@ -9,6 +9,8 @@
 //! | [`graph`], [`solve`] | dependencies, and the solution of loops |
 //! | [`convert`] | conversion of a value on a wire: units, transformations, types |
 //! | [`values`] | values on their way between types |
+//! | `open` | the FMUs opened |
+//! | [`requirements`] | limits on signals of the system |
 //! | [`system`] | connectors found in the descriptions of the FMUs |
 
 pub mod convert;
@@ -19,9 +21,11 @@ pub mod faults;
 pub mod flat;
 pub mod graph;
 pub mod initialize;
+mod open;
 pub mod order;
 pub mod parameters;
 pub mod record;
+pub mod requirements;
 pub mod run;
 pub mod simulation;
 pub mod single;

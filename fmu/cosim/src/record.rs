@@ -3,7 +3,9 @@
 //! Row 0 is the state after initialization. Each later row holds the outputs at its time, and the
 //! inputs with which the step to that time was made.
 
+use super::convert::WireUnit;
 use super::error::MasterError;
+use super::requirements::{NamedSignal, Requiring};
 use super::simulation::Simulation;
 use super::system::{ExchangeSide, System, element_names};
 use crate::single::output::{OutputColumn, Outputs, Sink, SinkError};
@@ -30,6 +32,42 @@ pub struct RowRecorder {
     /// Number of steps between rows.
     every: u64,
     rows: u64,
+    /// Requirements, which see every communication point.
+    requiring: Requiring,
+}
+
+/// Columns of all nodes, each with its place among the numbers, and the number of all numbers.
+fn columns(system: &System, descriptions: &[&Description]) -> (Vec<OutputColumn>, usize) {
+    let mut columns = Vec::new();
+    let mut place = 0;
+    for (node, description) in system.nodes.iter().zip(descriptions) {
+        for side in [&node.inputs, &node.outputs, &node.watched] {
+            columns.extend(of_side(&node.name, side, description, place));
+            place += side.plan.elements;
+        }
+    }
+    (columns, place)
+}
+
+/// Lists the recorded numbers of a system by their places, for requirements.
+#[must_use]
+pub fn signals(system: &System, descriptions: &[&Description]) -> Vec<NamedSignal> {
+    let (columns, places) = columns(system, descriptions);
+    let mut signals = vec![NamedSignal { name: String::new(), unit: None }; places];
+    for column in columns {
+        let node = system.nodes.iter().zip(descriptions).find_map(|(node, description)| {
+            let name = column.name.strip_prefix(&node.name)?.strip_prefix('.')?;
+            let base = name.split('[').next().unwrap_or(name);
+            let of = |name: &str| description.variable(name);
+            Some((description, of(name).or_else(|| of(base))?))
+        });
+        let unit =
+            node.and_then(|(description, variable)| WireUnit::of_variable(description, variable));
+        if let Some(signal) = signals.get_mut(column.place) {
+            *signal = NamedSignal { name: column.name, unit };
+        }
+    }
+    signals
 }
 
 impl RowRecorder {
@@ -43,15 +81,9 @@ impl RowRecorder {
         name: &str,
         paths: &[&Path],
         every: u64,
+        requiring: Requiring,
     ) -> Result<Self, SinkError> {
-        let mut columns = Vec::new();
-        let mut place = 0;
-        for (node, description) in system.nodes.iter().zip(descriptions) {
-            for side in [&node.inputs, &node.outputs, &node.watched] {
-                columns.extend(of_side(&node.name, side, description, place));
-                place += side.plan.elements;
-            }
-        }
+        let (columns, place) = columns(system, descriptions);
         let numbers = vec![0.0; place];
         let outputs = Outputs {
             plan: octant_fmu_host::instance::AccessPlan::default(),
@@ -59,7 +91,8 @@ impl RowRecorder {
             left_out: Vec::new(),
         };
         let sinks = paths.iter().map(|path| Sink::file(path, &outputs, name));
-        Ok(Self { numbers, sinks: sinks.collect::<Result<_, _>>()?, outputs, every, rows: 0 })
+        let sinks = sinks.collect::<Result<_, _>>()?;
+        Ok(Self { numbers, sinks, outputs, every, rows: 0, requiring })
     }
 
     /// Number of rows that were written.
@@ -73,6 +106,12 @@ impl RowRecorder {
         self.outputs.columns.iter().map(|column| column.name.as_str())
     }
 
+    /// Returns the requirements, with the values at all points so far.
+    #[must_use]
+    pub const fn requiring(&self) -> &Requiring {
+        &self.requiring
+    }
+
     /// Writes a row if one is due at this step, or if it is the `last`.
     ///
     /// # Errors
@@ -83,7 +122,8 @@ impl RowRecorder {
         system: &System,
         last: bool,
     ) -> Result<(), RowError> {
-        if !simulation.steps().is_multiple_of(self.every) && !last {
+        let is_due = simulation.steps().is_multiple_of(self.every) || last;
+        if !is_due && self.requiring.is_empty() {
             return Ok(());
         }
         let mut place = 0;
@@ -100,6 +140,10 @@ impl RowRecorder {
             simulation.watched(number, &mut self.numbers[watched])?;
         }
         let time_s = simulation.time_s(simulation.steps());
+        self.requiring.look(time_s, &self.numbers);
+        if !is_due {
+            return Ok(());
+        }
         for sink in &mut self.sinks {
             sink.row(time_s, &self.outputs, &self.numbers)?;
         }

@@ -4,26 +4,29 @@ use super::error::MasterError;
 use super::experiment::{GivenSettings, RunExperiment};
 use super::faults::{Faulting, looked_at};
 use super::flat::Flat;
+use super::open::{is_exchange, open_all};
 use super::order::SteppingOrder;
 use super::parameters;
-use super::record::{ConnectionHash, RowError, RowRecorder};
+use super::record::{ConnectionHash, RowError, RowRecorder, signals};
+use super::requirements::Requiring;
 use super::simulation::{Abilities, Simulation, SteppingSettings};
 use super::solve::IterationLimits;
 use super::ssp::SspError;
-use super::ssp::annotation::FaultsText;
+use super::ssp::annotation::TomlText;
 use super::ssp::package::Package;
-use super::ssp::structure::{Implementation, SystemStructure};
+use super::ssp::structure::SystemStructure;
 use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
 use octant_base::control::Control;
 use octant_fmu_host::description::Description;
-use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace, open};
+use octant_fmu_host::instance::{Instance, ProcessPlace};
 use octant_mapping::settings::Starts;
 use octant_recorder::Event;
 use octant_requirements::Verdict;
-use octant_scenario::{ScenarioError, connection_faults, text_of};
+use octant_scenario::{ScenarioError, connection_faults, system_requirements, text_of};
 use octant_score::judge::NO_REQUIREMENT;
 use octant_score::summary::{FaultResult, results};
+use octant_score::verdict::RequirementResult;
 use std::path::{Path, PathBuf};
 
 /// Maximum number of rows of a recording, where the interval isn't given.
@@ -46,12 +49,16 @@ pub struct Request {
     pub seed: Option<u64>,
     /// File of faults, instead of those of the structure.
     pub faults: Option<PathBuf>,
+    /// File of requirements, instead of those of the structure.
+    pub requirements: Option<PathBuf>,
     /// Arguments `ID=TIME` that trigger faults by hand.
     pub fires: Vec<String>,
     /// Arguments `FMU.VARIABLE=VALUE` that set parameters and start values.
     pub set: Vec<String>,
     /// Process in which the FMUs run.
     pub place: ProcessPlace,
+    /// True to run FMUs that need the tools that made them.
+    pub allow_tool: bool,
     /// Number of steps between recorded rows.
     pub every: Option<u64>,
 }
@@ -62,9 +69,9 @@ pub enum PrepareError {
     /// The files of the system aren't valid.
     #[error(transparent)]
     Ssp(#[from] SspError),
-    /// The faults aren't valid.
+    /// The faults or requirements aren't valid.
     #[error(transparent)]
-    Faults(#[from] ScenarioError),
+    List(#[from] ScenarioError),
     /// The settings of the run aren't valid.
     #[error("{0}")]
     Usage(String),
@@ -95,8 +102,10 @@ pub struct PreparedSystem {
     descriptions: Vec<Description>,
     abilities: Vec<Abilities>,
     starts: Vec<Starts>,
-    faults: Option<FaultsText>,
+    faults: Option<TomlText>,
     faulting: Faulting,
+    requirements: Option<TomlText>,
+    requiring: Requiring,
     warnings: Vec<String>,
 }
 
@@ -109,7 +118,7 @@ impl PreparedSystem {
         let package = Package::open(&request.path)?;
         let structure = SystemStructure::read(&package)?;
         let flat = Flat::of(&structure)?;
-        let instances = open_all(&structure, &flat, request.place)?;
+        let instances = open_all(&structure, &flat, request.place, request.allow_tool)?;
         let descriptions: Vec<Description> =
             instances.iter().map(|instance| instance.description().clone()).collect();
         let described: Vec<&Description> = descriptions.iter().collect();
@@ -119,12 +128,8 @@ impl PreparedSystem {
         let ours = &structure.co_simulation;
         let order = request.order.clone().or_else(|| ours.order.clone()).unwrap_or_default();
         let numbers = order.of(&names).map_err(|error| PrepareError::Usage(error.to_string()))?;
-        let faults = match &request.faults {
-            Some(path) => {
-                Some(FaultsText { file: path.display().to_string(), text: text_of(path)? })
-            }
-            None => ours.faults.clone(),
-        };
+        let faults = given_or(request.faults.as_deref(), ours.faults.as_ref())?;
+        let requirements = given_or(request.requirements.as_deref(), ours.requirements.as_ref())?;
         let (text, file) = match &faults {
             Some(faults) => (faults.text.as_str(), faults.file.as_str()),
             None => ("schema = 1", "--faults FILE"),
@@ -135,7 +140,15 @@ impl PreparedSystem {
         let system = System::new(&structure, &flat, &described, &looked)?;
         let seed = request.seed.or(ours.seed).unwrap_or(SEED);
         let faulting = Faulting::new(&list, file, &system, &described, seed, step_s)?;
-        let mut warnings = flat.warnings.clone();
+        let requiring = match &requirements {
+            Some(TomlText { file, text }) => {
+                let list = system_requirements(text, file)?;
+                Requiring::new(&list, file, &signals(&system, &described))?
+            }
+            None => Requiring::default(),
+        };
+        let mut warnings = structure.warnings.clone();
+        warnings.extend(flat.warnings.iter().cloned());
         for fault in list.iter().filter(|fault| fault.is_idle()) {
             let id = &fault.id;
             warnings.push(format!(
@@ -177,6 +190,8 @@ impl PreparedSystem {
             starts,
             faults,
             faulting,
+            requirements,
+            requiring,
             warnings,
         })
     }
@@ -214,15 +229,18 @@ impl PreparedSystem {
         &self.warnings
     }
 
-    /// Returns structure and faults as texts, for the folder of the run: name and content.
+    /// Returns structure, faults and requirements as texts, for the folder of the run: name and content.
     ///
     /// # Errors
     /// If the structure can't be read again.
     pub fn texts(&self) -> Result<Vec<(&'static str, String)>, SspError> {
         let structure = self.package.text_of(self.package.structure())?;
-        let faults =
-            self.faults.iter().map(|faults| ("faults.toml", faults.text.trim_start().to_owned()));
-        Ok(std::iter::once(("SystemStructure.ssd", structure)).chain(faults).collect())
+        let mut texts = vec![("SystemStructure.ssd", structure)];
+        let lists = [("faults.toml", &self.faults), ("requirements.toml", &self.requirements)];
+        for (name, list) in lists {
+            texts.extend(list.iter().map(|list| (name, list.text.trim_start().to_owned())));
+        }
+        Ok(texts)
     }
 
     /// Runs the system and records into files of these paths.
@@ -244,7 +262,7 @@ impl PreparedSystem {
         control: &Control,
         mut watch: impl FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
     ) -> Result<Results, PrepareError> {
-        let Self { system, settings, instances, starts, abilities, faulting, .. } = self;
+        let Self { system, settings, instances, starts, abilities, faulting, requiring, .. } = self;
         let described: Vec<&Description> = self.descriptions.iter().collect();
         let every = self.request.every.unwrap_or(settings.steps.div_ceil(ROWS_MAX)).max(1);
         let mut simulation =
@@ -257,7 +275,7 @@ impl PreparedSystem {
         }
         let ended_by = simulation.initialize()?;
         let name = if self.structure.name.is_empty() { "system" } else { &self.structure.name };
-        let mut recorder = RowRecorder::new(&system, &described, name, paths, every)
+        let mut recorder = RowRecorder::new(&system, &described, name, paths, every, requiring)
             .map_err(|error| PrepareError::Usage(error.to_string()))?;
         let mut hash = ConnectionHash::default();
         let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch };
@@ -296,9 +314,19 @@ impl PreparedSystem {
             });
             messages.extend(said.iter().map(|m| (component.name.clone(), m.to_string())));
         }
+        let ended = match (ended, simulation.finish()) {
+            (SystemEnded::Failed { at_s, reason }, _) => SystemEnded::Failed { at_s, reason },
+            (_, Err(error)) => SystemEnded::Failed {
+                at_s: simulation.time_s(simulation.steps()),
+                reason: format!("failed to free the FMUs: {error}"),
+            },
+            (ended, Ok(())) => ended,
+        };
         let receipts = simulation.station().map(|station| station.receipts()).unwrap_or_default();
         let faults = results(&receipts);
-        let (verdict, reasons) = judge(&ended, &faults);
+        let is_whole = matches!(ended, SystemEnded::AtStop | SystemEnded::AskedByFmu { .. });
+        let requirements = recorder.requiring().results(is_whole);
+        let (verdict, reasons) = judge(&ended, &faults, &requirements);
         let written = recorder
             .event(simulation.time_s(simulation.steps()), &Event::Receipts(faults.clone()))
             .and_then(|()| recorder.finish());
@@ -322,6 +350,7 @@ impl PreparedSystem {
                 rejected: simulation.rejected(),
                 ended,
                 loops: simulation.loops().iter().map(LoopResult::from).collect(),
+                requirements,
                 faults,
                 fmus,
                 connections: system.wires.len(),
@@ -404,8 +433,23 @@ fn tell_faults(
     Ok(())
 }
 
+/// Text of the file that the command line gives, else that of the structure.
+fn given_or(
+    path: Option<&Path>,
+    ours: Option<&TomlText>,
+) -> Result<Option<TomlText>, ScenarioError> {
+    match path {
+        Some(path) => Ok(Some(TomlText { file: path.display().to_string(), text: text_of(path)? })),
+        None => Ok(ours.cloned()),
+    }
+}
+
 /// Determines the verdict of a run, with its reasons.
-fn judge(ended: &SystemEnded, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
+fn judge(
+    ended: &SystemEnded,
+    faults: &[FaultResult],
+    requirements: &[RequirementResult],
+) -> (Verdict, Vec<String>) {
     let mut reasons = Vec::new();
     let mut verdict = Verdict::None;
     match ended {
@@ -423,64 +467,12 @@ fn judge(ended: &SystemEnded, faults: &[FaultResult]) -> (Verdict, Vec<String>) 
         verdict = verdict.worst(Verdict::Inconclusive);
         reasons.push(fault.sentence());
     }
-    if verdict == Verdict::None {
+    let required = requirements.iter().fold(Verdict::None, |all, one| all.worst(one.verdict));
+    // A requirement that failed before an FMU did stays failed.
+    verdict = if required == Verdict::Fail { required } else { verdict.worst(required) };
+    reasons.extend(requirements.iter().filter_map(RequirementResult::told));
+    if requirements.is_empty() && verdict == Verdict::None {
         reasons.push(NO_REQUIREMENT.to_owned());
     }
     (verdict, reasons)
-}
-
-/// Returns whether an FMU is run by model exchange.
-fn is_exchange(description: &Description, implementation: Implementation) -> bool {
-    match implementation {
-        Implementation::Any => description.co_simulation.is_none(),
-        Implementation::CoSimulation => false,
-        Implementation::ModelExchange => true,
-    }
-}
-
-fn open_all(
-    structure: &SystemStructure,
-    flat: &Flat,
-    place: ProcessPlace,
-) -> Result<Vec<Box<dyn Instance>>, SspError> {
-    let mut instances = Vec::with_capacity(flat.components.len());
-    for component in &flat.components {
-        let options = OpenOptions {
-            interface: match component.implementation {
-                Implementation::Any => InterfaceKind::Any,
-                Implementation::CoSimulation => InterfaceKind::CoSimulation,
-                Implementation::ModelExchange => InterfaceKind::ModelExchange,
-            },
-            place,
-            instance_name: Some(component.name.clone()),
-            ..OpenOptions::default()
-        };
-        let opened = open::open(&component.file, &options).map_err(|error| SspError {
-            file: structure.file.clone(),
-            line: Some(component.line),
-            element: format!("Component {:?}", component.name),
-            message: format!("failed to {error}"),
-        })?;
-        let description = opened.description();
-        let interfaces = [&description.co_simulation, &description.model_exchange];
-        let once = interfaces.into_iter().flatten().any(|one| one.only_once_per_process);
-        let others = &flat.components[..instances.len()];
-        if let Some(other) = others.iter().find(|other| other.file == component.file)
-            && once
-            && place == ProcessPlace::ThisProcess
-        {
-            return Err(SspError {
-                file: structure.file.clone(),
-                line: Some(component.line),
-                element: format!("Component {:?}", component.name),
-                message: format!(
-                    "{} can be there once in a process, and {:?} is it already: leave out \
-                     --in-process",
-                    component.source, other.name
-                ),
-            });
-        }
-        instances.push(opened);
-    }
-    Ok(instances)
 }

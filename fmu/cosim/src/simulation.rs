@@ -451,6 +451,22 @@ impl<'a> Simulation<'a> {
         }
         first
     }
+
+    /// Frees all FMUs and unloads their libraries; returns the first failure.
+    ///
+    /// # Errors
+    /// If an FMU crashes or hangs on the way.
+    pub fn finish(&mut self) -> Result<(), MasterError> {
+        let time_s = self.time_s(self.step);
+        let mut first = Ok(());
+        for node in 0..self.instances.len() {
+            let ended = self.instances[node].finish().map_err(self.failed(node, time_s));
+            if first.is_ok() {
+                first = ended;
+            }
+        }
+        first
+    }
 }
 
 /// Returns whether a set function discarded a value, the only error treated as a refusal.

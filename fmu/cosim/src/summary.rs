@@ -5,6 +5,7 @@
 use super::initialize::Loop;
 use octant_requirements::Verdict;
 use octant_score::summary::FaultResult;
+use octant_score::verdict::RequirementResult;
 use serde::Serialize;
 
 /// Version of the form of this summary.
@@ -41,6 +42,8 @@ pub struct SystemSummary {
     pub ended: SystemEnded,
     /// Variables that depend on themselves at initialization, and their solution.
     pub loops: Vec<LoopResult>,
+    /// Requirements with their results.
+    pub requirements: Vec<RequirementResult>,
     /// Faults that were injected; samples are steps.
     pub faults: Vec<FaultResult>,
     /// The FMUs.
@@ -170,6 +173,9 @@ impl SystemSummary {
             let how = if one.settled { "settled" } else { "solved" };
             let around = one.variables.join(" -> ");
             text += &format!("  loop {around}: {how} in {} iterations\n", one.iterations);
+        }
+        for result in self.requirements.iter().filter(|result| result.verdict == Verdict::Pass) {
+            text += &format!("  {}\n", result.sentence());
         }
         for fault in &self.faults {
             text += &format!("  {}\n", fault.sentence());

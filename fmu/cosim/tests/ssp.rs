@@ -314,3 +314,53 @@ fn other_versions_and_drafts_are_refused_in_plain_words() {
     assert!(broken.contains("not XML"), "{broken}");
     assert!(Package::open(Path::new("/nowhere")).is_err());
 }
+
+/// OMSimulator writes all of these.
+#[test]
+fn what_other_tools_write_is_read_with_a_warning_each() {
+    let connector = r#"<Connector name="u" kind="input"><ssc:Real unit=""/></Connector>
+        <Connector name="v" kind="input"><ssc:Real unit="knots of Mars"/></Connector>"#;
+    let values = |name: &str, unit: &str| {
+        format!(
+            r#"<ParameterBindings><ParameterBinding><ParameterValues>
+               <ssv:ParameterSet version="1.0" name="p"><ssv:Parameters>
+               <ssv:Parameter name="{name}"><ssv:Real value="1" unit="{unit}"/></ssv:Parameter>
+               </ssv:Parameters></ssv:ParameterSet>
+               </ParameterValues></ParameterBinding></ParameterBindings>"#
+        )
+    };
+    let bindings = [values("p", "km/h"), values("q", ""), values("r", "furlong per fortnight")];
+    let structure = format!(
+        r#"<System name="s"><Connectors><Connector name="in" kind="input"/></Connectors>
+           <Elements>{}</Elements><Connections>
+           <Connection startElement="" startConnector="in" endElement="a" endConnector="u"/>
+           </Connections></System>
+           <Units><ssc:Unit name="rad"><ssc:BaseUnit rad="1"/></ssc:Unit></Units>"#,
+        component("a", connector, &bindings.concat())
+    );
+    let (structure, flat) = read(&structure, &[]).unwrap();
+    let parameters = &flat.components[0].parameters;
+    let units: Vec<Option<&str>> = parameters
+        .iter()
+        .map(|parameter| parameter.value.unit.as_ref().map(|(name, _)| name.as_str()))
+        .collect();
+    assert_eq!(units, [Some("km/h"), None, None]);
+    let factor = parameters[0].value.unit.as_ref().unwrap().1.factor;
+    assert!((factor - 1.0 / 3.6).abs() < 1e-15, "{factor}");
+    let connectors = &flat.components[0].connectors;
+    assert!(connectors.iter().all(|c| c.of_type.as_ref().unwrap().unit.is_none()));
+    let expected = [
+        "the unit is empty: it is read as none",
+        "the unit \"knots of Mars\" is not defined in this file: it is read as none",
+        "ParameterBindings: found once more, expected once: all are read",
+        "ParameterBindings: found once more",
+        "the unit \"km/h\" is not defined in this file: its common meaning is used",
+        "the unit \"furlong per fortnight\" is not defined in this file: it is read as none",
+        "Connection: startElement is empty: it is read as left out",
+    ];
+    assert_eq!(structure.warnings.len(), expected.len(), "{:#?}", structure.warnings);
+    for (warning, expected) in structure.warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}: {expected}");
+        assert!(warning.contains("SystemStructure.ssd:"), "{warning}");
+    }
+}

@@ -96,6 +96,10 @@ impl Endpoint for AnyEndpoint {
         each!(&mut self.0, endpoint => endpoint.conclusion())
     }
 
+    fn close(&mut self) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.close())
+    }
+
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         each!(&mut self.0, endpoint => endpoint.wired())
     }

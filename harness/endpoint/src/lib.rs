@@ -117,6 +117,14 @@ pub trait Endpoint {
     fn conclusion(&mut self) -> Conclusion {
         Conclusion::default()
     }
+
+    /// Ends the core, after its conclusion. Nothing else may be called after it.
+    ///
+    /// # Errors
+    /// If the endpoint fails on the way.
+    fn close(&mut self) -> Result<(), EndpointError> {
+        Ok(())
+    }
 }
 
 /// Quantities that a core's answers contain. The others aren't judged.

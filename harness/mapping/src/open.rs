@@ -72,10 +72,15 @@ pub fn describe(path: &Path) -> Result<Description, DescribeError> {
     Ok(description::read_bytes(&bytes, &file)?)
 }
 
+/// Longest time for loading and initializing an FMU, in limits of one call: 1 min by default.
+const START_CALLS: f64 = 6.0;
+
 /// Returns the options with which a scenario runs an FMU.
 #[must_use]
 pub fn options(fmu: &Fmu) -> OpenOptions {
     let default = OpenOptions::default();
+    let given = fmu.time_limit_s.is_finite();
+    let limit = |s: f64, or: Duration| if given { Duration::from_secs_f64(s) } else { or };
     OpenOptions {
         interface: match fmu.interface {
             InterfaceChoice::Auto => InterfaceKind::Any,
@@ -86,11 +91,9 @@ pub fn options(fmu: &Fmu) -> OpenOptions {
             Process::Own => ProcessPlace::OwnProcess,
             Process::Shared => ProcessPlace::ThisProcess,
         },
-        time_limit: if fmu.time_limit_s.is_finite() {
-            Duration::from_secs_f64(fmu.time_limit_s)
-        } else {
-            default.time_limit
-        },
+        allow_tool: fmu.allow_tool,
+        start_limit: limit(START_CALLS * fmu.time_limit_s, default.start_limit),
+        time_limit: limit(fmu.time_limit_s, default.time_limit),
         ..default
     }
 }

@@ -181,6 +181,14 @@ impl Stepper {
         self.get(outputs)
     }
 
+    /// Frees the FMU and unloads its library. Nothing else may be called after it.
+    ///
+    /// # Errors
+    /// If the FMU crashes or hangs on the way.
+    pub fn finish(&mut self) -> Result<(), StepError> {
+        Ok(self.instance.finish()?)
+    }
+
     /// Restarts with other start values.
     ///
     /// # Errors

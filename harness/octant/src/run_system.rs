@@ -25,6 +25,9 @@ pub(super) struct SystemArguments {
     /// Faults on connections, a TOML file, instead of those in the system.
     #[arg(long, value_name = "FILE")]
     faults: Option<PathBuf>,
+    /// Requirements on signals of the system, a TOML file, instead of those in the system.
+    #[arg(long, value_name = "FILE")]
+    requirements: Option<PathBuf>,
     /// Order of the FMUs: jacobi, or gauss-seidel=plant,calibrator.
     #[arg(long, value_name = "ORDER")]
     order: Option<SteppingOrder>,
@@ -46,6 +49,9 @@ pub(super) struct SystemArguments {
     /// Run the FMUs in this process: faster, but a crash of an FMU ends this program too.
     #[arg(long)]
     in_process: bool,
+    /// Run also FMUs that need the tools that made them.
+    #[arg(long)]
+    allow_tool: bool,
 }
 
 impl SystemArguments {
@@ -53,6 +59,7 @@ impl SystemArguments {
     pub(super) fn first_given(&self) -> Option<&'static str> {
         let given = [
             ("--faults", self.faults.is_some()),
+            ("--requirements", self.requirements.is_some()),
             ("--order", self.order.is_some()),
             ("--step", self.step.is_some()),
             ("--start", self.start.is_some()),
@@ -60,6 +67,7 @@ impl SystemArguments {
             ("--every", self.every.is_some()),
             ("--csv", self.csv),
             ("--in-process", self.in_process),
+            ("--allow-tool", self.allow_tool),
         ];
         given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
     }
@@ -114,9 +122,11 @@ pub(super) fn command(
         order: arguments.order.clone(),
         seed: shared.seed,
         faults: arguments.faults.clone(),
+        requirements: arguments.requirements.clone(),
         fires: shared.fire.to_vec(),
         set: shared.set.to_vec(),
         place,
+        allow_tool: arguments.allow_tool,
         every: arguments.every,
     })?;
     for warning in prepared.warnings() {
@@ -155,9 +165,9 @@ pub(super) fn command(
         .to_json()
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     write(&folder.path().join("summary.json"), &json)?;
-    let xml =
-        junit_of(&summary.system, seed, &[], &summary.faults, (summary.verdict, &summary.reasons))
-            .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
+    let told = (summary.verdict, &summary.reasons[..]);
+    let xml = junit_of(&summary.system, seed, &summary.requirements, &summary.faults, told)
+        .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
     write(&folder.path().join("junit.xml"), xml)?;
     if !results.messages.is_empty() {
         let lines = results.messages.iter().map(|(fmu, text)| format!("{fmu} {text}\n"));
@@ -222,13 +232,18 @@ fn rerun(shared: &Shared<'_>, arguments: &SystemArguments, seed: u64) -> Vec<Str
         add("--fire", Some(fire.clone()));
     }
     add("--faults", arguments.faults.as_ref().map(|path| path.display().to_string()));
+    add("--requirements", arguments.requirements.as_ref().map(|path| path.display().to_string()));
     add("--order", arguments.order.as_ref().map(ToString::to_string));
     add("--step", arguments.step.clone());
     add("--start", arguments.start.clone());
     add("--stop", arguments.stop.clone());
     add("--every", arguments.every.map(|every| every.to_string()));
     add("--seed", Some(seed.to_string()));
-    for (option, given) in [("--csv", arguments.csv), ("--in-process", arguments.in_process)] {
+    for (option, given) in [
+        ("--csv", arguments.csv),
+        ("--in-process", arguments.in_process),
+        ("--allow-tool", arguments.allow_tool),
+    ] {
         if given {
             line.push(option.to_owned());
         }

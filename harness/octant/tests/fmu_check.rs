@@ -288,11 +288,154 @@ fn a_library_that_does_not_load_is_a_finding() {
 }
 
 #[test]
-fn what_needs_its_tool_is_not_loaded() {
+fn what_needs_its_tool_is_loaded_on_request_alone() {
     let (folder, binaries) = gain();
     compile(&binaries.join("gain_fmi2.so"), &[]);
     edit(folder.path(), "<CoSimulation ", "<CoSimulation needsExecutionTool=\"true\" ");
     assert_eq!(stepped(folder.path()), ["load.tool: it needs the tool that made it"]);
+    // A wrong start value is found by running alone.
+    edit(folder.path(), "start=\"2\"", "start=\"2.5\"");
+    let (output, out, err) = octant(&["--step"], &[folder.path()]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(out.contains("or --allow-tool") && !out.contains("load.starts"), "{out}");
+    let (output, out, err) = octant(&["--step", "--allow-tool"], &[folder.path()]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(out.contains("load.starts"), "{out}");
+    let run = |more: &[&str]| {
+        let fmu = folder.path().to_str().unwrap();
+        let output = program(&["fmu", "run", fmu, "--stop", "1"]).args(more).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, error) = run(&[]);
+    assert_eq!(status, Some(2), "{error}");
+    assert!(error.contains("it needs the tool that made it; where that is"), "{error}");
+    assert!(error.contains("--allow-tool runs it"), "{error}");
+    assert_eq!(run(&["--allow-tool"]).0, Some(0));
+}
+
+#[test]
+fn a_failure_at_the_end_is_a_finding() {
+    for (replaced, code, expected) in foreign::BAD_ENDS {
+        let folder = foreign::altered("gain_fmi2", code, replaced);
+        for more in [&[][..], &["--step"]] {
+            let more = [more, &["--time-limit", "1"]].concat();
+            let (output, out, err) = octant(&more, &[folder.path()]);
+            assert_eq!(output.status.code(), Some(1), "{out}{err}");
+            assert!(out.contains(expected) && out.contains("[load.survives;"), "{out}");
+        }
+    }
+}
+
+/// Code that starts a process, which leaves the FMU's group and session, and writes its number.
+const DAEMON: &str = r#"
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+__attribute__((constructor)) static void f(void) {
+    if (fork() == 0) {
+        setsid();
+        if (fork() == 0) {
+            FILE *file = fopen("PLACE.part", "w");
+            fprintf(file, "%d", getpid());
+            fclose(file);
+            rename("PLACE.part", "PLACE");
+            for (;;)
+                pause();
+        }
+        _exit(0);
+    }
+    while (access("PLACE", F_OK) != 0)
+        usleep(1000);
+    END
+}
+"#;
+
+#[test]
+fn nothing_that_an_fmu_starts_outlives_it() {
+    for (end, found) in [
+        ("", "[]"),
+        ("*(volatile int *)8 = 1;", "SIGSEGV in the loading of its library"),
+        ("for (;;) pause();", "gave no answer to the loading of its library for 3 s"),
+    ] {
+        let place = tempfile::tempdir().unwrap();
+        let place = place.path().join("pid");
+        let code = DAEMON.replace("PLACE", place.to_str().unwrap()).replace("END", end);
+        let folder = foreign::altered("gain_fmi2", &code, &[]);
+        let all = format!("{:?}", stepped(folder.path()));
+        assert!(all.contains(found), "{all}");
+        let pid = std::fs::read_to_string(&place).unwrap();
+        assert!(!Path::new("/proc").join(&pid).join("exe").exists(), "{pid} lives on: {end:?}");
+    }
+}
+
+#[test]
+fn the_output_of_an_fmu_is_limited() {
+    let code = r#"
+#include <stdio.h>
+__attribute__((constructor)) static void f(void) {
+    for (int i = 0; i < 100000; i++) {
+        printf("noise on standard output %d, thirty-two\n", i);
+        fprintf(stderr, "noise on standard error %d\n", i);
+    }
+}
+"#;
+    let folder = foreign::altered("gain_fmi2", code, &[]);
+    let (output, out, err) = octant(&[], &[folder.path()]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(out.contains("0 errors") && !out.contains("noise"), "{out}");
+    let told = err.trim_end().lines().last().unwrap();
+    let dropped = told.split(": ").nth(2).unwrap().split(' ').next().unwrap();
+    let dropped: usize = dropped.parse().unwrap();
+    assert!(told.ends_with("more bytes of its output were dropped, expected at most 1048576"));
+    // A line of each number on each stream.
+    let digits: usize = (0..100_000).map(|i: usize| i.to_string().len()).sum();
+    let all = digits
+        + 100_000 * "noise on standard output , thirty-two\n".len()
+        + digits
+        + 100_000 * "noise on standard error \n".len();
+    assert_eq!(dropped + (1 << 20), all, "{told}");
+    assert_eq!(err.trim_end().len() - told.len(), (1 << 20) + 1);
+}
+
+#[test]
+fn identical_entries_are_a_warning_and_run() {
+    let (folder, binaries) = gain();
+    let library = binaries.join("gain_fmi2.so");
+    compile(&library, &[]);
+    let description = std::fs::read(folder.path().join("modelDescription.xml")).unwrap();
+    let packed = |second: &[u8]| {
+        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for (name, contents) in [
+            ("modelDescription.xml", &description[..]),
+            ("modelDescriptions.ml", second),
+            ("binaries/linux64/gain_fmi2.so", &std::fs::read(&library).unwrap()),
+        ] {
+            archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+            archive.write_all(contents).unwrap();
+        }
+        let mut bytes = archive.finish().unwrap().into_inner();
+        let (from, to) = (b"modelDescriptions.ml", b"modelDescription.xml");
+        for at in 0..bytes.len() - from.len() {
+            if &bytes[at..at + from.len()] == from {
+                bytes[at..at + from.len()].copy_from_slice(to);
+            }
+        }
+        let path = folder.path().join("twice.fmu");
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let fmu = packed(&description);
+    let (output, out, err) = octant(&["--step"], &[&fmu]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(out.contains("the same entry is there twice"), "{out}");
+    assert!(out.contains("[archive.duplicate; FMI 2.0, 2.3]"), "{out}");
+    let run = || program(&["fmu", "run", fmu.to_str().unwrap(), "--stop", "1"]).output().unwrap();
+    assert_eq!(run().status.code(), Some(0));
+    packed(b"<another/>");
+    let output = run();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("is there twice, with different contents"), "{error}");
 }
 
 /// A library that leaves a mark when it is loaded.

@@ -534,3 +534,53 @@ fn an_fmu_that_crashes_under_fmu_run_leaves_its_rows() {
         "a header, and 0 to 0.5 s"
     );
 }
+
+#[test]
+fn the_time_limit_holds_while_the_fmu_is_loaded_and_made() {
+    let hang = "#include <unistd.h>\n__attribute__((constructor)) static void f(void) { for (;;) pause(); }";
+    let instantiate = "#include <unistd.h>\nvoid *fmi2Instantiate(void) { for (;;) pause(); }";
+    for (code, replaced, named) in [
+        (hang, &[][..], "the loading of its library"),
+        (instantiate, &["fmi2Instantiate"], "fmi2Instantiate"),
+    ] {
+        let folder = foreign::altered("gain_fmi2", code, replaced);
+        let fmu = folder.path().to_str().unwrap();
+        let (_, error) = ends(&["fmu", "run", fmu, "--stop", "1", "--time-limit", "1 s"], 4);
+        assert!(error.contains(&format!("gave no answer to {named} for 1 s")), "{error}");
+    }
+    let fmu = foreign::fmu("gain_fmi2");
+    let arguments = ["fmu", "run", fmu.to_str().unwrap(), "--stop", "1", "--time-limit", "0 s"];
+    let (_, error) = ends(&arguments, 2);
+    assert!(error.contains("--time-limit: found \"0 s\", expected a time above 0"), "{error}");
+}
+
+#[test]
+fn an_fmu_that_fails_at_its_end_leaves_all_rows() {
+    for (replaced, code, expected) in foreign::BAD_ENDS {
+        let fmu = foreign::altered("gain_fmi2", code, replaced);
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out.csv");
+        let arguments =
+            ["fmu", "run", fmu.path().to_str().unwrap(), "--stop", "1", "--step", "0.1"];
+        let more = ["--time-limit", "1 s", "--out", out.to_str().unwrap()];
+        let (_, error) = ends(&[&arguments[..], &more].concat(), 4);
+        assert!(error.contains(expected), "{error}");
+        assert!(error.contains("the outputs before that are in"), "{error}");
+        assert_eq!(std::fs::read_to_string(&out).unwrap().lines().count(), 12);
+    }
+}
+
+#[test]
+fn a_source_or_core_that_fails_at_its_end_ends_the_run_with_all_samples() {
+    let (replaced, code, expected) = foreign::BAD_ENDS[0];
+    for (name, original) in [("core_fmi2", core("")), ("imu_fmi2", imu(""))] {
+        let fmu = foreign::altered(name, code, replaced);
+        let folder = tempfile::tempdir().unwrap();
+        let scenario =
+            original.replace(foreign::fmu(name).to_str().unwrap(), fmu.path().to_str().unwrap());
+        let (error, summary, samples) = broken(folder.path(), &scenario);
+        assert!(samples >= 6000, "{name}: {samples}");
+        assert!(error.contains(expected), "{error}");
+        assert_eq!(summary["verdict"], "error");
+    }
+}

@@ -286,3 +286,102 @@ fn the_annotation_says_step_order_and_faults() {
         error(&ran)
     );
 }
+
+#[test]
+fn an_fmu_that_fails_at_its_end_ends_the_run_with_what_was_recorded() {
+    let folder = ball();
+    let (replaced, code, expected) = foreign::BAD_ENDS[0];
+    let bad = foreign::altered("gain_fmi2", code, replaced);
+    let resource = folder.path().join("resources/gain_fmi2.fmu");
+    std::fs::remove_file(&resource).unwrap();
+    std::fs::rename(bad.path(), &resource).unwrap();
+    let out = folder.path().join("run");
+    let ran = run(folder.path(), &out, &["--stop", "0.4 s", "--csv"]);
+    let error = error(&ran);
+    assert_eq!(ran.status.code(), Some(4), "{error}");
+    assert!(error.contains("failed to free the FMUs: sum failed at 0.4 s"), "{error}");
+    assert!(error.contains(expected), "{error}");
+    assert_eq!(summary(&out)["ended"]["how"], "failed");
+    assert_eq!(rows(&out).1.len(), 41);
+}
+
+const REQUIRED: &str = r#"
+schema = 1
+[[requirements]]
+id = "SYS-1"
+text = "The ball doesn't fall faster than 10 m/s."
+measure = "signal.ball.v.min"
+comparison = ">="
+limit = -10
+[[requirements]]
+id = "SYS-2"
+text = "It ends slow."
+measure = "|signal.ball.v.final|"
+limit = 3.8
+"#;
+
+#[test]
+fn a_system_has_requirements_on_its_signals() {
+    let folder = ball();
+    let out = folder.path().join("run");
+    let file = folder.path().join("requirements.toml");
+    let required = |text: &str, stop: &str| {
+        std::fs::write(&file, text).unwrap();
+        let _ = std::fs::remove_dir_all(&out);
+        run(folder.path(), &out, &["--stop", stop, "--requirements", file.to_str().unwrap()])
+    };
+    // It falls at 9.81 m/s² for 0.2 s, then for 0.4 s.
+    let ran = required(REQUIRED, "0.2 s");
+    assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+    let told = String::from_utf8(ran.stdout).unwrap();
+    assert!(told.contains("SYS-2: |signal.ball.v.final| is 1.962, required <= 3.8"), "{told}");
+    let found = summary(&out);
+    assert_eq!(found["verdict"], "pass");
+    assert_eq!(found["requirements"][0]["id"], "SYS-1");
+    assert!((found["requirements"][0]["value"].as_f64().unwrap() + 1.962).abs() < 1e-6);
+    assert!(out.join("requirements.toml").exists());
+    assert!(std::fs::read_to_string(out.join("junit.xml")).unwrap().contains("SYS-2"));
+
+    // The smallest value between the recorded rows counts too.
+    let ran = required(REQUIRED, "0.4 s");
+    assert_eq!(ran.status.code(), Some(1), "{}", error(&ran));
+    let found = summary(&out);
+    assert_eq!(
+        (&found["verdict"], &found["requirements"][0]["verdict"]),
+        (&"fail".into(), &"pass".into())
+    );
+    assert!(
+        found["reasons"][0].as_str().unwrap().starts_with("SYS-2: |signal.ball.v.final| is 3.92")
+    );
+
+    for (text, expected) in [
+        (
+            REQUIRED.replace("ball.v.min", "ball.vv.min"),
+            "requirements.toml:6:11: requirements[0].measure: found \"signal.ball.vv.min\", and the system has no signal \"ball.vv\", did you mean \"ball.v\"?",
+        ),
+        (
+            REQUIRED.replace("v.min", "v.mean"),
+            "expected signal.NAME.max, signal.NAME.min or signal.NAME.final",
+        ),
+        (REQUIRED.replace("3.8", "\"3 kg\""), "requirements[1].limit: found \"3 kg\""),
+        (REQUIRED.replace("SYS-2", "SYS-1"), "a second time"),
+        (REQUIRED.replace("limit = 3.8", ""), "limit"),
+    ] {
+        let ran = required(&text, "0.2 s");
+        let error = error(&ran);
+        assert_eq!(ran.status.code(), Some(2), "{error}");
+        assert!(error.contains(expected), "{error}: {expected}");
+        assert!(!out.exists());
+    }
+    // In the system's own annotation.
+    std::fs::write(folder.path().join("resources/required.toml"), REQUIRED).unwrap();
+    let path = folder.path().join("SystemStructure.ssd");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let annotation = r#"<Annotations><ssc:Annotation type="octant.co-simulation">
+        <CoSimulation xmlns="urn:octant:co-simulation:1">
+        <Requirements source="resources/required.toml"/></CoSimulation>
+        </ssc:Annotation></Annotations></SystemStructureDescription>"#;
+    std::fs::write(&path, text.replace("</SystemStructureDescription>", annotation)).unwrap();
+    let ran = run(folder.path(), &out, &["--stop", "0.4 s"]);
+    assert_eq!(ran.status.code(), Some(1), "{}", error(&ran));
+}

@@ -286,6 +286,16 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
     });
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
     let estimate = endpoint.parameters();
+    // The core is ended last, so that a failure there loses nothing that it has told.
+    let (ended, broken) = match endpoint.close() {
+        Err(error)
+            if broken.is_none() && !matches!(ended, Ended::Misbehaved | Ended::Cancelled) =>
+        {
+            recorder.event(Event::Error { reason: error.to_string() });
+            (Ended::Broken, Some(error.into()))
+        }
+        _ => (ended, broken),
+    };
     Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short })
 }
 

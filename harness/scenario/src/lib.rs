@@ -49,5 +49,6 @@ pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
 pub use quantity::{Quantity, UnitDimension};
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
+pub use read::system::{SystemRequirement, system_requirements};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};

@@ -58,13 +58,35 @@ fn a_good_node_has_no_finding() {
     assert!(report.findings.is_empty(), "{:#?}", report.findings);
 }
 
+#[test]
+fn the_root_of_a_manifest_has_any_name_and_any_content() {
+    let mut files = files();
+    let edits = [
+        ("fmiLayeredStandardManifest xmlns", r#"bus:Node xmlns:bus="urn:bus" xmlns"#),
+        (r#""false"/>"#, r#""false"><bus:Speed>500</bus:Speed></bus:Node>"#),
+    ];
+    files[MANIFESTED].1 = edited(MANIFEST, &edits).into_bytes();
+    // A standard that isn't known here has the folder that it mandates.
+    let other = r#"<other m:fmi-ls-name="org.other" m:fmi-ls-version="1" m:fmi-ls-description="d"
+        xmlns:m="http://fmi-standard.org/fmi-ls-manifest"/>"#;
+    files.push(("extra/org.other.folder/fmi-ls-manifest.xml", other.into()));
+    let report = survey(packed(&files));
+    assert!(report.findings.is_empty(), "{:#?}", report.findings);
+    // It is still that of the bus: its other rules apply.
+    files[TERMINAL].1 = edited(TERMINALS, &[(r#""Rx_Data""#, r#""Rx""#)]).into_bytes();
+    assert_eq!(ids(&survey(packed(&files)).findings), ["bus.members"]);
+    let mut moved = self::files();
+    moved[MANIFESTED].0 = "extra/bus/fmi-ls-manifest.xml";
+    assert_eq!(ids(&survey(packed(&moved)).findings), ["bus.manifest"]);
+}
+
 /// Rule, file, original text and replacement.
 type Case = (&'static CheckRule, usize, &'static str, &'static str);
 
 #[rustfmt::skip]
 const CASES: &[Case] = &[
     (&LAYERED_MANIFEST, MANIFESTED, r#"fmi-ls:fmi-ls-description="Buses""#, ""),
-    (&LAYERED_MANIFEST, MANIFESTED, "fmiLayeredStandardManifest xmlns", "Manifest xmlns"),
+    (&LAYERED_MANIFEST, MANIFESTED, r#"fmi-ls:fmi-ls-version="1.0.0""#, r#"fmi-ls-version="1.0.0""#),
     (&LAYERED_MANIFEST, MANIFESTED, r#""false"/>"#, r#""false">"#),
     (&BUS_VERSION, MANIFESTED, r#""1.0.0""#, r#""1.1.0""#),
     (&BUS_MANIFEST, MANIFESTED, r#""false""#, r#""no""#),

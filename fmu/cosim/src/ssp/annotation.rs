@@ -5,6 +5,7 @@
 //!   <CoSimulation xmlns="urn:octant:co-simulation:1" step="5 ms"
 //!                 order="gauss-seidel=plant,calibrator" seed="1">
 //!     <Faults source="resources/faults.toml"/>
+//!     <Requirements source="resources/requirements.toml"/>
 //!   </CoSimulation>
 //! </ssc:Annotation>
 //! ```
@@ -30,12 +31,14 @@ pub struct CoSimulation {
     /// Seed of the faults' random streams.
     pub seed: Option<u64>,
     /// Faults on connections.
-    pub faults: Option<FaultsText>,
+    pub faults: Option<TomlText>,
+    /// Requirements on signals.
+    pub requirements: Option<TomlText>,
 }
 
-/// List of faults as text.
+/// List of faults or requirements as text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FaultsText {
+pub struct TomlText {
     /// The file, for messages.
     pub file: String,
     /// TOML text; its lines have the same numbers as in the file.
@@ -64,7 +67,8 @@ pub(super) fn of(root: &Element<'_>, package: &Package) -> Result<CoSimulation, 
 }
 
 fn co_simulation(element: &Element<'_>, package: &Package) -> Result<CoSimulation, SspError> {
-    element.only(&["step", "order", "seed"], &[(NAMESPACE, "Faults")])?;
+    let parts = [(NAMESPACE, "Faults"), (NAMESPACE, "Requirements")];
+    element.only(&["step", "order", "seed"], &parts)?;
     let step_s = element.optional("step").map(step).transpose().map_err(|e| element.error(e))?;
     let order = element.optional("order").map(str::parse).transpose();
     let seed = element.optional("seed").map(|text| text.trim().parse::<u64>());
@@ -72,15 +76,17 @@ fn co_simulation(element: &Element<'_>, package: &Package) -> Result<CoSimulatio
         let found = element.optional("seed").unwrap_or_default();
         element.error(format!("seed is {found:?}, expected a whole number"))
     })?;
-    let faults = match element.child(NAMESPACE, "Faults")? {
-        Some(faults) => Some(self::faults(&faults, package)?),
-        None => None,
+    let text = |name: &str| {
+        let found = element.child(NAMESPACE, name)?;
+        found.map(|found| toml_text(&found, package)).transpose()
     };
+    let (faults, requirements) = (text("Faults")?, text("Requirements")?);
     Ok(CoSimulation {
         step_s,
         order: order.map_err(|error: OrderError| element.error(error.to_string()))?,
         seed,
         faults,
+        requirements,
     })
 }
 
@@ -112,22 +118,23 @@ pub(crate) fn step(text: &str) -> Result<f64, String> {
     }
 }
 
-fn faults(element: &Element<'_>, package: &Package) -> Result<FaultsText, SspError> {
+/// Reads a list in TOML: from the file that the element names, or from its text.
+fn toml_text(element: &Element<'_>, package: &Package) -> Result<TomlText, SspError> {
     element.only(&["source"], &[])?;
     let inline =
         element.node.children().find(|node| node.text().is_some_and(|t| !t.trim().is_empty()));
     match (element.optional("source"), inline) {
         (Some(source), None) => {
             let path = package.resolve(source).map_err(|error| element.error(error.to_string()))?;
-            Ok(FaultsText { file: package.name_of(&path), text: package.text_of(&path)? })
+            Ok(TomlText { file: package.name_of(&path), text: package.text_of(&path)? })
         }
         (None, Some(text)) => {
             let line = text.document().text_pos_at(text.range().start).row as usize;
             let mut lines = "\n".repeat(line.saturating_sub(1));
             lines.push_str(text.text().unwrap_or_default());
-            Ok(FaultsText { file: element.file.to_owned(), text: lines })
+            Ok(TomlText { file: element.file.to_owned(), text: lines })
         }
-        (Some(_), Some(_)) => Err(element.error("both a source and faults were found")),
-        (None, None) => Err(element.error("neither a source nor faults were found")),
+        (Some(_), Some(_)) => Err(element.error("both a source and a text were found")),
+        (None, None) => Err(element.error("neither a source nor a text was found")),
     }
 }

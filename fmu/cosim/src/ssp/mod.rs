@@ -7,6 +7,7 @@
 //! | [`structure`] | `SystemStructure.ssd`: systems, components, connectors, connections, bindings |
 //! | [`parameters`] | parameter sets (`.ssv`) and parameter mappings (`.ssm`), inline or in files |
 //! | [`annotation`] | settings of a structure for this program alone |
+//! | `warnings` | deviations that are read with a warning |
 //! | `xml` | elements and attributes with their lines |
 //!
 //! The FMUs aren't read here: that is done when the system is [built](super::system).
@@ -16,6 +17,7 @@ pub mod package;
 pub mod parameters;
 mod parts;
 pub mod structure;
+mod warnings;
 mod xml;
 
 use std::fmt;

@@ -1,6 +1,7 @@
 //! Folder of a system structure: a plain folder, or unpacked from an `.ssp`.
 
 use super::SspError;
+use super::warnings::SspWarnings;
 use octant_fmu_host::archive::{Archive, Unpacked};
 use std::path::{Path, PathBuf};
 
@@ -60,6 +61,8 @@ pub struct Package {
     name: String,
     folder: PathBuf,
     structure: PathBuf,
+    /// Warnings about its files.
+    pub(super) warnings: SspWarnings,
     /// Temporary folder, removed with the package.
     _unpacked: Option<Unpacked>,
 }
@@ -92,7 +95,7 @@ impl Package {
             let message = format!("failed to find {STRUCTURE} in it");
             return Err(SspError::of_file(&name, message));
         }
-        Ok(Self { name, folder, structure, _unpacked: None })
+        Ok(Self { name, folder, structure, warnings: SspWarnings::default(), _unpacked: None })
     }
 
     fn unpack(path: &Path, name: String) -> Result<Self, SspError> {
@@ -110,7 +113,13 @@ impl Package {
             let message = format!("failed to find {STRUCTURE} in it");
             return Err(SspError::of_file(&name, message));
         }
-        Ok(Self { name, folder, structure, _unpacked: Some(unpacked) })
+        Ok(Self {
+            name,
+            folder,
+            structure,
+            warnings: SspWarnings::default(),
+            _unpacked: Some(unpacked),
+        })
     }
 
     /// Returns the path of the `.ssd`.

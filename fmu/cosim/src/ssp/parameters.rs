@@ -212,17 +212,7 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
     let kind = kind_named(name).ok_or_else(|| element.error("not a type"))?;
     element.only(&["value", "unit", "name", "mime-type"], &[])?;
     let text = element.required("value")?;
-    let unit = match element.optional("unit") {
-        Some(name) => {
-            let found = units.iter().find(|(known, _)| known == name);
-            let known = units.iter().map(|(name, _)| name.as_str());
-            Some(found.cloned().ok_or_else(|| {
-                let known = octant_base::names::suggestion(name, known, "units of this file");
-                element.error(format!("the unit {name:?} is not defined, {known}"))
-            })?)
-        }
-        None => None,
-    };
+    let unit = element.unit(units).and_then(|(name, of)| Some((name.to_owned(), *of.first()?)));
     let mut literal = Literal { kind, numbers: Vec::new(), text: String::new(), unit };
     match kind {
         VariableType::String | VariableType::Enumeration | VariableType::Binary => {
@@ -360,6 +350,10 @@ pub(super) fn units(parent: &Element<'_>) -> Result<Vec<(String, BaseUnit)>, Ssp
     for unit in parent.children().filter(|child| child.is(SSC, "Unit")) {
         unit.only(&["name"], &[(SSC, "BaseUnit")])?;
         let name = unit.required("name")?;
+        if name.is_empty() {
+            unit.warn("a unit without a name: it is left out");
+            continue;
+        }
         if units.iter().any(|(known, _)| known == name) {
             return Err(unit.error("found a second time, expected unique names"));
         }

@@ -36,6 +36,8 @@ pub struct SystemStructure {
     pub co_simulation: CoSimulation,
     /// Step for programs of the Open Simulation Platform, s.
     pub osp_step_s: Option<f64>,
+    /// Deviations from the standard that were read all the same.
+    pub warnings: Vec<String>,
 }
 
 impl SystemStructure {
@@ -47,7 +49,8 @@ impl SystemStructure {
         let text = package.text_of(package.structure())?;
         let file = package.name_of(package.structure());
         let document = xml::parse(&text, &file)?;
-        let root = Element::root(&document, &file, SSD, "SystemStructureDescription")?;
+        let top = (SSD, "SystemStructureDescription");
+        let root = Element::root(&document, &file, &package.warnings, top)?;
         parameters::version(&root)?;
         root.only(
             &[
@@ -80,16 +83,18 @@ impl SystemStructure {
             stop_s = experiment.finite("stopTime")?;
             osp_step_s = annotation::osp_step_s(&experiment)?;
         }
-        let reader = Reader { package };
+        let reader = Reader { package, units: &units };
+        let system = reader.system(&system, 0)?;
         Ok(Self {
             name: root.optional("name").unwrap_or_default().to_owned(),
-            system: reader.system(&system, 0)?,
+            system,
             units,
             enumerations,
             start_s,
             stop_s,
             co_simulation: annotation::of(&root, package)?,
             osp_step_s,
+            warnings: package.warnings.take(),
             file: file.clone(),
         })
     }
@@ -97,6 +102,8 @@ impl SystemStructure {
 
 struct Reader<'p> {
     package: &'p Package,
+    /// Units of the structure's file.
+    units: &'p [(String, BaseUnit)],
 }
 
 /// Children that every element of a system may have.
@@ -117,7 +124,7 @@ impl Reader<'_> {
         }
         let mut system = SspSystem {
             name: element.optional("name").unwrap_or_default().to_owned(),
-            connectors: connectors(element)?,
+            connectors: connectors(element, self.units)?,
             elements: Vec::new(),
             connections: Vec::new(),
             bindings: self.bindings(element, None)?,
@@ -197,7 +204,7 @@ impl Reader<'_> {
             name: element.required("name")?.to_owned(),
             source: source.to_owned(),
             implementation,
-            connectors: connectors(element)?,
+            connectors: connectors(element, self.units)?,
             bindings: self.bindings(element, Some(source))?,
             line: element.line(),
             file,
@@ -211,10 +218,13 @@ impl Reader<'_> {
         element: &Element<'_>,
         component: Option<&str>,
     ) -> Result<Vec<Binding>, SspError> {
-        let Some(list) = element.child(SSD, "ParameterBindings")? else { return Ok(Vec::new()) };
-        list.only(&[], &[(SSD, "ParameterBinding")])?;
         let mut bindings = Vec::new();
-        for binding in list.children().filter(|child| child.is(SSD, "ParameterBinding")) {
+        let lists = element.several(SSD, "ParameterBindings");
+        for list in &lists {
+            list.only(&[], &[(SSD, "ParameterBinding")])?;
+        }
+        let all = lists.iter().flat_map(Element::children);
+        for binding in all.filter(|child| child.is(SSD, "ParameterBinding")) {
             binding.only(
                 &["type", "source", "sourceBase", "prefix"],
                 &[(SSD, "ParameterValues"), (SSD, "ParameterMapping")],
@@ -293,16 +303,20 @@ impl Reader<'_> {
         let text = self.package.text_of(&path)?;
         let file = self.package.name_of(&path);
         let document = xml::parse(&text, &file)?;
-        read(&Element { node: document.root_element(), file: &file })
+        let warnings = &self.package.warnings;
+        read(&Element { node: document.root_element(), file: &file, warnings })
     }
 }
 
-fn connectors(element: &Element<'_>) -> Result<Vec<Connector>, SspError> {
+fn connectors(
+    element: &Element<'_>,
+    units: &[(String, BaseUnit)],
+) -> Result<Vec<Connector>, SspError> {
     let Some(list) = element.child(SSD, "Connectors")? else { return Ok(Vec::new()) };
     list.only(&[], &[(SSD, "Connector")])?;
     let mut connectors: Vec<Connector> = Vec::new();
     for element in list.children().filter(|child| child.is(SSD, "Connector")) {
-        let read = connector(&element)?;
+        let read = connector(&element, units)?;
         if connectors.iter().any(|known| known.name == read.name) {
             return Err(element.error("found a second time, expected unique names"));
         }
@@ -311,7 +325,7 @@ fn connectors(element: &Element<'_>) -> Result<Vec<Connector>, SspError> {
     Ok(connectors)
 }
 
-fn connector(element: &Element<'_>) -> Result<Connector, SspError> {
+fn connector(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Connector, SspError> {
     let name = element.required("name")?;
     let kind = match element.required("kind")? {
         "input" => ConnectorKind::Input,
@@ -360,7 +374,7 @@ fn connector(element: &Element<'_>) -> Result<Connector, SspError> {
         connector.of_type = Some(ConnectorType {
             name: child.name().to_owned(),
             kind,
-            unit: child.optional("unit").map(str::to_owned),
+            unit: child.unit(units).map(|(name, _)| name.to_owned()),
             enumeration,
         });
     }
@@ -377,8 +391,12 @@ fn connection(element: &Element<'_>) -> Result<Connection, SspError> {
         &TRANSFORMATIONS,
     )?;
     let end = |of: &str, connector: &str| {
+        let name = element.optional(of);
+        if name == Some("") {
+            element.warn(format!("{of} is empty: it is read as left out, which is the system"));
+        }
         Ok(ConnectionEnd {
-            element: element.optional(of).map(str::to_owned),
+            element: name.filter(|name| !name.is_empty()).map(str::to_owned),
             connector: element.required(connector)?.to_owned(),
         })
     };

@@ -1,7 +1,9 @@
 //! Reads elements and attributes of a file, with their lines.
 
 use super::SspError;
+use super::warnings::SspWarnings;
 use octant_base::names::suggestion;
+use octant_fmu_host::description::{BaseUnit, units};
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// Namespaces of the standard, the same for 1.0 and 2.0.
@@ -15,6 +17,12 @@ const NODES_MAX: u32 = 4_000_000;
 
 /// Parses a file.
 pub(super) fn parse<'a>(text: &'a str, file: &str) -> Result<Document<'a>, SspError> {
+    octant_fmu_host::description::xml_limits::check(text).map_err(|excess| SspError {
+        file: file.to_owned(),
+        line: Some(1 + text[..excess.at].matches('\n').count() as u32),
+        element: String::new(),
+        message: format!("found {}, expected {}", excess.found, excess.expected),
+    })?;
     let options = ParsingOptions { nodes_limit: NODES_MAX, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| SspError {
         file: file.to_owned(),
@@ -29,6 +37,7 @@ pub(super) fn parse<'a>(text: &'a str, file: &str) -> Result<Document<'a>, SspEr
 pub(super) struct Element<'a> {
     pub(super) node: Node<'a, 'a>,
     pub(super) file: &'a str,
+    pub(super) warnings: &'a SspWarnings,
 }
 
 impl<'a> Element<'a> {
@@ -36,10 +45,10 @@ impl<'a> Element<'a> {
     pub(super) fn root(
         document: &'a Document<'a>,
         file: &'a str,
-        namespace: &str,
-        name: &str,
+        warnings: &'a SspWarnings,
+        (namespace, name): (&str, &str),
     ) -> Result<Self, SspError> {
-        let root = Self { node: document.root_element(), file };
+        let root = Self { node: document.root_element(), file, warnings };
         root.expect(namespace, name)?;
         Ok(root)
     }
@@ -97,8 +106,8 @@ impl<'a> Element<'a> {
 
     /// Lists the child elements.
     pub(super) fn children(&self) -> impl Iterator<Item = Self> + use<'a> {
-        let file = self.file;
-        self.node.children().filter(Node::is_element).map(move |node| Self { node, file })
+        let Self { file, warnings, .. } = *self;
+        self.node.children().filter(Node::is_element).map(move |node| Self { node, file, warnings })
     }
 
     /// Returns the child element of this name, which may occur once.
@@ -138,6 +147,41 @@ impl<'a> Element<'a> {
             return Err(child.error(format!("unknown element <{}>, {known}", child.name())));
         }
         Ok(())
+    }
+
+    /// Warns about this element; `message` says what is read instead.
+    pub(super) fn warn(&self, message: impl Into<String>) {
+        self.warnings.add(&self.error(message));
+    }
+
+    /// Returns the child elements of this name, which should occur once.
+    pub(super) fn several(&self, namespace: &str, name: &str) -> Vec<Self> {
+        let found: Vec<Self> = self.children().filter(|child| child.is(namespace, name)).collect();
+        for more in found.iter().skip(1) {
+            more.warn("found once more, expected once: all are read, one after the other");
+        }
+        found
+    }
+
+    /// Returns the name of a unit in the attribute `unit`, and its meaning by the definitions of
+    /// the file, else its common one.
+    pub(super) fn unit(&self, defined: &[(String, BaseUnit)]) -> Option<(&'a str, Vec<BaseUnit>)> {
+        let name = self.optional("unit")?;
+        if name.is_empty() {
+            self.warnings.unit(name, &self.error("the unit is empty: it is read as none"));
+            return None;
+        }
+        if let Some((_, base)) = defined.iter().find(|(known, _)| known == name) {
+            return Some((name, vec![*base]));
+        }
+        let known = units::known(name);
+        let read = match known.is_empty() {
+            true => "it is read as none",
+            false => "its common meaning is used",
+        };
+        let message = format!("the unit {name:?} is not defined in this file: {read}");
+        self.warnings.unit(name, &self.error(message));
+        (!known.is_empty()).then_some((name, known))
     }
 
     pub(super) fn optional(&self, attribute: &str) -> Option<&'a str> {

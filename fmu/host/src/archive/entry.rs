@@ -29,6 +29,8 @@ pub enum Oddity {
     Unmarked,
     /// The name is impossible on Windows, where the archive can't be unpacked.
     Windows(String),
+    /// The entry is there more than once, each time with the same content.
+    Duplicate,
     /// The headers before the entries contradict the directory at the end.
     Headers(String),
 }

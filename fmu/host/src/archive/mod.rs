@@ -5,6 +5,7 @@
 //! that the standards don't allow (other compression than Deflate, encryption, links) is refused,
 //! not worked around. An unpacked FMU is a folder, and is accepted as one.
 
+mod duplicates;
 mod entry;
 mod error;
 mod limits;

@@ -132,11 +132,46 @@ fn hostile_names_are_refused() {
 #[test]
 fn names_that_collide_are_refused() {
     let twice = patched(zip(&[("aaa", b"1"), ("bbb", b"2")]), b"bbb", b"aaa");
-    assert_eq!(refused(twice), "h.fmu: entry \"aaa\" is there twice, expected one entry of a name");
+    assert_eq!(
+        refused(twice),
+        "h.fmu: entry \"aaa\" is there twice, with different contents, expected one entry of a name"
+    );
     let case = zip(&[("a/Model.so", b"1"), ("a/model.so", b"2")]);
     assert!(refused(case).contains("upper and lower case alone"));
     let both = zip(&[("a", b"1"), ("a/b", b"2")]);
     assert!(refused(both).contains("a file and a folder"));
+}
+
+#[test]
+fn identical_entries_of_one_name_are_odd_and_read() {
+    let text = b"<a/>".repeat(100);
+    let mut writer = ZipWriter::new(io::Cursor::new(Vec::new()));
+    // Packed in two ways: the contents count.
+    for (name, method) in [
+        ("aaa", zip::CompressionMethod::Stored),
+        ("bbb", zip::CompressionMethod::Deflated),
+        ("ccc", zip::CompressionMethod::Deflated),
+    ] {
+        let options = SimpleFileOptions::default().compression_method(method);
+        writer.start_file(name, options).expect("starts");
+        writer.write_all(&text).expect("writes");
+    }
+    let bytes = writer.finish().expect("finishes").into_inner();
+    let bytes = patched(patched(bytes, b"bbb", b"aaa"), b"ccc", b"aaa");
+    let mut archive = Archive::from_bytes("h.fmu", bytes.clone()).expect("opens");
+    let odd = Odd { entry: "aaa".into(), what: Oddity::Duplicate };
+    let twice = archive.oddities().iter().filter(|found| **found == odd).count();
+    assert_eq!(twice, 2, "{:?}", archive.oddities());
+    assert_eq!(archive.entries().len(), 1);
+    assert_eq!(archive.read("aaa").expect("reads"), text);
+    assert!(archive.unpack().is_ok());
+    // Beyond the limit nothing is compared.
+    let limits = ArchiveLimits { read_bytes: 500, ..ArchiveLimits::DEFAULT };
+    let archive = Archive::survey_bytes("h.fmu", bytes, limits).expect("opens");
+    assert!(archive.problems()[0].found.contains("can't be compared"), "{:?}", archive.problems());
+    // A folder is there twice in the archives of some tools.
+    let folder = patched(zip(&[("a/", b""), ("b/", b""), ("c", b"1")]), b"b/", b"a/");
+    assert_eq!(Archive::from_bytes("h.fmu", folder).expect("opens").problems(), []);
 }
 
 #[test]

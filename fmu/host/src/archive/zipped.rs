@@ -1,10 +1,11 @@
 //! A zip archive: its entries are examined, and read with every byte counted.
 
+use super::duplicates::{ContentComparison, HEADER, Header, compare};
 use super::entry::{ArchiveEntry, Odd, Oddity};
 use super::error::ArchiveError;
 use super::limits::ArchiveLimits;
 use super::names::{self, NameProblem, Names};
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -103,8 +104,10 @@ impl Zipped {
         let start = archive.central_directory_start();
         let mut metered = archive.into_inner();
         left.store(limits.directory_bytes, Ordering::Relaxed);
-        let (mut problems, mut oddities) =
+        let (twice, mut oddities) =
             directory(&mut metered, start).map_err(|error| damaged(ZipError::Io(error)))?;
+        left.store(u64::MAX, Ordering::Relaxed);
+        let mut problems = duplicates(&mut metered, &twice, limits, &mut oddities);
         left.store(limits.directory_bytes, Ordering::Relaxed);
         let mut archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
         // Two entries that share bytes make a huge archive from a small file.
@@ -112,7 +115,8 @@ impl Zipped {
             let reason = "entries overlap".into();
             return Err(ArchiveError::Damaged { file: file.into(), reason });
         }
-        if problems.is_empty()
+        // The library's check of the headers refuses every duplicate.
+        if twice.is_empty()
             && let Err(error) = archive.validate_header_consistency()
         {
             let entry = String::new();
@@ -260,18 +264,24 @@ fn look(
     Ok(Ok(Some((ArchiveEntry { name: name.into(), stated_bytes: entry.size() }, is_program))))
 }
 
+/// An entry that has the name of an earlier one: both headers.
+struct Duplicate {
+    name: Vec<u8>,
+    headers: [Header; 2],
+}
+
 /// Examines the directory's headers for facts that the library doesn't keep: names that occur
 /// twice, and properties that may confuse other tools.
-fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<NameProblem>, Vec<Odd>)> {
+fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<Duplicate>, Vec<Odd>)> {
     source.seek(SeekFrom::Start(start))?;
-    let mut seen = std::collections::BTreeSet::new();
-    let mut problems = Vec::new();
+    let mut seen: BTreeMap<Vec<u8>, Header> = BTreeMap::new();
+    let mut twice = Vec::new();
     let mut oddities = Vec::new();
-    let mut header = [0; 46];
+    let mut header = [0; HEADER];
     loop {
         source.read_exact(&mut header[..4])?;
         if &header[..4] != b"PK\x01\x02" {
-            return Ok((problems, oddities));
+            return Ok((twice, oddities));
         }
         source.read_exact(&mut header[4..])?;
         let field = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
@@ -289,14 +299,41 @@ fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<NameProblem>, 
         if flags & 1 << 11 == 0 && !name.is_ascii() {
             odd(Oddity::Unmarked);
         }
-        if !seen.insert(name.clone()) {
-            problems.push(NameProblem {
-                name: names::printable(&name),
-                found: "is there twice".into(),
-                expected: "one entry of a name",
-            });
+        match seen.entry(name) {
+            Entry::Vacant(place) => {
+                place.insert(header);
+            }
+            Entry::Occupied(first) => {
+                let (name, headers) = (first.key().clone(), [*first.get(), header]);
+                twice.push(Duplicate { name, headers });
+            }
         }
     }
+}
+
+/// Compares the entries that have one name: identical ones are an oddity, others a problem.
+fn duplicates(
+    source: &mut Metered,
+    twice: &[Duplicate],
+    limits: &ArchiveLimits,
+    oddities: &mut Vec<Odd>,
+) -> Vec<NameProblem> {
+    let mut problems = Vec::new();
+    let mut left = limits.read_bytes;
+    for Duplicate { name, headers: [one, other] } in twice {
+        let name = names::printable(name);
+        let found = match compare(source, one, other, &mut left) {
+            ContentComparison::Identical => {
+                oddities.push(Odd { entry: name, what: Oddity::Duplicate });
+                continue;
+            }
+            ContentComparison::Different => "is there twice, with different contents",
+            ContentComparison::Unknown => "is there twice, with contents that can't be compared",
+        };
+        let expected = "one entry of a name";
+        problems.push(NameProblem { name, found: found.into(), expected });
+    }
+    problems
 }
 
 /// Describes an error of the zip library.

@@ -1,11 +1,26 @@
 //! Attributes that both standards share: of interfaces and of variables.
 
 use super::xml::Element;
-use super::{Causality, DescriptionError, Initial, Interface, Standard, Variability, VariableType};
+use super::{
+    Causality, Description, DescriptionError, Initial, Interface, Standard, VARIABLES_MAX,
+    Variability, VariableType,
+};
 
 /// Reads an attribute, empty if missing.
 pub(super) fn optional(element: Element<'_, '_>, attribute: &str) -> String {
     element.text(attribute).unwrap_or_default().to_owned()
+}
+
+/// Checks that there is room for one more variable, that of an element.
+pub(super) fn room(
+    element: Element<'_, '_>,
+    description: &Description,
+) -> Result<(), DescriptionError> {
+    if description.variables.len() < VARIABLES_MAX {
+        return Ok(());
+    }
+    let found = format!("variable {}", VARIABLES_MAX + 1);
+    Err(element.error(None, found, format!("at most {VARIABLES_MAX} variables")))
 }
 
 /// Reads the common part of the interfaces of both standards. `names`: spelling of the attributes

@@ -1,7 +1,8 @@
 //! FMI 2.0: scalar variables, simple types, and a structure by indices.
 
 use super::attributes::{
-    causality, default_initial, default_variability, initial, interface, optional, variability,
+    causality, default_initial, default_variability, initial, interface, optional, room,
+    variability,
 };
 use super::xml::Element;
 use super::{
@@ -49,6 +50,7 @@ pub(super) fn read<'a, 't: 'a>(
             if element.name() != "ScalarVariable" {
                 continue;
             }
+            room(element, description)?;
             let (variable, state) = read_variable(element, &types)?;
             if let Some(state) = state {
                 derivatives.push((description.variables.len(), state, element));

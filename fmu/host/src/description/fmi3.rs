@@ -1,7 +1,8 @@
 //! FMI 3.0: typed elements, arrays, aliases, clocks, and a structure by value references.
 
 use super::attributes::{
-    causality, default_initial, default_variability, initial, interface, optional, variability,
+    causality, default_initial, default_variability, initial, interface, optional, room,
+    variability,
 };
 use super::fmi2::items;
 use super::xml::Element;
@@ -53,16 +54,21 @@ pub(super) fn read<'a, 't: 'a>(
             // Minor versions of the standard may add types.
             continue;
         };
+        room(element, description)?;
         description.variables.push(read_variable(element, kind, &types)?);
     }
     structure(root, description)?;
     // A map, because both lists may have a million entries.
-    let variables: BTreeMap<u32, &Variable> =
-        description.variables.iter().map(|variable| (variable.reference, variable)).collect();
+    let mut variables: BTreeMap<u32, &Variable> = BTreeMap::new();
+    for variable in &description.variables {
+        variables.entry(variable.reference).or_insert(variable);
+    }
     let mut indicators = 0usize;
     for unknown in &description.structure.event_indicators {
         let Some(variable) = variables.get(&unknown.reference) else { continue };
-        indicators = indicators.saturating_add(description.elements(variable)?);
+        let elements =
+            description.elements_by(variable, |reference| variables.get(&reference).copied())?;
+        indicators = indicators.saturating_add(elements);
     }
     description.event_indicators = indicators;
     Ok(())

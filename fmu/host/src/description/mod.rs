@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `text` | conversion of bytes in any encoding to text |
 //! | `xml` | elements, attributes and their types, with the place of each |
+//! | [`xml_limits`] | limits of an XML file, before it is parsed |
 //! | `variable` | variables |
 //! | `read` | parts that both standards share |
 //! | `attributes` | attributes that both standards share |
@@ -24,6 +25,7 @@ mod text;
 pub mod units;
 mod variable;
 pub mod xml;
+pub mod xml_limits;
 
 pub use read::{read, read_bytes};
 pub use text::decode;
@@ -63,6 +65,9 @@ impl std::fmt::Display for Line {
 /// Largest number of elements of the arrays of an FMU together: 128 MiB of numbers. A dimension is
 /// a 64-bit number in the file, and the importer has to provide the memory.
 pub const ELEMENTS_MAX: u64 = 1 << 24;
+
+/// Largest number of variables of a description. The largest in use have some hundred thousand.
+pub const VARIABLES_MAX: usize = 1_000_000;
 
 /// The standard that an FMU follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -269,6 +274,15 @@ impl Description {
     /// # Errors
     /// If a dimension isn't known, or there are more than [`ELEMENTS_MAX`].
     pub fn elements(&self, variable: &Variable) -> Result<usize, DescriptionError> {
+        self.elements_by(variable, |reference| self.by_reference(reference))
+    }
+
+    /// Counts as [`Self::elements`], with an index of the value references.
+    fn elements_by<'v>(
+        &self,
+        variable: &Variable,
+        by_reference: impl Fn(u32) -> Option<&'v Variable>,
+    ) -> Result<usize, DescriptionError> {
         let fail = |found: String, expected: &str| DescriptionError {
             file: self.file.clone(),
             line: Some(variable.line),
@@ -280,8 +294,7 @@ impl Description {
         for dimension in &variable.dimensions {
             let size = match *dimension {
                 ArrayDimension::Fixed(size) => size,
-                ArrayDimension::Of(reference) => self
-                    .by_reference(reference)
+                ArrayDimension::Of(reference) => by_reference(reference)
                     .filter(|parameter| parameter.causality == Causality::StructuralParameter)
                     .and_then(|parameter| parameter.start.first()?.trim().parse().ok())
                     .ok_or_else(|| {

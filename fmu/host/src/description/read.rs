@@ -145,9 +145,10 @@ fn standard(root: Element<'_, '_>) -> Result<Standard, DescriptionError> {
 /// Reads units with their factors.
 fn units(list: Element<'_, '_>) -> Result<Vec<UnitDefinition>, DescriptionError> {
     let mut units: Vec<UnitDefinition> = Vec::new();
+    let mut names = BTreeSet::new();
     for element in list.children().filter(|child| child.name() == "Unit") {
         let name = element.required("name")?.to_owned();
-        if units.iter().any(|unit| unit.name == name) {
+        if !names.insert(name.clone()) {
             element.tolerate("unit twice", || "the unit is defined twice, the first counts".into());
             continue;
         }
@@ -220,6 +221,7 @@ fn unknown(root: Element<'_, '_>, standard: Standard) {
 /// Notes names that occur twice and units that aren't defined.
 fn names_and_units(root: Element<'_, '_>, description: &Description) {
     let mut names = BTreeSet::new();
+    let units: BTreeSet<&str> = description.units.iter().map(|unit| unit.name.as_str()).collect();
     let file = root.file();
     for variable in &description.variables {
         let aliases = variable.aliases.iter().map(|alias| &alias.name);
@@ -231,7 +233,7 @@ fn names_and_units(root: Element<'_, '_>, description: &Description) {
             }
         }
         if let Some(unit) = &variable.unit
-            && description.unit(unit).is_none()
+            && !units.contains(unit.as_str())
         {
             file.tolerate("unit not defined", variable.line, || {
                 format!("the unit {unit:?} of {:?} is not defined", variable.name)

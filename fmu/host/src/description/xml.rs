@@ -1,6 +1,7 @@
 //! Elements and attributes of an XML file, with the place of each in messages.
 
 use super::DescriptionError;
+use super::xml_limits;
 use roxmltree::{Document, Node, ParsingOptions};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -39,8 +40,16 @@ impl<'a> File<'a> {
     /// Parses the text into a tree.
     ///
     /// # Errors
-    /// If it isn't well-formed, has a DOCTYPE, or has more nodes than any description.
+    /// If it isn't well-formed, has a DOCTYPE, or exceeds the [limits](xml_limits) of any
+    /// description.
     pub fn parse<'t>(&self, text: &'t str) -> Result<Document<'t>, DescriptionError> {
+        xml_limits::check(text).map_err(|excess| DescriptionError {
+            file: self.name.into(),
+            line: Some(self.line(excess.at)),
+            place: "XML".into(),
+            found: excess.found,
+            expected: excess.expected,
+        })?;
         // Without a DOCTYPE there are no custom entities, so that none can expand.
         let options =
             ParsingOptions { allow_dtd: false, nodes_limit: NODES_MAX, ..Default::default() };

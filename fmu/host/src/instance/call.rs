@@ -14,8 +14,11 @@ pub(crate) struct Mark(pub(crate) Option<&'static AtomicU64>);
 /// No function is running.
 pub(crate) const NOWHERE: u32 = 0;
 
-/// The library is being loaded or unloaded; its constructors or destructors may run.
+/// The library is being loaded: its constructors may run.
 pub(crate) const LOADING: u32 = 1;
+
+/// The library is being unloaded: its destructors may run.
+pub(crate) const UNLOADING: u32 = 2;
 
 /// First numbers of the functions of FMI 2.0 and FMI 3.0.
 const FIRST_FMI2: u32 = 1000;
@@ -36,8 +39,10 @@ pub(crate) fn function_name(function: u32) -> Option<&'static str> {
     let at = |names: &[&'static str], first: u32| {
         names.get(usize::try_from(function.checked_sub(first)?).ok()?).copied()
     };
-    if function == LOADING {
-        return Some("the loading of its library");
+    match function {
+        LOADING => return Some("the loading of its library"),
+        UNLOADING => return Some("the unloading of its library"),
+        _ => {}
     }
     at(fmi3::NAMES, FIRST_FMI3).or_else(|| at(fmi2::NAMES, FIRST_FMI2))
 }
@@ -315,7 +320,7 @@ macro_rules! free_on_drop {
                     // SAFETY: the instance is alive, and this is the last that is done with it.
                     unsafe { free(self.instance) };
                     // The library may be unloaded next, which runs its destructors.
-                    self.base.mark.set(LOADING);
+                    self.base.mark.set(UNLOADING);
                 }
             }
         }
@@ -325,7 +330,7 @@ pub(crate) use free_on_drop;
 
 #[cfg(test)]
 mod tests {
-    use super::{LOADING, NOWHERE, function_name, function_number};
+    use super::{LOADING, NOWHERE, UNLOADING, function_name, function_number};
     use octant_fmi::{fmi2, fmi3};
 
     #[test]
@@ -340,6 +345,6 @@ mod tests {
         for number in [NOWHERE, 999, 1999, 5000, u32::MAX] {
             assert_eq!(function_name(number), None);
         }
-        assert!(function_name(LOADING).is_some());
+        assert!(function_name(LOADING).is_some() && function_name(UNLOADING).is_some());
     }
 }

@@ -4,7 +4,7 @@
 use super::super::description::VariableType;
 use super::super::library::{Functions, Library};
 use super::call::{
-    Answer, Base, Condition, LOADING, NOWHERE, ask, call, free_on_drop, function_number,
+    Answer, Base, Condition, NOWHERE, UNLOADING, ask, call, free_on_drop, function_number,
     functions_of_both,
 };
 use super::message::{Log, callbacks, text};

@@ -316,6 +316,16 @@ pub trait Instance: Send {
     /// If the FMU fails.
     fn terminate(&mut self) -> Result<(), InstanceError>;
 
+    /// Frees the FMU and unloads its library. An FMU in a process of its own is freed here, and its
+    /// process ends; one in this process is freed when it is dropped. Nothing else may be called
+    /// after it.
+    ///
+    /// # Errors
+    /// If the FMU crashes or hangs on the way, or ends its process.
+    fn finish(&mut self) -> Result<(), InstanceError> {
+        Ok(())
+    }
+
     /// Messages that the FMU logged since the last call.
     fn messages(&mut self) -> Vec<FmuMessage>;
 }

@@ -119,12 +119,16 @@ pub(crate) fn open_here(
              expected one built with cargo build --release --features octant/model-exchange",
         ));
     }
-    if interface.needs_execution_tool {
-        return Err(InstanceError::unsupported(
-            name,
-            "run",
-            format!("it needs the tool that made it, {}", description.generation_tool),
-        ));
+    if interface.needs_execution_tool && !options.allow_tool {
+        let tool = match &description.generation_tool[..] {
+            "" => String::new(),
+            tool => format!(", {tool}"),
+        };
+        let reason = format!(
+            "it needs the tool that made it{tool}; where that is installed, --allow-tool runs it, or \
+             allow_tool = true in a scenario"
+        );
+        return Err(InstanceError::unsupported(name, "be run", reason));
     }
     let clocks = description.variables.iter().any(|variable| variable.kind == VariableType::Clock);
     if !exchange && clocks && !(options.event_mode && interface.event_mode) {

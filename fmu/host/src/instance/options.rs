@@ -42,6 +42,8 @@ pub struct OpenOptions {
     pub event_mode: bool,
     /// True to allow early returns from a step (FMI 3.0).
     pub early_return: bool,
+    /// True to run an FMU that needs the tool that made it.
+    pub allow_tool: bool,
     /// Longest time for loading, instantiation and initialization, together with each reset.
     pub start_limit: Duration,
     /// Longest time for any other call.
@@ -60,6 +62,7 @@ impl Default for OpenOptions {
             log: true,
             event_mode: true,
             early_return: true,
+            allow_tool: false,
             start_limit: Duration::from_mins(1),
             time_limit: Duration::from_secs(10),
             program: None,

@@ -1,10 +1,11 @@
 //! The other process: it hosts one FMU and executes requests.
 
-use super::super::instance::call::Mark;
+use super::super::instance::call::{Mark, UNLOADING};
 use super::super::instance::open::{FmuOpenError, open_folder};
 use super::super::instance::{
     FmuMessage, Instance, InstanceError, StepOutcome, Stepped, VariableGroup,
 };
+use super::error::FmuServeError;
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -20,36 +21,7 @@ use std::sync::atomic::Ordering;
 /// Largest number of messages held for the other process.
 const MESSAGES_MAX: usize = 10_000;
 
-/// Reason why the process of an FMU ends early.
-#[derive(Debug, thiserror::Error)]
-pub enum FmuServeError {
-    /// No process that provides its input and output started this one.
-    #[error("octant fmu host is started by octant itself, for an FMU that runs apart ({error})")]
-    NotStarted {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The other process can't be watched.
-    #[error("{error}")]
-    Watch {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The thread that watches the other process can't be started.
-    #[error("start a thread: {error}")]
-    Thread {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The other process is gone.
-    #[error("octant fmu host lost the process that it serves: {error}")]
-    Lost {
-        /// Error of the operating system.
-        error: io::Error,
-    },
-}
-
-/// Serves the process that started this one, until that has finished with the FMU.
+/// Serves the process at the other end of the socket, until that has finished with the FMU.
 ///
 /// # Errors
 /// If no such process started this one: standard input and output are not those that it provides.
@@ -66,6 +38,9 @@ pub fn serve() -> Result<(), FmuServeError> {
         Ok((socket.into(), shared))
     };
     let (socket, shared) = connect().map_err(|error| FmuServeError::NotStarted { error })?;
+    // Without the guard nothing would end what the FMU starts.
+    rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
+        .map_err(|error| FmuServeError::Watch { error: error.into() })?;
     // The mapping stays to the end of the process: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
     watch_parent(&socket)?;
@@ -125,7 +100,12 @@ impl Host {
         loop {
             let request = self.next(&mut done)?;
             match request {
-                Some(Request::Quit) => return Ok(()),
+                Some(Request::Quit) => {
+                    drop(instance);
+                    // Destructors that weren't run yet are run when this process ends.
+                    Mark(Some(self.shared.word(Word::Function))).set(UNLOADING);
+                    return message::write(&mut self.socket, &Reply::Ok(Answer::Done(())));
+                }
                 Some(request) => {
                     let reply = self.reply(&mut *instance, request);
                     self.gather(&mut *instance);

@@ -7,14 +7,21 @@
 //! | `shared` | memory of both processes, for exchanges |
 //! | `watch` | the child process: its time limit, and its end |
 //! | `remote` | the FMU seen from this process |
-//! | [`host`] | the other process: `octant fmu host` |
+//! | [`error`] | reasons why the process of an FMU ends early |
+//! | [`guard`] | the process between both: `octant fmu host` |
+//! | [`host`] | the other process: `octant fmu host --unguarded` |
 //!
 //! The other process gets its end of the socket as standard input and the shared memory as standard
 //! output, and moves both away before it loads anything: standard input is then empty for the FMU,
 //! and its output goes to standard error. An exchange is one round trip through shared memory, for
 //! which both sides poll a while before they sleep; everything else goes over the socket. When this
-//! process ends, for whatever reason, the socket closes, and the other process ends too.
+//! process ends, for whatever reason, the socket closes, and the other process ends too, with every
+//! process that the FMU started: the guard between them ends these.
 
+#[cfg(target_os = "linux")]
+pub mod error;
+#[cfg(target_os = "linux")]
+pub mod guard;
 #[cfg(target_os = "linux")]
 pub mod host;
 #[cfg(target_os = "linux")]

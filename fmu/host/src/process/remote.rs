@@ -54,7 +54,8 @@ pub(crate) fn open(
     socket.set_read_timeout(Some(LOOK)).map_err(cannot)?;
     socket.set_write_timeout(Some(options.start_limit)).map_err(cannot)?;
     let path = std::path::absolute(folder.path()).map_err(cannot)?;
-    let watch = Watch::start(name, options, theirs, memory)?;
+    let line = socket.try_clone().map_err(cannot)?;
+    let watch = Watch::start(name, options, (line, theirs), memory)?;
     let mut remote = Remote {
         name: name.into(),
         description,
@@ -144,6 +145,7 @@ impl Remote {
                 ("the initialization", self.start_limit)
             }
             Request::Step { .. } => ("a step", self.time_limit),
+            Request::Quit => ("the end", self.time_limit),
             _ => ("a call", self.time_limit),
         };
         // Tells a child that polls the memory to read the socket.
@@ -382,6 +384,11 @@ impl Instance for Remote {
 
     fn terminate(&mut self) -> Result<(), InstanceError> {
         ask!(self, Request::Terminate => Done)
+    }
+
+    fn finish(&mut self) -> Result<(), InstanceError> {
+        ask!(self, Request::Quit => Done)?;
+        self.watch.end_of_child(&self.shared, self.time_limit)
     }
 
     /// Returns no messages from a process that has ended.

@@ -50,6 +50,8 @@ pub(super) enum Word {
     MessagesWait,
     // Written by the child at every call.
     Function = 24,
+    // Written by the guard at the end.
+    Status,
 }
 
 impl Shared {

@@ -17,10 +17,16 @@ use std::time::{Duration, Instant};
 /// the child's end of the socket may stay open in a process that the FMU started.
 pub(super) const LOOK: Duration = Duration::from_millis(100);
 
+/// Longest time for which the guard may take to end all processes, before it is killed itself.
+const GUARD_MAX: Duration = Duration::from_secs(10);
+
 /// Process of an FMU.
 pub(super) struct Watch {
     name: String,
+    /// The guard of the FMU's process.
     child: Child,
+    /// This end of the socket: the guard ends everything when it is closed.
+    line: UnixStream,
     ended: Option<InstanceError>,
 }
 
@@ -29,7 +35,7 @@ impl Watch {
     pub(super) fn start(
         name: &str,
         options: &OpenOptions,
-        socket: UnixStream,
+        (line, theirs): (UnixStream, UnixStream),
         memory: OwnedFd,
     ) -> Result<Self, InstanceError> {
         let cannot = |what: String| InstanceError::Process { fmu: name.into(), what };
@@ -38,15 +44,15 @@ impl Watch {
             None => octant().map_err(|e| cannot(format!("can't be started: {e}")))?,
         };
         let child = octant_base::child::command(&program)
-            .args(["fmu", "host"])
-            .stdin(Stdio::from(OwnedFd::from(socket)))
+            .args(["fmu", "host", "--name", name])
+            .stdin(Stdio::from(OwnedFd::from(theirs)))
             .stdout(Stdio::from(memory))
             .stderr(Stdio::inherit())
             // Ctrl-C on the terminal is for this process only, which ends the run in order.
             .process_group(0)
             .spawn()
             .map_err(|e| cannot(format!("can't be started: {}: {e}", program.display())))?;
-        Ok(Self { name: name.into(), child, ended: None })
+        Ok(Self { name: name.into(), child, line, ended: None })
     }
 
     /// Returns the reason why the child has ended, if it has.
@@ -59,7 +65,7 @@ impl Watch {
         if self.ended.is_none()
             && let Ok(Some(status)) = self.child.try_wait()
         {
-            self.ended = Some(self.end(&describe(status), shared));
+            self.ended = Some(self.end(&describe(fmu_status(status, shared)), shared));
         }
         self.ended.clone()
     }
@@ -99,6 +105,40 @@ impl Watch {
         error
     }
 
+    /// Waits for the end that was requested, after the FMU was freed.
+    ///
+    /// # Errors
+    /// If the FMU's process crashes or hangs at its end, where destructors may run.
+    pub(super) fn end_of_child(
+        &mut self,
+        shared: &Shared,
+        limit: Duration,
+    ) -> Result<(), InstanceError> {
+        let until = Instant::now() + limit;
+        let mut pause = Duration::from_micros(50);
+        loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => {
+                    let status = fmu_status(status, shared);
+                    if !status.success() {
+                        let error = self.end(&describe(status), shared);
+                        self.ended = Some(error.clone());
+                        return Err(error);
+                    }
+                    self.ended = Some(InstanceError::Order {
+                        fmu: self.name.clone(),
+                        what: "a call".into(),
+                        when: "after it was freed".into(),
+                    });
+                    return Ok(());
+                }
+                _ if Instant::now() >= until => return Err(self.hangs(shared, "the end", limit)),
+                _ => std::thread::sleep(pause),
+            }
+            pause = (2 * pause).min(Duration::from_millis(20));
+        }
+    }
+
     /// Waits for the end that was requested; otherwise kills the child.
     pub(super) fn finish(&mut self, limit: Duration) {
         let until = Instant::now() + limit;
@@ -115,8 +155,16 @@ impl Watch {
         }
     }
 
-    /// Kills the child and the processes that it started.
+    /// Ends the child and the processes that it started: the guard does so when the line is closed.
     fn kill(&mut self) {
+        let _ = self.line.shutdown(std::net::Shutdown::Both);
+        let until = Instant::now() + GUARD_MAX;
+        while Instant::now() < until {
+            if !matches!(self.child.try_wait(), Ok(None)) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
         if let Ok(pid) = i32::try_from(self.child.id())
             && let Some(group) = Pid::from_raw(pid)
         {
@@ -150,6 +198,11 @@ fn octant() -> io::Result<PathBuf> {
 fn function(shared: &Shared) -> Option<&'static str> {
     let number = u32::try_from(shared.word(Word::Function).load(Ordering::Relaxed)).ok()?;
     (number != NOWHERE).then(|| function_name(number)).flatten()
+}
+
+/// Status of the FMU's process, or that of its guard if that was ended itself.
+fn fmu_status(guard: ExitStatus, shared: &Shared) -> ExitStatus {
+    super::guard::status(shared).unwrap_or(guard)
 }
 
 /// Describes the end of a process.

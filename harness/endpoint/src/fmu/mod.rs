@@ -371,4 +371,8 @@ impl Endpoint for FmuEndpoint {
         });
         Conclusion { refused, ..Conclusion::default() }
     }
+
+    fn close(&mut self) -> Result<(), EndpointError> {
+        self.stepper.finish().map_err(|error| self.gone(error.to_string()))
+    }
 }

@@ -38,9 +38,13 @@ pub(super) struct Arguments {
     /// Process that runs the FMU.
     #[arg(long, value_enum, default_value_t = Process::Own)]
     pub(super) process: Process,
-    /// Longest wall time of a call in a process of its own; a longer call counts as hung.
-    #[arg(long, value_name = "TIME", default_value = "10 s")]
-    pub(super) time_limit: String,
+    /// Run also an FMU that needs the tool that made it.
+    #[arg(long)]
+    pub(super) allow_tool: bool,
+    /// Longest wall time of a call in a process of its own, and of loading with instantiation; what
+    /// takes longer counts as hung. By default 10 s, and 1 min for loading and initializing.
+    #[arg(long, value_name = "TIME")]
+    pub(super) time_limit: Option<String>,
     /// File for the outputs, CSV or MCAP; with --source a recording in MCAP.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,

@@ -33,6 +33,9 @@ pub(super) struct Arguments {
     /// Initialize the instance with the start values, and do a first step.
     #[arg(long, conflicts_with = "no_load")]
     step: bool,
+    /// Load also an FMU that needs the tool that made it.
+    #[arg(long, conflicts_with = "no_load")]
+    allow_tool: bool,
     /// Longest time for loading and initializing, and for any other call, s.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
     time_limit: f64,
@@ -49,7 +52,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 "--time-limit: found {found}, expected a positive number of seconds"
             ))
         })?;
-    let options = OpenOptions { start_limit: limit, time_limit: limit, ..OpenOptions::default() };
+    let options = OpenOptions {
+        allow_tool: arguments.allow_tool,
+        start_limit: limit,
+        time_limit: limit,
+        ..OpenOptions::default()
+    };
     let mut results = Vec::new();
     for file in &arguments.files {
         results.push((file, one(file, arguments, &options)));

@@ -6,12 +6,21 @@ use octant_requirements::Verdict;
 
 /// Hold an FMU for another process: for the program's own use.
 #[derive(Debug, Args)]
-pub(super) struct Arguments {}
+pub(super) struct Arguments {
+    /// Name of the FMU in messages.
+    #[arg(long, hide = true, default_value = "the FMU")]
+    name: String,
+    /// Hold the FMU in this process, which another of these started.
+    #[arg(long, hide = true)]
+    unguarded: bool,
+}
 
 /// Runs the command.
 #[cfg(target_os = "linux")]
-pub(super) fn command(_arguments: &Arguments) -> Result<Verdict, Failure> {
-    octant_fmu_host::process::host::serve().map_err(Failure::input)?;
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    use octant_fmu_host::process::{guard::guard, host::serve};
+    let served = if arguments.unguarded { serve() } else { guard(&arguments.name) };
+    served.map_err(Failure::input)?;
     Ok(Verdict::Pass)
 }
 

@@ -82,6 +82,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // Data written before a failure is kept.
     let written = sink.finish();
     log(instance);
+    let finished = finished.and_then(|finished| {
+        instance.finish()?;
+        Ok(finished)
+    });
     let finished = finished.map_err(|error| {
         let kept = match &arguments.out {
             Some(path) => format!("; the outputs before that are in {}", path.display()),
@@ -99,7 +103,23 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(if finished.cancelled { Verdict::Inconclusive } else { Verdict::Pass })
 }
 
+/// Reads the limit of `--time-limit`.
+fn time_limit(text: &str) -> Result<Duration, Failure> {
+    let limit = Duration::try_from_secs_f64(seconds("--time-limit", text)?);
+    limit.ok().filter(|limit| !limit.is_zero()).ok_or_else(|| {
+        Failure::input(format!("--time-limit: found {text:?}, expected a time above 0"))
+    })
+}
+
 fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
+    let default = OpenOptions::default();
+    let (start_limit, time_limit) = match &arguments.time_limit {
+        Some(text) => {
+            let limit = time_limit(text)?;
+            (limit, limit)
+        }
+        None => (default.start_limit, default.time_limit),
+    };
     let options = OpenOptions {
         interface: match arguments.interface {
             None => InterfaceKind::Any,
@@ -110,10 +130,10 @@ fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
             Process::Own => ProcessPlace::OwnProcess,
             Process::Shared => ProcessPlace::ThisProcess,
         },
-        time_limit: Duration::from_secs_f64(
-            seconds("--time-limit", &arguments.time_limit)?.max(0.0),
-        ),
-        ..OpenOptions::default()
+        allow_tool: arguments.allow_tool,
+        start_limit,
+        time_limit,
+        ..default
     };
     octant_fmu_host::open(&arguments.fmu, &options).map_err(|error| {
         let message = format!("failed to open {}: {error}", arguments.fmu.display());

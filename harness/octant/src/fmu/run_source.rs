@@ -103,9 +103,14 @@ fn overrides(arguments: &Arguments) -> Result<Vec<String>, Failure> {
     match arguments.process {
         Process::Own => {
             all.push("endpoint.fmu.process=own".to_owned());
-            all.push(format!("endpoint.fmu.time_limit={}", arguments.time_limit));
+            if let Some(limit) = &arguments.time_limit {
+                all.push(format!("endpoint.fmu.time_limit={limit}"));
+            }
         }
         Process::Shared => all.push("endpoint.fmu.process=shared".to_owned()),
+    }
+    if arguments.allow_tool {
+        all.push("endpoint.fmu.allow_tool=true".to_owned());
     }
     match arguments.interface {
         None => {}

@@ -108,6 +108,59 @@ fn build(name: &str, folder: &Path) {
     assert!(status.is_ok_and(|status| status.success()), "gcc has to compile {name}");
 }
 
+/// Makes an unpacked FMU of FMI 2.0 whose library has more code. The functions in `replaced` are those
+/// of `code`; the FMU's own have another name. The folder is the test's own.
+pub fn altered(name: &str, code: &str, replaced: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::Builder::new().suffix(".fmu").tempdir().unwrap();
+    std::fs::copy(
+        sources().join(format!("{name}.xml")),
+        folder.path().join("modelDescription.xml"),
+    )
+    .unwrap();
+    let binaries = folder.path().join("binaries").join(platforms(Standard::Fmi2)[0]);
+    std::fs::create_dir_all(&binaries).unwrap();
+    let more = tempfile::Builder::new().suffix(".c").tempfile().unwrap();
+    // The option below renames the functions here too.
+    let undone: String = replaced.iter().map(|name| format!("#undef {name}\n")).collect();
+    std::fs::write(&more, undone + code).unwrap();
+    let status = Command::new("gcc")
+        .args(["-std=gnu11", "-O1", "-fPIC", "-shared", "-fvisibility=default"])
+        .args(replaced.iter().map(|name| format!("-D{name}=own_{name}")))
+        .arg(sources().join(format!("{name}.c")))
+        .arg(more.path())
+        .arg("-o")
+        .arg(binaries.join(format!("{name}{}", std::env::consts::DLL_SUFFIX)))
+        .arg("-lm")
+        .status();
+    assert!(status.is_ok_and(|status| status.success()), "gcc has to compile {name}");
+    folder
+}
+
+/// Code of FMUs that fail at their end: the function that is replaced, the code, and how the failure is
+/// named.
+pub const BAD_ENDS: [(&[&str], &str, &str); 4] = [
+    (
+        &["fmi2FreeInstance"],
+        "void fmi2FreeInstance(void *p) { *(volatile int *)8 = 1; }",
+        "was ended by SIGSEGV in fmi2FreeInstance",
+    ),
+    (
+        &["fmi2FreeInstance"],
+        "#include <stdlib.h>\nvoid fmi2FreeInstance(void *p) { exit(0); }",
+        "ended by itself with exit status 0 in fmi2FreeInstance",
+    ),
+    (
+        &[],
+        "#include <stdlib.h>\n__attribute__((destructor)) static void f(void) { abort(); }",
+        "was ended by SIGABRT in the unloading of its library",
+    ),
+    (
+        &[],
+        "#include <unistd.h>\n__attribute__((destructor)) static void f(void) { for (;;) pause(); }",
+        "gave no answer to the unloading of its library for 1 s, and was ended",
+    ),
+];
+
 fn pack(archive: &mut zip::ZipWriter<std::io::Cursor<Vec<u8>>>, folder: &Path, prefix: &str) {
     let mut entries: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap()).collect();

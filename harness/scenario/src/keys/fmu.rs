@@ -1,7 +1,7 @@
 //! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
-use super::table::{At, Of, Raw, choice, keys, number, si, time};
+use super::table::{At, Of, Raw, boolean, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
 use crate::model::{InterfaceChoice, Process};
 use crate::quantity::UnitDimension;
@@ -12,6 +12,7 @@ pub(crate) struct FmuKeys<'a> {
     pub(crate) interface: InterfaceChoice,
     pub(crate) process: Process,
     pub(crate) time_limit: Option<f64>,
+    pub(crate) allow_tool: bool,
     pub(crate) tolerance: Option<f64>,
     pub(crate) parameters: Option<&'a Raw>,
     pub(crate) map: Option<&'a Raw>,
@@ -39,6 +40,8 @@ macro_rules! fmu {
                 time_limit: Option<f64> = time(1e-3, 86400.0, "from 1 ms to 24 h"),
                     derived("\"10 s\" in a process of its own; in the shared one nothing can end a call"),
                     "Wall time that one call of the FMU may take; longer, and it counts as hung.";
+                allow_tool: bool = boolean(), "false",
+                    "Whether the FMU is run although it needs the tool that made it, which has to be installed.";
                 $($step)*
                 tolerance: Option<f64> = number(Bounds::Within(1e-14, 1e-1, "from 1e-14 to 0.1")),
                     absent("that of the FMU's default experiment"),
@@ -57,6 +60,7 @@ macro_rules! fmu {
                     interface: self.interface,
                     process: self.process,
                     time_limit: self.time_limit,
+                    allow_tool: self.allow_tool,
                     tolerance: self.tolerance,
                     parameters: self.parameters.as_ref(),
                     map: self.map.as_ref(),

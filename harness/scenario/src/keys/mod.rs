@@ -19,6 +19,7 @@ mod run;
 mod screening;
 mod source;
 mod suite;
+mod system;
 pub(crate) mod table;
 mod trajectory;
 
@@ -48,6 +49,7 @@ pub(crate) use source::{
     McapKeys, ReferenceKind, SignalKeys, SourceKeys, SourceLiveKeys, SourceReferenceKeys, TextKeys,
 };
 pub(crate) use suite::{CaseKeys, SuiteKeys};
+pub(crate) use system::SystemRequirementsKeys;
 pub(crate) use table::{At, FromTable, Keys, Raw};
 pub(crate) use trajectory::{ReferenceTrajectoryKeys, SolutionKeys, TrajectoryForm};
 

@@ -16,6 +16,8 @@ pub struct Fmu {
     pub process: Process,
     /// Wall time limit of a call in a separate process, s.
     pub time_limit_s: f64,
+    /// True to run it although it needs the tool that made it.
+    pub allow_tool: bool,
     /// Communication step, ns; at an endpoint, the sample period.
     pub step_ns: u64,
     /// Relative tolerance of the solver.

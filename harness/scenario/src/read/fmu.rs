@@ -91,6 +91,7 @@ fn fmu(
         process: keys.process,
         // In the shared process a call can't be interrupted.
         time_limit_s: keys.time_limit.unwrap_or(f64::INFINITY),
+        allow_tool: keys.allow_tool,
         step_ns: sample_period_ns,
         tolerance: keys.tolerance,
         settings: settings.unwrap_or_default(),

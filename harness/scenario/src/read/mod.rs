@@ -13,6 +13,7 @@ mod reference;
 pub mod requirement;
 mod sequence;
 mod source;
+pub mod system;
 mod trajectory;
 mod unit_of;
 

@@ -11,6 +11,7 @@ use octant_mapping::bind::{BindError, Binder, Bound, Cells, ChannelCell, Handle}
 use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
 use octant_plant::Truth;
+use octant_recorder::event::BenchRecord;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Reference, Sample, Status};
 use octant_scenario::Fmu;
@@ -400,5 +401,9 @@ impl Source for FmuSource {
 
     fn has_true_parameters(&self) -> bool {
         self.true_parameters
+    }
+
+    fn conclude(&mut self, _: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+        (None, super::freed(&mut self.stepper))
     }
 }

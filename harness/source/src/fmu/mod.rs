@@ -55,6 +55,12 @@ fn of_instance(
     Ok(FmuSource::new(stepper, instrument, timing, fmu.step_ns, own.is_some()).into())
 }
 
+/// Frees the FMU of a source at the end of a run; returns its failure.
+fn freed(stepper: &mut Stepper) -> Option<SourceError> {
+    let error = stepper.finish().err()?;
+    Some(SourceError::Gone { uri: stepper.uri().to_owned(), reason: error.to_string() })
+}
+
 /// Opens the case motion that an FMU outputs, at its start.
 fn moving(
     scenario: &Scenario,

@@ -14,6 +14,7 @@ use octant_mapping::stepper::Stepper;
 use octant_plant::config::{CaseAttitude, Dockside, Motion, PlantConfig, PlantSite};
 use octant_plant::course::{Course, CoursePoint};
 use octant_plant::{Plant, PlantConfigError, Truth};
+use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 use octant_scenario::Fmu;
@@ -327,5 +328,9 @@ impl Source for MovedPlant {
 
     fn has_true_parameters(&self) -> bool {
         true
+    }
+
+    fn conclude(&mut self, _: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+        (None, super::freed(&mut self.moving.stepper))
     }
 }
