@@ -4,11 +4,12 @@ use super::error::{PartError, ResultPlace};
 use super::files;
 use super::frame::{Checksum, RecordKind, first};
 use super::scan::{Found, hex, read_checksum, read_head, read_whole, scan};
-use super::stored::{Stored, StoredId, StoredRecord, read_file};
+use super::stored::{Stored, StoredFile, StoredId, StoredRecord, read_file};
 use super::writer::{EXTENSION, FOLDER};
 use crate::case::{CaseResult, ResultError};
 use crate::facts::CaseFacts;
 use crate::plan::{Case, Plan};
+use octant_base::pool::{each_in_order, processors};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -36,6 +37,32 @@ struct Part {
     file: Option<File>,
 }
 
+/// A part file with its results, and those of its records that don't count any more.
+struct ScannedPart {
+    part: Part,
+    stored: Vec<(StoredId, Stored)>,
+    forgotten: Vec<(Box<str>, Checksum)>,
+}
+
+impl ScannedPart {
+    /// Reads the heads of all records of a part, the part by its number.
+    fn of(path: &Path, part: u32, stays_open: bool) -> Result<Self, ResultError> {
+        let (mut stored, mut forgotten) = (Vec::new(), Vec::new());
+        let file = File::open(path).map_err(PartError::system("read", path))?;
+        scan(path, &file, |Found { head, offset }| {
+            if head.kind == RecordKind::Forgotten {
+                forgotten.push((head.case.into_boxed_str(), first(&head.blake3)));
+                return;
+            }
+            let has_facts = !head.facts.is_empty();
+            let record = StoredRecord { time_ns: head.time_ns, part, offset, has_facts };
+            stored.push((head.case.as_str().into(), Stored::Record(record)));
+        })?;
+        let part = Part { path: path.to_owned(), file: stays_open.then_some(file) };
+        Ok(Self { part, stored, forgotten })
+    }
+}
+
 /// Bytes of a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredResult {
@@ -56,35 +83,40 @@ impl CampaignResults {
     pub fn open(folder: &Path) -> Result<Self, ResultError> {
         let file = |(case, is_second, place): (String, bool, ResultPlace)| {
             let path = place.path().to_owned();
-            (case.into(), Stored::File { path, is_second })
+            (case.as_str().into(), Stored::File(Box::new(StoredFile { path, is_second })))
         };
         let mut stored: Vec<(StoredId, Stored)> =
             files::all(folder).into_iter().map(file).collect();
         let has_files = !stored.is_empty();
         let paths = parts(&folder.join(FOLDER))?;
         let mut parts = Vec::with_capacity(paths.len());
-        let stay_open = paths.len() <= OPEN_MAX;
+        let stays_open = paths.len() <= OPEN_MAX;
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
-        for (part, path) in (0..).zip(paths) {
-            let file = File::open(&path).map_err(PartError::system("read", &path))?;
-            scan(&path, &file, |Found { head, offset }| {
-                if head.kind == RecordKind::Forgotten {
-                    let case = head.case.into_boxed_str();
-                    forgotten.entry(case).or_default().insert(first(&head.blake3));
-                    return;
+        let read = |(): &mut (), part: usize| {
+            let number = u32::try_from(part).unwrap_or(u32::MAX);
+            paths.get(part).map(|path| ScannedPart::of(path, number, stays_open)).transpose()
+        };
+        each_in_order(
+            processors(),
+            paths.len(),
+            || (),
+            read,
+            |found| {
+                let Some(found) = found else { return Ok(()) };
+                parts.push(found.part);
+                if stored.is_empty() {
+                    stored = found.stored;
+                } else {
+                    stored.extend(found.stored);
                 }
-                let record = StoredRecord {
-                    time_ns: head.time_ns,
-                    part,
-                    offset,
-                    has_facts: !head.facts.is_empty(),
-                };
-                stored.push((head.case.into(), Stored::Record(record)));
-            })?;
-            parts.push(Part { path, file: stay_open.then_some(file) });
-        }
+                for (case, own) in found.forgotten {
+                    forgotten.entry(case).or_default().insert(own);
+                }
+                Ok::<_, ResultError>(())
+            },
+        )?;
         let order = |(a_case, a): &(StoredId, Stored), (b_case, b): &(StoredId, Stored)| {
-            (**a_case).cmp(&**b_case).then_with(|| a.order(b))
+            a_case.cmp(b_case).then_with(|| a.order(b))
         };
         if has_files {
             // The files of a case are in their order already.
@@ -105,8 +137,9 @@ impl CampaignResults {
     ) -> Result<(), ResultError> {
         let mut gone = BTreeSet::new();
         for (case, forgotten) in forgotten {
-            let from = self.stored.partition_point(|(other, _)| **other < **case);
-            for (index, (_, stored)) in self.of(case).iter().enumerate() {
+            let case = StoredId::from(&**case);
+            let from = self.stored.partition_point(|(other, _)| *other < case);
+            for (index, (_, stored)) in self.of(&case).iter().enumerate() {
                 if forgotten.contains(&self.own(stored)?) {
                     gone.insert(from + index);
                 }
@@ -136,13 +169,14 @@ impl CampaignResults {
 
     /// Returns the results of a case.
     fn of(&self, case: &str) -> &[(StoredId, Stored)] {
-        let from = self.stored.partition_point(|(other, _)| **other < *case);
+        let case = StoredId::from(case);
+        let from = self.stored.partition_point(|(other, _)| *other < case);
         let rest = self.stored.get(from..).unwrap_or_default();
-        let count = rest.iter().take_while(|(other, _)| **other == *case).count();
+        let count = rest.iter().take_while(|(other, _)| *other == case).count();
         rest.get(..count).unwrap_or_default()
     }
 
-    /// Returns the cases that have a result, in the order of their ids.
+    /// Returns the cases that have a result, in the order of their ids: those that a plan can have come first.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         let cases = self.stored.chunk_by(|(a, _), (b, _)| a == b);
         cases.filter_map(|of_case| Some(&*of_case.first()?.0))
@@ -178,7 +212,10 @@ impl CampaignResults {
     /// If a result has to be read to tell, and can't.
     pub fn differing(&self, case: &str) -> Result<Option<ResultPlace>, ResultError> {
         let all = self.of(case);
-        let Some(main) = self.main(case).filter(|_| all.len() > 1) else { return Ok(None) };
+        if all.len() < 2 {
+            return Ok(None);
+        }
+        let Some(main) = self.main(case) else { return Ok(None) };
         let mut blake3 = None;
         for (_, stored) in all {
             // A name is enough, whatever is in the file.
@@ -205,7 +242,7 @@ impl CampaignResults {
     #[must_use]
     pub fn time(&self, case: &str) -> Option<SystemTime> {
         match self.main(case)? {
-            Stored::File { path, .. } => std::fs::metadata(path).ok()?.modified().ok(),
+            Stored::File(file) => std::fs::metadata(&file.path).ok()?.modified().ok(),
             Stored::Record(record) => UNIX_EPOCH.checked_add(Duration::from_nanos(record.time_ns)),
         }
     }
@@ -267,11 +304,11 @@ impl CampaignResults {
     /// # Errors
     /// If they can't be read, or aren't those of the case: found and expected.
     pub fn facts(&self, plan: &Plan, case: &Case) -> Result<Option<CaseFacts>, ResultError> {
-        let Some(Stored::Record(record)) = self.main(&case.id).filter(|stored| stored.has_facts())
-        else {
+        let Some(stored) = self.main(&case.id) else { return Ok(None) };
+        let Stored::Record(record @ StoredRecord { has_facts: true, .. }) = stored else {
             return Ok(self.of_plan(plan, case)?.map(|(result, _)| CaseFacts::of(&result)));
         };
-        let place = self.place_of(&Stored::Record(*record), &case.id);
+        let place = self.place_of(stored, &case.id);
         let head = self.at(record, read_head)?;
         let form = |source| ResultError::Form { place: place.clone(), source };
         let facts: CaseFacts = serde_json::from_slice(&head.facts).map_err(form)?;
@@ -304,7 +341,7 @@ impl CampaignResults {
     /// BLAKE3 of a result. It isn't kept: few cases have more than one.
     fn blake3(&self, stored: &Stored) -> Result<[u8; 32], ResultError> {
         match stored {
-            Stored::File { path, .. } => Ok(*blake3::hash(&read_file(path)?).as_bytes()),
+            Stored::File(file) => Ok(*blake3::hash(&read_file(&file.path)?).as_bytes()),
             Stored::Record(record) => Ok(self.at(record, read_head)?.blake3),
         }
     }
@@ -312,7 +349,7 @@ impl CampaignResults {
     /// Returns the checksum by which a result can be forgotten.
     fn own(&self, stored: &Stored) -> Result<Checksum, ResultError> {
         match stored {
-            Stored::File { .. } => Ok(first(&self.blake3(stored)?)),
+            Stored::File(_) => Ok(first(&self.blake3(stored)?)),
             Stored::Record(record) => Ok(self.at(record, read_checksum)?),
         }
     }
@@ -344,7 +381,7 @@ impl CampaignResults {
 
     fn place_of(&self, stored: &Stored, case: &str) -> ResultPlace {
         match stored {
-            Stored::File { path, .. } => ResultPlace::File(path.clone()),
+            Stored::File(file) => ResultPlace::File(file.path.clone()),
             Stored::Record(record) => ResultPlace::Record {
                 part: self.path(record).to_owned(),
                 offset: record.offset,
@@ -361,7 +398,7 @@ impl CampaignResults {
     ) -> Result<(StoredResult, Option<Vec<u8>>), ResultError> {
         let place = self.place_of(stored, case);
         let (bytes, facts) = match stored {
-            Stored::File { path, .. } => (read_file(path)?, None),
+            Stored::File(file) => (read_file(&file.path)?, None),
             Stored::Record(record) => {
                 let (head, bytes) = self.at(record, read_whole)?;
                 (bytes, Some(head.facts).filter(|facts| !facts.is_empty()))
