@@ -30,7 +30,7 @@ pub(super) struct CaseState {
 /// Requirements that the scenario of a case checks.
 pub(super) fn checked<'p>(plan: &'p Plan, case: &Case) -> &'p [String] {
     let scenario = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
-    scenario.map_or(&[], |scenario| &scenario.requirements)
+    scenario.map(|scenario| scenario.requirements.as_slice()).unwrap_or_default()
 }
 
 /// Reads the states of the cases of a plan up to `end` that are `wanted`, by their places, and gives them to `take` in
@@ -47,7 +47,7 @@ pub(super) fn each_state(
 ) -> Result<(), ResultError> {
     let cases = plan.cases.get(..end).unwrap_or(&plan.cases);
     let read = |index: usize| match cases.get(index) {
-        Some(case) if wanted(index) => Ok(Some(state(plan, results, case)?)),
+        Some(case) if wanted(index) => state(plan, results, case).map(Some),
         _ => Ok(None),
     };
     read_in_order(cases.len(), FACTS_AT_ONCE, read, |index, state| {

@@ -236,10 +236,10 @@ impl Plan {
         if serde_json::to_writer_pretty(&mut head, &content).is_err() {
             return false;
         }
-        let mut hash = || -> std::io::Result<Option<blake3::Hash>> {
+        let hash = || -> std::io::Result<Option<blake3::Hash>> {
             let mut file = std::fs::File::open(path)?;
             let mut start = Vec::new();
-            file.by_ref().take(HEAD_BYTES).read_to_end(&mut start)?;
+            Read::by_ref(&mut file).take(HEAD_BYTES).read_to_end(&mut start)?;
             // A text of JSON has no line feed: the key is one of the plan itself.
             let cases = start.windows(CASES_KEY.len()).position(|bytes| bytes == CASES_KEY);
             let Some((from, head)) = cases.zip(head.strip_suffix(b"[]\n}")) else {

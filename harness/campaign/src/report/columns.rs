@@ -48,9 +48,10 @@ impl CurveColumns {
     pub(super) fn of(curves: impl Iterator<Item = (StoredCurve, [f64; 2])>) -> Collected {
         let mut columns: Option<Self> = None;
         let mut block: Vec<Vec<f64>> = Vec::new();
-        let mut last: Option<StoredCurve> = None;
-        let mut collect = || -> io::Result<Collected> {
+        let mut first: Option<StoredCurve> = None;
+        let collect = || -> io::Result<Collected> {
             for (curve, factors) in curves {
+                first.get_or_insert_with(|| curve.clone());
                 let columns = match &mut columns {
                     Some(columns) if columns.step_s != curve.step_s => return Ok(Collected::None),
                     Some(columns) => columns,
@@ -69,7 +70,6 @@ impl CurveColumns {
                 columns.points = columns.points.min(curve.points);
                 columns.count += 1;
                 block.push(values);
-                last = Some(curve);
                 if block.len() == BLOCK {
                     columns.write(&mut block)?;
                 }
@@ -80,7 +80,9 @@ impl CurveColumns {
         };
         let collected = collect();
         collected.unwrap_or_else(|error| {
-            last.inspect(|curve| curve.fail(error));
+            if let Some(curve) = first {
+                curve.fail(error);
+            }
             Collected::Unread
         })
     }

@@ -52,15 +52,15 @@ impl ShownEnvelope {
         curves: impl Iterator<Item = (StoredCurve, [f64; 2])>,
         beyond: usize,
     ) -> Option<Self> {
-        let mut last = None;
-        let kept = curves.inspect(|(curve, _)| last = Some(curve.clone()));
+        let mut first = None;
+        let kept = curves.inspect(|(curve, _)| _ = first.get_or_insert_with(|| curve.clone()));
         let Collected::Columns(mut columns) = CurveColumns::of(kept) else { return None };
         let mut values = Vec::with_capacity(columns.count);
         let mut of = |axis: usize| {
             let mut found = vec![Vec::with_capacity(columns.points); PERCENTILES.len()];
             for point in 0..columns.points {
                 if let Err(error) = columns.read(axis, point, &mut values) {
-                    last.as_ref()?.fail(error);
+                    first.as_ref()?.fail(error);
                     return None;
                 }
                 let at_point = percentiles(&mut values, beyond)?;
