@@ -57,6 +57,129 @@ pub fn in_order_with<S, T: Send, E: Send>(
     results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect()
 }
 
+/// Does tasks 0 to `count` on at most `jobs` threads, and gives their results in order to `take`, on the thread
+/// of the caller. Few results wait at a time, so that memory doesn't depend on `count`. Each thread makes
+/// something once, as for [`in_order_with`].
+///
+/// # Errors
+/// The failure of the first task in order, or the first one of `take`. No later result is taken.
+pub fn each_in_order<S, T: Send, E: Send>(
+    jobs: usize,
+    count: usize,
+    of_thread: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, usize) -> Result<T, E> + Sync,
+    mut take: impl FnMut(T) -> Result<(), E>,
+) -> Result<(), E> {
+    let jobs = jobs.min(count);
+    if jobs <= 1 {
+        let mut own = of_thread();
+        return (0..count).try_for_each(|task| take(work(&mut own, task)?));
+    }
+    let ordered = Ordered { state: Mutex::default(), changed: Condvar::new(), most: 2 * jobs };
+    std::thread::scope(|scope| {
+        let _end = EndOnPanic(&ordered);
+        for _ in 0..jobs {
+            spawn(scope, || {
+                let _end = EndOnPanic(&ordered);
+                let mut own = of_thread();
+                while let Some(task) = ordered.begin(count) {
+                    ordered.put(task, work(&mut own, task));
+                }
+            });
+        }
+        let taken = (0..count).try_for_each(|_| ordered.first().map_or(Ok(()), |r| take(r?)));
+        ordered.end();
+        taken
+    })
+}
+
+/// Results of tasks that are taken in order.
+struct Ordered<R> {
+    state: Mutex<OrderedState<R>>,
+    changed: Condvar,
+    /// Largest number of tasks that are begun and not taken.
+    most: usize,
+}
+
+struct OrderedState<R> {
+    /// Results from the first one that isn't taken; `None`: it is being made.
+    results: VecDeque<Option<R>>,
+    /// Task of the first of them.
+    first: usize,
+    ended: bool,
+}
+
+impl<R> Default for OrderedState<R> {
+    fn default() -> Self {
+        Self { results: VecDeque::new(), first: 0, ended: false }
+    }
+}
+
+impl<R> Ordered<R> {
+    fn lock(&self) -> MutexGuard<'_, OrderedState<R>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins the next task, when few enough are waiting; `None`: there is none.
+    fn begin(&self, count: usize) -> Option<usize> {
+        let mut state = self.lock();
+        loop {
+            let task = state.first + state.results.len();
+            if state.ended || task >= count {
+                return None;
+            }
+            if state.results.len() < self.most {
+                state.results.push_back(None);
+                return Some(task);
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn put(&self, task: usize, result: R) {
+        let mut state = self.lock();
+        let place = task - state.first;
+        if let Some(slot) = state.results.get_mut(place) {
+            *slot = Some(result);
+        }
+        self.changed.notify_all();
+    }
+
+    /// Begins no further task, and waits for none.
+    fn end(&self) {
+        self.lock().ended = true;
+        self.changed.notify_all();
+    }
+
+    /// Waits for the next result in order; `None`: a thread has panicked.
+    fn first(&self) -> Option<R> {
+        let mut state = self.lock();
+        loop {
+            if let Some(result) = state.results.front_mut().and_then(Option::take) {
+                state.results.pop_front();
+                state.first += 1;
+                self.changed.notify_all();
+                return Some(result);
+            }
+            if state.ended {
+                return None;
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// Ends the tasks after a panic: the other threads would wait for ever.
+struct EndOnPanic<'a, R>(&'a Ordered<R>);
+
+impl<R> Drop for EndOnPanic<'_, R> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.end();
+        }
+    }
+}
+
 /// Tasks that are still to be done; a task can add others.
 #[derive(Debug)]
 pub struct Waiting<T> {
@@ -190,6 +313,45 @@ mod tests {
         let results = in_order_with(3, 60, || false, make, work).unwrap();
         results.into_iter().flatten().for_each(|own| done[own] += 1);
         assert_eq!((made.load(Ordering::Relaxed), done.iter().sum::<usize>()), (3, 60));
+    }
+
+    #[test]
+    fn results_are_taken_in_order_and_few_wait() {
+        for jobs in [1, 2, 5] {
+            let (begun, mut taken) = (AtomicUsize::new(0), Vec::new());
+            let work = |(): &mut (), task: usize| {
+                begun.fetch_add(1, Ordering::Relaxed);
+                Ok::<_, usize>(task)
+            };
+            let take = |task| {
+                assert!(begun.load(Ordering::Relaxed) <= taken.len() + 2 * jobs + 1);
+                taken.push(task);
+                Ok(())
+            };
+            each_in_order(jobs, 1000, || (), work, take).unwrap();
+            assert!(taken.iter().copied().eq(0..1000), "{jobs}");
+            let mut count = 0;
+            let fails = |(): &mut (), task| if task % 70 == 50 { Err(task) } else { Ok(task) };
+            let counted = |_| {
+                count += 1;
+                Ok(())
+            };
+            assert_eq!(each_in_order(jobs, 1000, || (), fails, counted), Err(50));
+            assert_eq!(count, 50);
+            let refuse = |task| if task == 7 { Err(task) } else { Ok(()) };
+            assert_eq!(each_in_order(jobs, 1000, || (), work, refuse), Err(7));
+        }
+        assert_eq!(each_in_order(3, 0, || (), |(), _| Ok::<_, ()>(()), |()| Err(())), Ok(()));
+    }
+
+    #[test]
+    fn a_panic_of_a_task_is_one_of_the_caller() {
+        let panics = |(): &mut (), task: usize| {
+            assert_ne!(task, 30, "this task panics");
+            Ok::<_, ()>(task)
+        };
+        let all = || each_in_order(2, 1000, || (), panics, |_| Ok(()));
+        assert!(std::panic::catch_unwind(all).is_err());
     }
 
     #[test]

@@ -20,9 +20,8 @@ use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
 use octant_statistics::sample::{ConfidenceInterval, mean};
 use octant_statistics::{deviation, paired, power};
-use sample::{FinalErrors, MethodSample, SampleCounts};
+use sample::{ErrorFigures, FinalErrors, MethodSample, SampleCounts, SampleError};
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::path::Path;
 use words::conclude;
 
@@ -75,6 +74,18 @@ pub enum AgainstError {
     /// No case was selected.
     #[error("compare: the campaign has no such case")]
     NoCase,
+    /// The errors of the runs can't be kept.
+    #[error("keep the errors of an ensemble in a temporary file: {0}")]
+    Kept(std::io::Error),
+}
+
+impl From<SampleError> for AgainstError {
+    fn from(error: SampleError) -> Self {
+        match error {
+            SampleError::Result(error) => Self::Result(error),
+            SampleError::Kept(error) => Self::Kept(error),
+        }
+    }
 }
 
 /// Compares predicted ensembles with the results in the folder of a campaign.
@@ -100,31 +111,32 @@ pub fn against_by(
     results: &CampaignResults,
     selection: &Selection<'_>,
 ) -> Result<Against, AgainstError> {
-    let mut groups: Vec<Vec<&Case>> = Vec::new();
-    let mut place = HashMap::new();
-    for case in &plan.cases {
+    // A plan has at most ten million cases. Sorted lists: a map of millions of settings, as those of drawn factors
+    // are, would take several times the memory.
+    let mut chosen: Vec<u32> = Vec::new();
+    for (place, case) in (0..).zip(&plan.cases) {
         let planned = plan.planned(case)?;
-        let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
-            && selection.set.is_none_or(|set| *case.set == *set);
-        if !chosen {
-            continue;
-        }
-        let at = *place.entry((&case.scenario, &case.set, &case.faults)).or_insert(groups.len());
-        match groups.get_mut(at) {
-            Some(group) => group.push(case),
-            None => groups.push(vec![case]),
+        if selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
+            && selection.set.is_none_or(|set| *case.set == *set)
+        {
+            chosen.push(place);
         }
     }
-    if groups.is_empty() {
+    if chosen.is_empty() {
         return Err(AgainstError::NoCase);
     }
+    let case = |place: u32| plan.cases.get(place as usize);
+    let settings = |place: u32| case(place).map(|case| (&case.scenario, &case.set, &case.faults));
+    chosen.sort_unstable_by_key(|place| (settings(*place), *place));
     let mut found = Against::default();
     let mut single = 0;
+    let mut groups: Vec<&[u32]> = Vec::new();
+    for group in chosen.chunk_by(|a, b| settings(*a) == settings(*b)) {
+        if group.len() > 1 { groups.push(group) } else { single += 1 }
+    }
+    groups.sort_unstable();
     for group in groups {
-        let [first, _, ..] = group.as_slice() else {
-            single += 1;
-            continue;
-        };
+        let Some(first) = group.first().and_then(|place| case(*place)) else { continue };
         let planned = plan.planned(first)?;
         let scenario = planned.scenario(first)?;
         let name = named(first);
@@ -155,7 +167,7 @@ pub fn against_by(
         if samples.is_empty() {
             continue;
         }
-        let counts = sample::read(results, &group, &mut samples)?;
+        let counts = sample::read(results, group, case, &mut samples)?;
         for (ensemble, sample) in ensembles.iter().zip(&samples) {
             match compare(first, ensemble, sample, counts) {
                 Ok(comparison) => found.compared.push(comparison),
@@ -186,23 +198,23 @@ fn times(ensemble: &Ensemble) -> impl Iterator<Item = &DriftBand> {
 }
 
 /// Attitude or velocity error at the end of the navigation, predicted and in each run.
-struct Final<'a> {
+struct Final {
     name: String,
     unit: &'static str,
     hours: f64,
     band: ErrorBand,
-    values: &'a [f64],
+    figures: ErrorFigures,
 }
 
 /// Lists the final errors of attitude and velocity that the prediction and all runs have.
-fn finals<'a>(ensemble: &Ensemble, sample: &'a MethodSample) -> Vec<Final<'a>> {
+fn finals(ensemble: &Ensemble, sample: &MethodSample) -> Vec<Final> {
     let Some(last) = ensemble.drift.last() else { return Vec::new() };
     let Some(solution) = &last.solution else { return Vec::new() };
     let both = solution.all().into_iter().zip(sample.finals());
-    let one = |(band, found): (ErrorBand, Option<FinalErrors<'a>>)| {
-        let FinalErrors { name, unit, values } = found?;
+    let one = |(band, found): (ErrorBand, Option<FinalErrors>)| {
+        let FinalErrors { name, unit, figures } = found?;
         let name = format!("{name} at {:.1} h", last.hours);
-        Some(Final { name, unit, hours: last.hours, band, values })
+        Some(Final { name, unit, hours: last.hours, band, figures })
     };
     both.filter_map(one).collect()
 }
@@ -236,15 +248,15 @@ fn compare(
     let mut states = Vec::with_capacity(NAMES.len());
     for (index, name) in NAMES.into_iter().enumerate() {
         let Some(state) = ensemble.states.iter().find(|state| state.name == name) else { continue };
-        let values = sample.parameter(index);
-        let values = values.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
+        let figures = sample.parameter(index);
+        let figures = figures.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
         let predicted = (state.mean, state.sigma);
         states.push(row(
             name.to_owned(),
             &state.unit,
             None,
             predicted,
-            values,
+            figures,
             (low, high),
             student,
         ));
@@ -252,8 +264,8 @@ fn compare(
     let mut drift = Vec::with_capacity(2 * times.len());
     for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
         for (index, time) in times.iter().enumerate() {
-            let values = sample.drift(axis, index);
-            let values = values
+            let figures = sample.drift(axis, index);
+            let figures = figures
                 .ok_or_else(|| format!("one of its cases has no drift at {:.1} h", time.hours))?;
             let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
             let name = format!("{what} at {:.1} h", time.hours);
@@ -263,15 +275,15 @@ fn compare(
                 "arcmin",
                 Some(time.hours),
                 predicted,
-                values,
+                figures,
                 (low, high),
                 student,
             ));
         }
     }
-    for Final { name, unit, hours, band, values } in finals {
+    for Final { name, unit, hours, band, figures } in finals {
         let predicted = (band.mean, band.sigma);
-        drift.push(row(name, unit, Some(hours), predicted, values, (low, high), student));
+        drift.push(row(name, unit, Some(hours), predicted, figures, (low, high), student));
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
     let mut comparison = EnsembleComparison {
@@ -301,14 +313,14 @@ fn row(
     unit: &str,
     hours: Option<f64>,
     (predicted_mean, predicted_sigma): (f64, f64),
-    values: &[f64],
+    figures: ErrorFigures,
     (low, high): (f64, f64),
     student: f64,
 ) -> ErrorRow {
-    let value = octant_statistics::sample::deviation(values).unwrap_or(f64::NAN);
+    let value = figures.deviation.unwrap_or(f64::NAN);
     let simulated_sigma = ConfidenceInterval { value, low: value * low, high: value * high };
-    let middle = mean(values).unwrap_or(f64::NAN);
-    let error = student * value / libm::sqrt(values.len() as f64);
+    let middle = figures.mean.unwrap_or(f64::NAN);
+    let error = student * value / libm::sqrt(figures.runs as f64);
     let simulated_mean =
         ConfidenceInterval { value: middle, low: middle - error, high: middle + error };
     // Without random parts, both are exact to rounding.

@@ -1,6 +1,6 @@
 //! Ids of cases.
 
-use serde::de::Error;
+use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
@@ -77,7 +77,20 @@ impl Serialize for CaseId {
 
 impl<'de> Deserialize<'de> for CaseId {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+        struct Id;
+        impl Visitor<'_> for Id {
+            type Value = CaseId;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "the id of a case, {LENGTH} hexadecimal digits")
+            }
+
+            // Without a text of its own: a plan can have millions.
+            fn visit_str<E: Error>(self, text: &str) -> Result<CaseId, E> {
+                text.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_str(Id)
     }
 }
 

@@ -11,7 +11,7 @@ use super::results::{self, RESULT, TABLES};
 use super::spill::SpilledRows;
 use super::store::CampaignResults;
 use super::table::{ColumnKind, ColumnValue, TableError};
-use super::table_rows::{CaseColumn, CaseRows, CaseTable};
+use super::table_rows::{CaseColumn, CaseTable};
 use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
 use std::path::PathBuf;
@@ -30,8 +30,9 @@ pub fn check(
     let [cases, checks, drift] = TABLES.map(|(name, _)| CaseTable::open(&path(name), &place));
     let tables = [cases?, checks?, drift?];
     let there = |index: &usize| stored.has(&plan.cases[*index].id);
-    let (compared, alone): (Vec<usize>, Vec<usize>) = tables[0].cases().partition(there);
+    let alone: Vec<usize> = tables[0].cases().filter(|index| !there(index)).collect();
     consistent(plan, &alone, &tables[0], &tables[1])?;
+    drop(alone);
     for table in &tables[1..] {
         if let Some(index) = table.cases().find(|index| tables[0].rows(*index).is_empty()) {
             let id = &plan.cases[index].id;
@@ -43,11 +44,13 @@ pub fn check(
     };
     let factors = FactorColumns::of(plan).without_units(is_text, plan);
     // In a temporary folder of the system: the folder of the tables may be write-protected.
-    let cases = compared.iter().copied();
-    let expected = results::rows(plan, stored, cases, &factors, &std::env::temp_dir())?;
+    // A plan has at most ten million cases.
+    let compared = tables[0].cases().filter(there).map(|index| u32::try_from(index).unwrap_or(0));
+    let compared: Vec<u32> = compared.collect();
+    let expected = results::rows(plan, stored, &compared, &factors, &std::env::temp_dir())?;
     for (number, (table, rows)) in tables.iter().zip(&expected.tables).enumerate() {
         let counts = expected.counts.iter().map(|counts| counts[number] as usize);
-        let cases = compared.iter().copied().zip(counts);
+        let cases = compared.iter().map(|index| *index as usize).zip(counts);
         same(plan, stored, cases, table, rows)?;
     }
     Ok(())
@@ -86,7 +89,7 @@ fn same(
         let mut values = table.values(name)?;
         let mut of_results = expected.column(name);
         for (case, _) in cases.clone() {
-            for row in table.rows(case).iter().flat_map(CaseRows::each) {
+            for row in table.rows(case).iter().flat_map(|rows| rows.each()) {
                 let said = values.at(row)?;
                 // Converted as for a column of this kind.
                 let now = kind.converted(of_results.next().transpose()?.flatten());
@@ -165,7 +168,7 @@ fn consistent(
     for index in alone {
         let id = &plan.cases[*index].id;
         let mut worst = Verdict::Pass;
-        for row in checks.rows(*index).iter().flat_map(CaseRows::each) {
+        for row in checks.rows(*index).iter().flat_map(|rows| rows.each()) {
             let requirement = requirements.text(row)?.unwrap_or_default();
             let sign = signs.text(row)?.unwrap_or_default();
             let comparison = Comparison::ALL.into_iter().find(|known| known.sign() == sign);
@@ -191,7 +194,7 @@ fn consistent(
             }
             worst = worst.worst(verdict);
         }
-        for row in cases.rows(*index).iter().flat_map(CaseRows::each) {
+        for row in cases.rows(*index).iter().flat_map(|rows| rows.each()) {
             let Some(verdict) = of_cases.verdict(row)? else {
                 return Err(wrong(cases, format!("case {id} has no verdict")));
             };

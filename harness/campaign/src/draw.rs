@@ -42,23 +42,27 @@ pub(super) fn draws(campaign: &Campaign) -> Result<Draws, String> {
     let correlations: Vec<FactorCorrelation> = (campaign.correlations.iter())
         .map(|c| FactorCorrelation { first: name(c.first), second: name(c.second), value: c.value })
         .collect();
-    let rows = match campaign.design {
-        Design::MonteCarlo => (0..campaign.replicates)
-            .map(|i| monte_carlo(&factors, &correlations, campaign.seed, u64::from(i)))
-            .collect(),
-        Design::LatinHypercube => {
-            let runs = campaign.replicates as usize;
-            latin_hypercube(&factors, &correlations, campaign.seed, runs)
-        }
-    };
-    let rows: Vec<Vec<DrawnFactor>> = rows.map_err(|error| error.to_string())?;
     let mut by_factor = vec![Vec::new(); campaign.factors.len()];
-    for row in &rows {
+    let mut add = |row: &[DrawnFactor]| {
         for ((index, _), value) in drawn.iter().zip(row) {
             by_factor[*index].push(match value {
                 DrawnFactor::Number(number) => At::Number(*number),
                 DrawnFactor::Choice(level) => At::Level(*level),
             });
+        }
+    };
+    match campaign.design {
+        // One after another: there can be millions.
+        Design::MonteCarlo => {
+            for replicate in 0..u64::from(campaign.replicates) {
+                let row = monte_carlo(&factors, &correlations, campaign.seed, replicate);
+                add(&row.map_err(|error| error.to_string())?);
+            }
+        }
+        Design::LatinHypercube => {
+            let runs = campaign.replicates as usize;
+            let rows = latin_hypercube(&factors, &correlations, campaign.seed, runs);
+            rows.map_err(|error| error.to_string())?.iter().for_each(|row| add(row));
         }
     }
     Ok(Draws { by_factor })

@@ -8,7 +8,7 @@ use std::hash::{BuildHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// Value of a factor in a case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FactorValue {
     /// Number, in the factor's unit.
@@ -81,6 +81,36 @@ impl FromIterator<(SharedText, FactorValue)> for FactorValues {
 impl Serialize for FactorValues {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.iter())
+    }
+}
+
+impl<'de> Deserialize<'de> for FactorValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Value;
+        impl Visitor<'_> for Value {
+            type Value = FactorValue;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or a text")
+            }
+
+            fn visit_f64<E>(self, number: f64) -> Result<FactorValue, E> {
+                Ok(FactorValue::Number(number))
+            }
+
+            fn visit_u64<E>(self, number: u64) -> Result<FactorValue, E> {
+                Ok(FactorValue::Number(number as f64))
+            }
+
+            fn visit_i64<E>(self, number: i64) -> Result<FactorValue, E> {
+                Ok(FactorValue::Number(number as f64))
+            }
+
+            fn visit_str<E>(self, text: &str) -> Result<FactorValue, E> {
+                Ok(FactorValue::Text(text.into()))
+            }
+        }
+        deserializer.deserialize_any(Value)
     }
 }
 

@@ -53,34 +53,42 @@ pub fn idle<'a, H: Ord + Copy>(
 ) -> Idle {
     let run: Vec<(&Case, H)> =
         cases.into_iter().filter_map(|(case, stream)| Some((case, stream?))).collect();
-    let mut by_stream: Vec<usize> = (0..run.len()).collect();
-    by_stream.sort_unstable_by_key(|index| (run[*index].1, *index));
-    let same = by_stream.chunk_by(|a, b| run[*a].1 == run[*b].1);
-    let mut repeated: Vec<&[usize]> = same.filter(|all| all.len() > 1).collect();
+    // A plan has at most ten million cases. Lists: maps of so many would take several times the memory.
+    let mut order: Vec<u32> = (0..).take(run.len()).collect();
+    let stream = |index: &u32| run[*index as usize].1;
+    order.sort_unstable_by_key(|index| (stream(index), *index));
+    let same = order.chunk_by(|a, b| stream(a) == stream(b));
+    let mut repeated: Vec<&[u32]> = same.filter(|all| all.len() > 1).collect();
     repeated.sort();
-    let ids = |all: &[usize]| all.iter().map(|index| run[*index].0.id.to_string()).collect();
+    let id = |index: &u32| run[*index as usize].0.id.to_string();
+    let repeated = repeated.into_iter().map(|all| all.iter().map(id).collect()).collect();
+    order.sort_unstable_by_key(|index| (run[*index as usize].0.seed, *index));
     Idle {
-        repeated: repeated.into_iter().map(ids).collect(),
+        repeated,
         factors: (of_grid(plan).into_iter())
-            .filter(|factor| changes_nothing(factor, &run))
+            .filter(|factor| changes_nothing(factor, &run, &order))
             .collect(),
     }
 }
 
 /// Returns whether all cases that differ in this factor alone have the same streams. Cases are
-/// compared within a scenario and a seed, where nothing else differs.
-fn changes_nothing<H: PartialEq + Copy>(factor: &str, run: &[(&Case, H)]) -> bool {
-    type Others<'a> = (&'a str, u64, BTreeMap<&'a str, String>);
+/// compared within a scenario and a seed, where nothing else differs. `by_seed` is their order by the seed.
+fn changes_nothing<H: PartialEq + Copy>(factor: &str, run: &[(&Case, H)], by_seed: &[u32]) -> bool {
+    type Others<'a> = (&'a str, BTreeMap<&'a str, String>);
     let shown = |value: &FactorValue| format!("{value:?}");
     let mut first: HashMap<Others<'_>, H> = HashMap::new();
+    let mut seed = None;
     let mut compared = false;
-    for (case, stream) in run {
+    for (case, stream) in by_seed.iter().map(|index| &run[*index as usize]) {
         if case.factors.get(factor).is_none() {
             continue;
         }
+        if seed.replace(case.seed) != Some(case.seed) {
+            first.clear();
+        }
         let others = case.factors.iter().filter(|(name, _)| *name != factor);
         let others = others.map(|(name, value)| (name, shown(value))).collect();
-        match first.entry((case.scenario.as_str(), case.seed, others)) {
+        match first.entry((case.scenario.as_str(), others)) {
             std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(*stream),
             std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {
                 compared = true;

@@ -1,14 +1,17 @@
 //! Builds the plan of a campaign file: every combination of scenarios, factors and replicates.
 
 use super::case_id::{CaseId, NoCaseId};
-use super::draw::At;
+use super::draw::{At, Draws};
 use super::factor_values::FactorValue;
 use super::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system};
 use super::requirements::{self, Planned};
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
+use octant_requirements::verdict::LimitCheck;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
+use serde::{Serialize, Serializer};
+use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -19,12 +22,22 @@ fn level_of(factors: &[FactorSpec], cell: u64, index: usize) -> usize {
     factors.get(index).map_or(0, |factor| (cell / faster % levels(factor)) as usize)
 }
 
-impl Plan {
-    /// Builds the plan of a campaign file.
-    ///
-    /// # Errors
-    /// If the campaign, one of its scenarios or one of its cases isn't valid.
-    pub fn of(path: &Path) -> Result<Self, PlanError> {
+/// A campaign file, from which the cases of a plan are made.
+struct PlanMaker {
+    campaign: Campaign,
+    path: PathBuf,
+    /// Number of cells of the grid.
+    grid: u64,
+    /// Number of cases.
+    count: u64,
+    draws: Draws,
+    of_file: Vec<Planned>,
+    not_by_test: Vec<String>,
+    scenarios: Vec<PlannedScenario>,
+}
+
+impl PlanMaker {
+    fn of(path: &Path) -> Result<Self, PlanError> {
         let campaign = Campaign::load(path)?;
         let contradiction =
             |reason: String| PlanError::Contradiction { campaign: path.to_owned(), reason };
@@ -52,68 +65,138 @@ impl Plan {
         let scenarios = (campaign.scenarios.iter())
             .map(|member| planned(member, &of_file, path))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut cases = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
-        let mut parts = SharedParts::default();
-        // Additional replicates come at the end.
-        for replicate in 0..campaign.replicates {
-            for (member, planned) in campaign.scenarios.iter().zip(&scenarios) {
-                for cell in 0..grid {
-                    let (mut set, mut faults) = (member.set.clone(), None);
-                    let mut values = Vec::new();
-                    for (index, factor) in campaign.factors.iter().enumerate() {
-                        let at = match factor.levels.grid() {
-                            Some(_) => At::Level(level_of(&campaign.factors, cell, index)),
-                            None => draws.at(index, replicate),
-                        };
-                        values.extend(give(&mut set, &mut faults, factor, at));
-                    }
-                    let seed = campaign.seed.wrapping_add(u64::from(replicate));
-                    let set: SharedTexts = set.into_iter().collect();
-                    let id = id_of(planned, &set, faults.as_ref(), seed).map_err(&contradiction)?;
-                    cases.push(parts.share(Case {
-                        id,
-                        scenario: member.id.as_str().into(),
-                        seed,
-                        replicate,
-                        set,
-                        faults,
-                        factors: values.into_iter().collect(),
-                    }));
-                }
-            }
+        let path = path.to_owned();
+        Ok(Self { campaign, path, grid, count, draws, of_file, not_by_test, scenarios })
+    }
+
+    /// Makes the cases one after another. Additional replicates come at the end.
+    fn cases(&self) -> impl Iterator<Item = Result<Case, PlanError>> {
+        let members = || self.campaign.scenarios.iter().zip(&self.scenarios);
+        (0..self.campaign.replicates).flat_map(move |replicate| {
+            members().flat_map(move |(member, planned)| {
+                (0..self.grid).map(move |cell| self.case(replicate, member, planned, cell))
+            })
+        })
+    }
+
+    fn case(
+        &self,
+        replicate: u32,
+        member: &Member,
+        planned: &PlannedScenario,
+        cell: u64,
+    ) -> Result<Case, PlanError> {
+        let (mut set, mut faults) = (member.set.clone(), None);
+        let mut values = Vec::new();
+        let factors = &self.campaign.factors;
+        for (index, factor) in factors.iter().enumerate() {
+            let at = match factor.levels.grid() {
+                Some(_) => At::Level(level_of(factors, cell, index)),
+                None => self.draws.at(index, replicate),
+            };
+            values.extend(give(&mut set, &mut faults, factor, at));
         }
-        if let Some([other, case]) = same(&cases) {
-            return Err(contradiction(format!(
+        let seed = self.campaign.seed.wrapping_add(u64::from(replicate));
+        let set: SharedTexts = set.into_iter().collect();
+        let id = id_of(planned, &set, faults.as_ref(), seed);
+        Ok(Case {
+            id: id.map_err(|reason| self.contradiction(reason))?,
+            scenario: member.id.as_str().into(),
+            seed,
+            replicate,
+            set,
+            faults,
+            factors: values.into_iter().collect(),
+        })
+    }
+
+    fn contradiction(&self, reason: String) -> PlanError {
+        PlanError::Contradiction { campaign: self.path.clone(), reason }
+    }
+
+    /// Makes the plan without its cases, and without an id.
+    fn head(&self) -> Result<Plan, PlanError> {
+        let campaign = &self.campaign;
+        Ok(Plan {
+            schema: SCHEMA,
+            id: String::new(),
+            title: campaign.title.clone(),
+            campaign: absolute(&self.path)?,
+            limits: campaign.limits.into(),
+            stop: campaign.stop.clone().map(StopRule::from),
+            factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
+            requirements: self.of_file.clone(),
+            not_by_test: self.not_by_test.clone(),
+            bundled: None,
+            scenarios: self.scenarios.clone(),
+            cases: Vec::new(),
+        })
+    }
+
+    /// Checks that no two cases are the same, and that a requirement that stops the campaign is checked.
+    fn check(&self, cases: &[Case]) -> Result<(), PlanError> {
+        if let Some([other, case]) = same(cases) {
+            return Err(self.contradiction(format!(
                 "scenario {:?} and scenario {:?} give the same case {}: expected something that \
                  differs between them",
                 other.scenario, case.scenario, case.id
             )));
         }
-        if let Some(stop) = &campaign.stop
-            && !scenarios.iter().any(|s| s.requirements.contains(&stop.requirement))
+        if let Some(stop) = &self.campaign.stop
+            && !self.scenarios.iter().any(|s| s.requirements.contains(&stop.requirement))
         {
-            return Err(contradiction(format!(
+            return Err(self.contradiction(format!(
                 "stop.requirement is {:?}, and no scenario checks it",
                 stop.requirement
             )));
         }
-        let mut plan = Self {
-            schema: SCHEMA,
-            id: String::new(),
-            title: campaign.title,
-            campaign: absolute(path)?,
-            limits: campaign.limits.into(),
-            stop: campaign.stop.map(StopRule::from),
-            factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
-            requirements: of_file,
-            not_by_test,
-            bundled: None,
-            scenarios,
-            cases,
-        };
-        plan.check_cases()?;
+        Ok(())
+    }
+}
+
+/// Cases that are made while they are written.
+struct CaseStream<I>(RefCell<I>);
+
+impl<I: Iterator<Item = Case>> Serialize for CaseStream<I> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(&mut *self.0.borrow_mut())
+    }
+}
+
+impl Plan {
+    /// Builds the plan of a campaign file.
+    ///
+    /// # Errors
+    /// If the campaign, one of its scenarios or one of its cases isn't valid.
+    pub fn of(path: &Path) -> Result<Self, PlanError> {
+        let maker = PlanMaker::of(path)?;
+        let mut cases = Vec::with_capacity(usize::try_from(maker.count).unwrap_or(0));
+        let mut parts = SharedParts::default();
+        for case in maker.cases() {
+            cases.push(parts.share(case?));
+        }
+        maker.check(&cases)?;
+        let mut plan = Self { cases, ..maker.head()? };
+        plan.check_cases(&plan.cases)?;
         plan.id = plan.hash();
         Ok(plan)
+    }
+
+    /// Returns whether a campaign file gives this plan, without a second list of its cases.
+    #[must_use]
+    pub fn is_of(&self, path: &Path) -> bool {
+        let is_same = || -> Result<bool, PlanError> {
+            let maker = PlanMaker::of(path)?;
+            let head = maker.head()?;
+            // A case that can't be made ends the list, which then has another hash.
+            let cases = RefCell::new(maker.cases().map_while(Result::ok));
+            if head.hash_with(&CaseStream(cases)) != self.id {
+                return Ok(false);
+            }
+            maker.check(&self.cases)?;
+            head.check_cases(&self.cases).map(|()| true)
+        };
+        is_same().unwrap_or(false)
     }
 }
 
@@ -289,18 +372,66 @@ fn plain(value: &str) -> FactorValue {
 /// Computes the BLAKE3 of everything that defines a case, hexadecimal.
 #[must_use]
 pub fn hash_of(scenario: &PlannedScenario, case: &Case) -> String {
-    hash(scenario, &case.set, case.faults.as_ref(), case.seed)
+    thread_local! {
+        /// Beginnings for the settings of cases that came last: those of a plan share few.
+        static LAST: RefCell<[Option<HashBegin>; 16]> = const { RefCell::new([const { None }; 16]) };
+    }
+    LAST.with_borrow_mut(|last| {
+        let place = case.set.as_ptr() as usize / size_of::<SharedText>() % last.len();
+        let slot = &mut last[place];
+        let begin = match slot {
+            Some(begin) if begin.is_of(scenario, case) => begin,
+            _ => slot.insert(HashBegin::of(scenario, case)),
+        };
+        hash(&begin.text, case.seed)
+    })
 }
 
-fn hash(
-    scenario: &PlannedScenario,
-    set: &SharedTexts,
-    faults: Option<&SharedTexts>,
-    seed: u64,
-) -> String {
-    // One JSON text: different cases never give the same text.
-    let content = serde_json::json!([scenario.blake3, scenario.checks, set, faults, seed]);
-    blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+/// Everything that defines cases but their seeds.
+struct HashBegin {
+    scenario: String,
+    checks: Vec<LimitCheck>,
+    set: SharedTexts,
+    faults: Option<SharedTexts>,
+    text: String,
+}
+
+impl HashBegin {
+    fn of(scenario: &PlannedScenario, case: &Case) -> Self {
+        Self {
+            scenario: scenario.blake3.clone(),
+            checks: scenario.checks.clone(),
+            set: case.set.clone(),
+            faults: case.faults.clone(),
+            text: begin(scenario, &case.set, case.faults.as_ref()),
+        }
+    }
+
+    /// Returns whether a case has the same settings; without a comparison of texts that aren't shared.
+    fn is_of(&self, scenario: &PlannedScenario, case: &Case) -> bool {
+        let same_faults = match (&self.faults, &case.faults) {
+            (None, None) => true,
+            (Some(one), Some(other)) => one.is_shared(other),
+            _ => false,
+        };
+        same_faults
+            && self.set.is_shared(&case.set)
+            && self.scenario == scenario.blake3
+            && self.checks == scenario.checks
+    }
+}
+
+/// Begins the JSON text of everything that defines a case: its seed follows, and a bracket. Different cases never give
+/// the same text.
+fn begin(scenario: &PlannedScenario, set: &SharedTexts, faults: Option<&SharedTexts>) -> String {
+    let mut text = serde_json::json!([scenario.blake3, scenario.checks, set, faults]).to_string();
+    // The bracket at the end.
+    text.pop();
+    text + ","
+}
+
+fn hash(begin: &str, seed: u64) -> String {
+    blake3::hash(format!("{begin}{seed}]").as_bytes()).to_hex().to_string()
 }
 
 /// Returns the id of a case, or the reason why there is none, as text.
@@ -310,5 +441,45 @@ fn id_of(
     faults: Option<&SharedTexts>,
     seed: u64,
 ) -> Result<CaseId, String> {
-    hash(scenario, set, faults, seed)[..16].parse().map_err(|error: NoCaseId| error.to_string())
+    let hash = hash(&begin(scenario, set, faults), seed);
+    hash[..16].parse().map_err(|error: NoCaseId| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_of_a_case_is_that_of_its_text() {
+        let scenario = PlannedScenario {
+            id: "a".to_owned(),
+            file: PathBuf::new(),
+            blake3: "00ff".to_owned(),
+            requirements: Vec::new(),
+            checks: Vec::new(),
+            files: BTreeMap::new(),
+        };
+        let case = |set: &str, faults: Option<&str>, seed| Case {
+            id: "00ff00ff00ff00ff".parse().unwrap(),
+            scenario: "a".into(),
+            seed,
+            replicate: 0,
+            set: [set].into_iter().collect(),
+            faults: faults.map(|faults| [faults].into_iter().collect()),
+            factors: std::iter::empty().collect(),
+        };
+        let expected = |case: &Case, blake3: &str| {
+            let content = serde_json::json!([blake3, [], case.set, case.faults, case.seed]);
+            blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+        };
+        let one = case("x=\"ü\"", None, 7);
+        let other = PlannedScenario { blake3: "ff00".to_owned(), ..scenario.clone() };
+        let more = [Case { seed: u64::MAX, ..one.clone() }, case("x=1", Some("b"), 7)];
+        // More settings than are remembered, and the first ones again.
+        let many: Vec<Case> = (0..100).map(|k| case(&k.to_string(), None, k)).collect();
+        for case in [&one, &more[0], &more[1]].into_iter().chain(&many).chain([&one]) {
+            assert_eq!(hash_of(&scenario, case), expected(case, "00ff"));
+            assert_eq!(hash_of(&other, case), expected(case, "ff00"));
+        }
+    }
 }

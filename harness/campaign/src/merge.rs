@@ -225,7 +225,7 @@ pub fn merge(
             columns = there;
         }
         if name == "cases" {
-            let cases = kept.iter().map(|kept| kept.rows.rows).sum();
+            let cases = kept.iter().map(|kept| kept.rows.count()).sum();
             merged_cases = Merged {
                 parts: paths.len(),
                 cases,
@@ -239,7 +239,7 @@ pub fn merge(
         write_streamed(&merged(out, name), &plan.id, &columns, &units, |index| {
             let mut of_parts = of_parts(&tables, &columns[index].0)?;
             let rows =
-                kept.iter().flat_map(|kept| kept.rows.each().map(move |row| (kept.part, row)));
+                kept.iter().flat_map(|kept| kept.rows.each().map(move |row| (kept.part(), row)));
             Ok(rows.map(move |(part, row)| of_parts[part].at(row)))
         })?;
     }
@@ -274,9 +274,9 @@ fn of_parts(tables: &[CaseTable], column: &str) -> Result<Vec<CaseColumn>, Table
 /// Returns whether any of the rows that are kept has a value in a column.
 fn has_value(tables: &[CaseTable], kept: &[Rows], column: &str) -> Result<bool, TableError> {
     let mut of_parts = of_parts(tables, column)?;
-    for Rows { part, rows } in kept {
-        for row in rows.each() {
-            if of_parts[*part].at(row)?.is_some() {
+    for kept in kept {
+        for row in kept.rows.each() {
+            if of_parts[kept.part()].at(row)?.is_some() {
                 return Ok(true);
             }
         }
@@ -299,8 +299,14 @@ fn columns(first: Columns, tables: &[CaseTable]) -> Vec<(String, ColumnKind)> {
 /// Rows of a case in a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rows {
-    part: usize,
+    part: u32,
     rows: CaseRows,
+}
+
+impl Rows {
+    fn part(&self) -> usize {
+        self.part as usize
+    }
 }
 
 /// Rows of all parts, by case in the order of the plan and by part.
@@ -308,28 +314,29 @@ struct Merging(Vec<Rows>);
 
 impl Merging {
     fn of(tables: &[CaseTable]) -> Self {
-        let of_table = |(part, table): (usize, &CaseTable)| {
-            table.runs.iter().map(|rows| Rows { part, rows: *rows }).collect::<Vec<_>>()
-        };
-        let mut all: Vec<Rows> = tables.iter().enumerate().flat_map(of_table).collect();
-        all.sort_unstable_by_key(|rows| (rows.rows.case, rows.part, rows.rows.start));
+        let mut all = Vec::with_capacity(tables.iter().map(|table| table.runs.len()).sum());
+        for (part, table) in (0..).zip(tables) {
+            all.extend(table.runs.iter().map(|rows| Rows { part, rows: *rows }));
+        }
+        all.sort_unstable_by_key(|rows| (rows.rows.case(), rows.part, rows.rows));
         Self(all)
     }
 
     /// Returns the rows of each case.
     fn cases(&self) -> impl Iterator<Item = &[Rows]> {
-        self.0.chunk_by(|a, b| a.rows.case == b.rows.case)
+        self.0.chunk_by(|a, b| a.rows.case() == b.rows.case())
     }
 
-    /// Returns the rows that count.
-    fn kept(&self, end: usize) -> Vec<Rows> {
-        let counting = self.cases().take_while(|rows| rows.iter().all(|rows| rows.rows.case < end));
-        let first = |rows: &&[Rows]| rows.first().map_or(0, |first| first.part);
-        let of_first = counting.flat_map(|rows| {
-            let part = first(&rows);
-            rows.iter().copied().filter(move |rows| rows.part == part)
+    /// Returns the rows that count: of a case in several parts those of the first.
+    fn kept(mut self, end: usize) -> Vec<Rows> {
+        let mut last = None;
+        self.0.retain(|rows| {
+            let case = rows.rows.case();
+            let first = last.filter(|(of, _)| *of == case).map_or(rows.part, |(_, first)| first);
+            last = Some((case, first));
+            case < end && rows.part == first
         });
-        of_first.collect()
+        self.0
     }
 
     /// Refuses parts that contain a case with different values.
@@ -355,7 +362,7 @@ impl Merging {
                 // differs.
                 let mut first: Option<(usize, Vec<Option<ColumnValue>>)> = None;
                 for of_part in rows.chunk_by(|a, b| a.part == b.part) {
-                    let Some(part) = of_part.first().map(|rows| rows.part) else { continue };
+                    let Some(part) = of_part.first().map(Rows::part) else { continue };
                     let places = of_part.iter().flat_map(|rows| rows.rows.each());
                     let values =
                         places
@@ -368,7 +375,7 @@ impl Merging {
                     if *expected == values {
                         continue;
                     }
-                    let case = of_part.first().map_or(0, |rows| rows.rows.case);
+                    let case = of_part.first().map_or(0, |rows| rows.rows.case());
                     let case = plan.cases[case].id.to_string();
                     let [first, second] = [*of_first, part].map(|part| tables[part].path.clone());
                     return Err(if column == NUMERICS {

@@ -3,11 +3,13 @@
 use super::besides::besides;
 use super::case::{CaseResult, ResultError};
 use super::factors::FactorColumns;
+use super::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
 use super::plan::{Case, Plan};
 use super::spill::SpilledRows;
 use super::store::CampaignResults;
 use super::table::{ColumnKind, ColumnValue, TableError, write_streamed};
 use octant_score::summary::Summary;
+use octant_score::verdict::RequirementResult;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -97,7 +99,9 @@ pub fn tables(
     let factors = FactorColumns::of(plan);
     let beside = path(TABLES[0].0);
     let place = beside.parent().unwrap_or(folder);
-    let all = rows(plan, &open(folder)?, cases, &factors, place)?;
+    // A plan has at most ten million cases.
+    let cases: Vec<u32> = cases.filter_map(|case| u32::try_from(case).ok()).collect();
+    let all = rows(plan, &open(folder)?, &cases, &factors, place)?;
     for ((name, first), rows) in TABLES.iter().zip(&all.tables) {
         let columns = ordered(first, &rows.kinds());
         let mut units = factors.units();
@@ -123,36 +127,60 @@ fn unread(path: &Path, error: &ResultError) -> TableError {
     TableError::Form { path, reason }
 }
 
+/// Rows of a case in all tables.
+struct RowsOfCase {
+    case: BTreeMap<String, ColumnValue>,
+    checks: Vec<[Option<ColumnValue>; 9]>,
+    drift: Vec<[f64; 3]>,
+}
+
 /// Collects the rows of all tables from results, in temporary files in a folder.
 pub(super) fn rows(
     plan: &Plan,
     results: &CampaignResults,
-    cases: impl Iterator<Item = usize>,
+    cases: &[u32],
     factors: &FactorColumns<'_>,
     place: &Path,
 ) -> Result<TableRows, TableError> {
     let [mut all_cases, mut checks, mut drift] =
         TABLES.map(|(_, first)| SpilledRows::new(place, first));
-    let mut counts = Vec::new();
-    for index in cases {
-        let Some(case) = plan.cases.get(index) else { continue };
-        let place = results.place(&case.id);
-        let path = place.map_or_else(Default::default, |place| place.path().to_owned());
-        let read = results.of_plan(plan, case).map_err(|error| unread(&path, &error))?;
-        let (result, hash) = read.ok_or_else(|| TableError::Form {
-            path: path.clone(),
-            reason: format!("the result of case {} is gone", case.id),
-        })?;
-        let before = [checks.rows(), drift.rows()];
-        all_cases.push(case_row(case, &result, &hash, factors))?;
-        if let Some(summary) = &result.summary {
-            check_rows(case, summary).try_for_each(|row| checks.push(row))?;
-            drift_rows(case, summary).try_for_each(|row| drift.push(row))?;
-        }
-        let more = |rows: usize, before| u32::try_from(rows - before).unwrap_or(u32::MAX);
-        counts.push([1, more(checks.rows(), before[0]), more(drift.rows(), before[1])]);
-    }
+    let mut counts = Vec::with_capacity(cases.len());
+    let case_of = |index: usize| plan.cases.get(*cases.get(index)? as usize);
+    let read =
+        |index: usize| case_of(index).map(|case| rows_of(plan, results, case, factors)).transpose();
+    read_in_order(cases.len(), RESULTS_AT_ONCE, read, |index, rows| {
+        let count = |rows: usize| u32::try_from(rows).unwrap_or(u32::MAX);
+        counts.push([1, count(rows.checks.len()), count(rows.drift.len())]);
+        all_cases.push(rows.case)?;
+        rows.checks.into_iter().try_for_each(|row| checks.push_values(row))?;
+        let id = text(case_of(index).map_or("", |case| case.id.as_str()));
+        rows.drift.into_iter().try_for_each(|row| {
+            let [hours, latitude, longitude] = row.map(|value| Some(ColumnValue::Number(value)));
+            drift.push_values([Some(id.clone()), hours, latitude, longitude])
+        })
+    })?;
     Ok(TableRows { tables: [all_cases, checks, drift], counts })
+}
+
+fn rows_of(
+    plan: &Plan,
+    results: &CampaignResults,
+    case: &Case,
+    factors: &FactorColumns<'_>,
+) -> Result<RowsOfCase, TableError> {
+    let place = results.place(&case.id);
+    let path = place.map_or_else(Default::default, |place| place.path().to_owned());
+    let read = results.of_plan(plan, case).map_err(|error| unread(&path, &error))?;
+    let (result, hash) = read.ok_or_else(|| TableError::Form {
+        path,
+        reason: format!("the result of case {} is gone", case.id),
+    })?;
+    let series = result.summary.iter().flat_map(|summary| &summary.navigation);
+    Ok(RowsOfCase {
+        case: case_row(case, &result, &hash, factors),
+        checks: result.summary.iter().flat_map(|summary| check_rows(case, summary)).collect(),
+        drift: series.flat_map(|navigation| &navigation.series_hours).copied().collect(),
+    })
 }
 
 fn text(value: impl Into<Arc<str>>) -> ColumnValue {
@@ -250,36 +278,21 @@ fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Column
     }
 }
 
-fn check_rows<'a>(
-    case: &'a Case,
-    summary: &'a Summary,
-) -> impl Iterator<Item = BTreeMap<String, ColumnValue>> + 'a {
-    summary.requirements.iter().map(|result| {
-        row([
-            ("case", Some(text(case.id.as_str()))),
-            ("requirement", Some(text(result.id.as_str()))),
-            ("measure", Some(text(result.measure.as_str()))),
-            ("comparison", Some(text(result.comparison.sign()))),
-            ("limit", Some(ColumnValue::Number(result.limit))),
-            ("value", result.value.map(ColumnValue::Number)),
-            ("margin", result.margin.map(ColumnValue::Number)),
-            ("verdict", Some(text(result.verdict.name()))),
-            ("reason", result.reason.as_deref().map(text)),
-        ])
-    })
-}
-
-fn drift_rows<'a>(
-    case: &'a Case,
-    summary: &'a Summary,
-) -> impl Iterator<Item = BTreeMap<String, ColumnValue>> + 'a {
-    let series = summary.navigation.iter().flat_map(|navigation| &navigation.series_hours);
-    series.map(|[hours, latitude, longitude]| {
-        row([
-            ("case", Some(text(case.id.as_str()))),
-            ("hours", Some(ColumnValue::Number(*hours))),
-            ("latitude_error_arcmin", Some(ColumnValue::Number(*latitude))),
-            ("longitude_error_arcmin", Some(ColumnValue::Number(*longitude))),
-        ])
-    })
+/// Rows of the checks of a case, in the columns of their table.
+fn check_rows(case: &Case, summary: &Summary) -> Vec<[Option<ColumnValue>; 9]> {
+    let id = text(case.id.as_str());
+    let row = |result: &RequirementResult| {
+        [
+            Some(id.clone()),
+            Some(text(result.id.as_str())),
+            Some(text(result.measure.as_str())),
+            Some(text(result.comparison.sign())),
+            Some(ColumnValue::Number(result.limit)),
+            result.value.map(ColumnValue::Number),
+            result.margin.map(ColumnValue::Number),
+            Some(text(result.verdict.name())),
+            result.reason.as_deref().map(text),
+        ]
+    };
+    summary.requirements.iter().map(row).collect()
 }

@@ -1,6 +1,7 @@
 //! Texts of cases in little memory: a plan can have millions of cases, and most of their texts are the
 //! same in many of them.
 
+use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Borrow;
 use std::fmt;
@@ -94,11 +95,28 @@ impl Serialize for SharedText {
 
 impl<'de> Deserialize<'de> for SharedText {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Ok(String::deserialize(deserializer)?.into())
+        struct Text;
+        impl Visitor<'_> for Text {
+            type Value = SharedText;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a string")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<SharedText, E> {
+                Ok(text.into())
+            }
+        }
+        deserializer.deserialize_str(Text)
     }
 }
 
 impl SharedTexts {
+    /// Returns whether both are the same list in memory, which is faster to tell than whether they are equal.
+    pub(super) fn is_shared(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
     /// Returns the texts, each with memory of its own.
     #[must_use]
     pub fn to_strings(&self) -> Vec<String> {

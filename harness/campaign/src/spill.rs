@@ -22,12 +22,14 @@ pub(super) struct SpilledRows {
     folder: PathBuf,
     /// Temporary file without a name, and its length; `None` as long as it isn't needed.
     file: Option<(File, u64)>,
-    columns: BTreeMap<String, SpilledColumn>,
+    /// The first columns in their order, then others in the order in which they came.
+    columns: Vec<SpilledColumn>,
     rows: usize,
 }
 
 #[derive(Debug)]
 struct SpilledColumn {
+    name: String,
     kind: ColumnKind,
     /// Place and length of each block.
     blocks: Vec<(u64, u32)>,
@@ -38,20 +40,13 @@ struct SpilledColumn {
 impl SpilledRows {
     /// Makes a table without rows, with these columns. Its temporary file will be in a folder.
     pub(super) fn new(folder: &Path, first: &[(&str, ColumnKind)]) -> Self {
-        let empty =
-            |(name, kind): &(&str, ColumnKind)| ((*name).to_owned(), SpilledColumn::of(*kind));
-        let columns = first.iter().map(empty).collect();
+        let columns = first.iter().map(|(name, kind)| SpilledColumn::of(name, *kind)).collect();
         Self { folder: folder.to_owned(), file: None, columns, rows: 0 }
-    }
-
-    /// Number of rows.
-    pub(super) fn rows(&self) -> usize {
-        self.rows
     }
 
     /// Returns the kinds of the columns.
     pub(super) fn kinds(&self) -> BTreeMap<&str, ColumnKind> {
-        self.columns.iter().map(|(name, column)| (name.as_str(), column.kind)).collect()
+        self.columns.iter().map(|column| (column.name.as_str(), column.kind)).collect()
     }
 
     /// Appends a row.
@@ -59,21 +54,30 @@ impl SpilledRows {
         &mut self,
         mut row: BTreeMap<String, ColumnValue>,
     ) -> Result<(), TableError> {
-        for (name, column) in &mut self.columns {
-            let value = row.remove(name);
-            column.push(value, &mut self.file, &self.folder).map_err(self::wrong(&self.folder))?;
+        let wrong = self::wrong(&self.folder);
+        for column in &mut self.columns {
+            let value = row.remove(&column.name);
+            column.push(value, &mut self.file, &self.folder).map_err(&wrong)?;
         }
         for (name, value) in row {
-            let mut column = SpilledColumn::of(value.kind());
+            let mut column = SpilledColumn::of(&name, value.kind());
             for _ in 0..self.rows {
-                column
-                    .push(None, &mut self.file, &self.folder)
-                    .map_err(self::wrong(&self.folder))?;
+                column.push(None, &mut self.file, &self.folder).map_err(&wrong)?;
             }
-            column
-                .push(Some(value), &mut self.file, &self.folder)
-                .map_err(self::wrong(&self.folder))?;
-            self.columns.insert(name, column);
+            column.push(Some(value), &mut self.file, &self.folder).map_err(&wrong)?;
+            self.columns.push(column);
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Appends a row that has a value, or none, for each of the columns in their order, and for no other.
+    pub(super) fn push_values<const COLUMNS: usize>(
+        &mut self,
+        values: [Option<ColumnValue>; COLUMNS],
+    ) -> Result<(), TableError> {
+        for (column, value) in self.columns.iter_mut().zip(values) {
+            column.push(value, &mut self.file, &self.folder).map_err(wrong(&self.folder))?;
         }
         self.rows += 1;
         Ok(())
@@ -81,23 +85,22 @@ impl SpilledRows {
 
     /// Returns the values of a column in the order of the rows; nulls if there is no such column.
     pub(super) fn column(&self, name: &str) -> SpilledValues<'_> {
-        let column = self.columns.get(name);
+        let column = self.columns.iter().find(|column| column.name == name);
         SpilledValues { rows: self, column, block: 0, values: None, at: 0, given: 0 }
     }
 }
 
-fn wrong(folder: &Path) -> impl Fn(io::Error) -> TableError + use<> {
-    let path = folder.to_owned();
-    move |source| TableError::System {
+fn wrong(folder: &Path) -> impl Fn(io::Error) -> TableError {
+    |source| TableError::System {
         action: "keep rows of a table in a temporary file of",
-        path: path.clone(),
+        path: folder.to_owned(),
         source,
     }
 }
 
 impl SpilledColumn {
-    fn of(kind: ColumnKind) -> Self {
-        Self { kind, blocks: Vec::new(), last: ColumnValues::new(kind) }
+    fn of(name: &str, kind: ColumnKind) -> Self {
+        Self { name: name.to_owned(), kind, blocks: Vec::new(), last: ColumnValues::new(kind) }
     }
 
     fn push(
@@ -257,7 +260,7 @@ mod tests {
         for row in 0..count {
             rows.push(of(row)).unwrap();
         }
-        assert_eq!(rows.rows(), count);
+        assert_eq!(rows.rows, count);
         assert_eq!(rows.kinds().len(), 4);
         for name in ["id", "number", "whole", "late", "none"] {
             let found: Vec<_> = rows.column(name).map(Result::unwrap).collect();
@@ -265,5 +268,18 @@ mod tests {
             assert!(found == expected, "{name}");
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "it has no name");
+        let mut again = SpilledRows::new(
+            folder.path(),
+            &[("id", ColumnKind::Text), ("number", ColumnKind::Number)],
+        );
+        for row in 0..count {
+            let mut row = of(row);
+            again.push_values([row.remove("id"), row.remove("number")]).unwrap();
+        }
+        for name in ["id", "number"] {
+            assert!(
+                again.column(name).map(Result::unwrap).eq(rows.column(name).map(Result::unwrap))
+            );
+        }
     }
 }

@@ -1,13 +1,15 @@
 //! Progress of a campaign, and its failures.
 
 use super::case::ResultError;
+use super::case_states::{CaseState, checked, each_state};
 use super::independence::{self, Shown};
-use super::plan::{Plan, StopRule};
+use super::plan::{Case, Plan, StopRule};
 use super::shard::Shard;
 use super::stop::{self, StopDecision};
 use super::store::CampaignResults;
 use super::stream_key::StreamKey;
 use octant_base::number::plain;
+use octant_base::pool::spawn;
 use octant_requirements::Verdict;
 use octant_requirements::requirement::EnsembleRequirement;
 use octant_requirements::trace::{VerdictCounts, judge};
@@ -101,6 +103,23 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<CampaignStatus, St
     of_results(plan, &CampaignResults::open(folder)?, shard)
 }
 
+/// Determines the state of the campaign in a folder. Its results are looked for while its plan is read.
+///
+/// # Errors
+/// If the plan can't be read; the inner error: if an existing result can't be read.
+pub fn of_folder<E>(
+    folder: &Path,
+    read_plan: impl FnOnce() -> Result<Plan, E>,
+) -> Result<Result<CampaignStatus, StatusError>, E> {
+    let (plan, results) = std::thread::scope(|scope| {
+        let results = spawn(scope, || CampaignResults::open(folder));
+        (read_plan(), results.join())
+    });
+    let results = results.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let plan = plan?;
+    Ok(results.map_err(StatusError).and_then(|found| of_results(&plan, &found, Shard::WHOLE)))
+}
+
 /// Determines the state of a part of a campaign from results.
 ///
 /// # Errors
@@ -110,7 +129,6 @@ pub fn of_results(
     results: &CampaignResults,
     shard: Shard,
 ) -> Result<CampaignStatus, StatusError> {
-    let mine = || plan.cases.iter().enumerate().filter(|(index, _)| shard.has(*index));
     let mut status = CampaignStatus {
         title: plan.title.clone(),
         plan: plan.id.clone(),
@@ -136,87 +154,133 @@ pub fn of_results(
             decision.end(plan.cases.len())
         }
     };
-    let mut counts: BTreeMap<&str, VerdictCounts> = BTreeMap::new();
-    // Includes requirements that no case checks.
-    let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
-    let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
-    for id in of_file.chain(of_scenarios) {
-        counts.entry(id).or_default();
+    let mut tally = StatusTally::of(plan);
+    each_state(
+        plan,
+        results,
+        end,
+        |index| shard.has(index),
+        |case, state| tally.add(case, state, &mut status),
+    )?;
+    let others = std::mem::take(&mut tally.numerics).into_iter().filter_map(|(version, cases)| {
+        Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
+    });
+    status.numerics = others.collect();
+    let mine = || plan.cases.iter().take(end).enumerate().filter(|(index, _)| shard.has(*index));
+    let looked = || mine().map(|(_, case)| case).zip(tally.streams.iter().map(Option::as_ref));
+    let draws = independence::draws(looked());
+    status.draws = draws.iter().max().map_or(0, |last| last + 1);
+    let idle = independence::idle(plan, looked());
+    (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
+    status.requirements = tally.requirements(&draws);
+    Ok(status)
+}
+
+/// Counts over the cases of a plan.
+struct StatusTally<'p> {
+    plan: &'p Plan,
+    requirements: BTreeMap<&'p str, RequirementTally>,
+    streams: Vec<Option<StreamKey>>,
+    numerics: BTreeMap<Option<u32>, usize>,
+}
+
+/// Checks of a requirement so far.
+#[derive(Debug, Default)]
+struct RequirementTally {
+    counts: VerdictCounts,
+    /// Whether each of the cases that count shows it, as one of [`SHOWN`]; those after the last one that checks it are
+    /// missing.
+    shown: Vec<u8>,
+}
+
+/// Results of a case for a requirement, by their place: it isn't checked, has not run, didn't pass, passed.
+const SHOWN: [Option<Option<bool>>; 4] = [None, Some(None), Some(Some(false)), Some(Some(true))];
+
+impl RequirementTally {
+    /// Adds a case by its place among those that count; `None`: it has not run.
+    fn show(&mut self, case: usize, passed: Option<bool>) {
+        self.shown.resize(case, 0);
+        let place = SHOWN.iter().position(|shown| *shown == Some(passed));
+        self.shown.push(place.and_then(|place| u8::try_from(place).ok()).unwrap_or(0));
     }
-    let mut streams: Vec<Option<StreamKey>> = Vec::new();
-    // Cases that check each requirement, by their order among those that count, and whether they passed.
-    let mut shown: BTreeMap<&str, Vec<(u32, Option<bool>)>> = BTreeMap::new();
-    let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
-    status.cases = mine().filter(|(index, _)| *index < end).count();
-    for (number, (_, case)) in (0..).zip(mine().filter(|(index, _)| *index < end)) {
-        let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
-        let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
-        let Some(facts) = results.facts(plan, case)? else {
+
+    /// Returns the draw of each case that checks it, and whether it passed.
+    fn rows(&self, draws: &[usize]) -> impl Iterator<Item = (usize, Option<bool>)> {
+        let shown = self.shown.iter().map(|place| SHOWN[usize::from(*place)]);
+        draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw, shown?)))
+    }
+}
+
+impl<'p> StatusTally<'p> {
+    /// Begins with all requirements, also those that no case checks.
+    fn of(plan: &'p Plan) -> Self {
+        let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
+        let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
+        let requirements = of_file
+            .chain(of_scenarios)
+            .map(|id| (id.as_str(), RequirementTally::default()))
+            .collect();
+        Self { plan, requirements, streams: Vec::new(), numerics: BTreeMap::new() }
+    }
+
+    fn add(&mut self, case: &Case, state: Option<CaseState>, status: &mut CampaignStatus) {
+        let number = status.cases;
+        status.cases += 1;
+        let plan = self.plan;
+        let checked = checked(plan, case);
+        let Some(state) = state else {
             status.open += 1;
             for id in checked {
-                counts.entry(id).or_default().missing += 1;
-                shown.entry(id).or_default().push((number, None));
+                let tally = self.requirements.entry(id).or_default();
+                tally.counts.missing += 1;
+                tally.show(number, None);
             }
-            streams.push(None);
-            continue;
+            self.streams.push(None);
+            return;
         };
-        *status.verdicts.entry(facts.verdict.name()).or_default() += 1;
+        *status.verdicts.entry(state.verdict.name()).or_default() += 1;
         let counted = |id: &String| plan.ensemble(id).is_some();
-        let is_counted = checked.clone().next().is_some() && checked.clone().all(counted);
-        if !(is_counted && facts.refused_alone) {
-            status.besides = status.besides.worst(facts.besides);
+        let is_counted = !checked.is_empty() && checked.iter().all(counted);
+        if !(is_counted && state.refused_alone) {
+            status.besides = status.besides.worst(state.besides);
         }
-        for id in checked.clone() {
-            shown.entry(id).or_default().push((number, Some(facts.passes(id))));
-        }
-        streams.push(facts.stream().map(StreamKey::from));
-        if let Some(run) = &facts.run {
-            *numerics.entry(run.numerics).or_default() += 1;
-        }
-        for id in checked {
-            let counts = counts.entry(id).or_default();
-            *match facts.check(id) {
+        for (id, (verdict, passes)) in checked.iter().zip(&state.checks) {
+            let tally = self.requirements.entry(id).or_default();
+            tally.show(number, Some(*passes));
+            let counts = &mut tally.counts;
+            *match verdict {
                 Verdict::Pass => &mut counts.pass,
                 Verdict::None | Verdict::Inconclusive => &mut counts.inconclusive,
                 Verdict::Fail => &mut counts.fail,
                 Verdict::Error => &mut counts.error,
             } += 1;
         }
-        if results.differing(&case.id)?.is_some() {
+        self.streams.push(state.stream);
+        if let Some(version) = state.numerics {
+            *self.numerics.entry(version).or_default() += 1;
+        }
+        if state.differs {
             status.differing.push(case.id.to_string());
         }
-        if facts.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
-            let reason = facts.why().cloned().unwrap_or_default();
-            status.bad.push(Bad { case: case.id.to_string(), verdict: facts.verdict, reason });
+        if state.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
+            let reason = state.why.unwrap_or_default();
+            status.bad.push(Bad { case: case.id.to_string(), verdict: state.verdict, reason });
         }
     }
-    let others = numerics.into_iter().filter_map(|(version, cases)| {
-        Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
-    });
-    status.numerics = others.collect();
-    let looked = || {
-        let cases = mine().filter(|(index, _)| *index < end).map(|(_, case)| case);
-        cases.zip(streams.iter().map(Option::as_ref))
-    };
-    let draws = independence::draws(looked());
-    status.draws = draws.iter().max().map_or(0, |last| last + 1);
-    let idle = independence::idle(plan, looked());
-    (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
-    let of = |(id, counts): (&str, VerdictCounts)| {
-        let ensemble = plan.ensemble(id);
-        let cases = shown.remove(id).unwrap_or_default();
-        let rows = cases
-            .iter()
-            .filter_map(|(number, passed)| Some((*draws.get(*number as usize)?, *passed)));
-        let draws = DrawCounts::of(rows);
-        let (verdict, reason) = judge(ensemble, counts, draws);
-        let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
-            further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
-        });
-        (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
-    };
-    status.requirements = counts.into_iter().map(of).collect();
-    Ok(status)
+
+    /// Judges each requirement by the draws of the cases.
+    fn requirements(self, draws: &[usize]) -> BTreeMap<String, RequirementStatus> {
+        let of = |(id, tally): (&str, RequirementTally)| {
+            let (ensemble, counts) = (self.plan.ensemble(id), tally.counts);
+            let draws = DrawCounts::of(tally.rows(draws));
+            let (verdict, reason) = judge(ensemble, counts, draws);
+            let needed = ensemble.map(|EnsembleRequirement { pass, confidence }| {
+                further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
+            });
+            (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
+        };
+        self.requirements.into_iter().map(of).collect()
+    }
 }
 
 /// Evaluates the stopping rule on the results in a folder.

@@ -4,21 +4,32 @@ use super::case_places::CasePlaces;
 use super::table::{ColumnCursor, ColumnValue, ColumnValues, ExistingTable, TableError};
 use std::path::{Path, PathBuf};
 
-/// Rows of a case that follow one another.
+/// Rows of a case that follow one another, in few bytes: a table can have those of millions of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct CaseRows {
-    /// Place of the case in the plan.
-    pub(super) case: usize,
+    /// Place of the case in the plan, which has at most ten million cases.
+    case: u32,
     /// First row.
-    pub(super) start: usize,
-    /// Number of rows.
-    pub(super) rows: usize,
+    start: u64,
+    /// Number of rows. More than fit follow as rows of the same case.
+    rows: u32,
 }
 
 impl CaseRows {
+    /// Returns the place of the case in the plan.
+    pub(super) fn case(self) -> usize {
+        self.case as usize
+    }
+
+    /// Returns the number of rows.
+    pub(super) fn count(self) -> usize {
+        self.rows as usize
+    }
+
     /// Returns each of the rows.
-    pub(super) fn each(&self) -> std::ops::Range<usize> {
-        self.start..self.start + self.rows
+    pub(super) fn each(self) -> std::ops::Range<usize> {
+        let start = usize::try_from(self.start).unwrap_or(usize::MAX);
+        start..start.saturating_add(self.count())
     }
 }
 
@@ -59,9 +70,10 @@ impl CaseTable {
             let id = id.as_deref().unwrap_or("");
             let case = place.get(id);
             let case = case.ok_or_else(|| form(format!("the plan has no case {id}")))?;
+            let case = u32::try_from(case).unwrap_or(u32::MAX);
             match runs.last_mut() {
-                Some(run) if run.case == case => run.rows += 1,
-                _ => runs.push(CaseRows { case, start: row, rows: 1 }),
+                Some(run) if run.case == case && run.rows < u32::MAX => run.rows += 1,
+                _ => runs.push(CaseRows { case, start: row as u64, rows: 1 }),
             }
         }
         let is_in_order = runs.is_sorted();
@@ -71,19 +83,19 @@ impl CaseTable {
 
     /// Returns the cases that have rows, in the order of the plan.
     pub(super) fn cases(&self) -> impl Iterator<Item = usize> {
-        self.runs.chunk_by(|a, b| a.case == b.case).filter_map(|runs| Some(runs.first()?.case))
+        self.runs.chunk_by(|a, b| a.case == b.case).filter_map(|runs| Some(runs.first()?.case()))
     }
 
     /// Returns the rows of a case.
     pub(super) fn rows(&self, case: usize) -> &[CaseRows] {
-        let from = self.runs.partition_point(|run| run.case < case);
-        let to = self.runs.partition_point(|run| run.case <= case);
+        let from = self.runs.partition_point(|run| run.case() < case);
+        let to = self.runs.partition_point(|run| run.case() <= case);
         &self.runs[from..to]
     }
 
     /// Number of rows of a case.
     pub(super) fn count(&self, case: usize) -> usize {
-        self.rows(case).iter().map(|run| run.rows).sum()
+        self.rows(case).iter().map(|run| run.count()).sum()
     }
 
     /// Returns the values of a column; all are null if there is no such column.

@@ -5,7 +5,6 @@ use octant_campaign::plan::INPUTS;
 use octant_campaign::report::file_names::{JUNIT, PAGE, PREDICTION, STATISTICS};
 use octant_campaign::report::junit::junit;
 use octant_campaign::report::{CampaignReport, ReportError, again};
-use octant_campaign::store::CampaignResults;
 use octant_evidence::manifest::{CampaignFacts, program_sha256};
 use octant_evidence::signature::{self, SigningKey};
 use octant_evidence::{Manifest, RunFacts, disposition};
@@ -62,7 +61,9 @@ pub fn write(
         _ => {}
     }
     let program = program_sha256();
-    let (first, last) = times(report, folder)?;
+    let [first, last] = report
+        .run_between
+        .map(|time| time.map(|time| humantime::format_rfc3339_seconds(time).to_string()));
     let facts = RunFacts {
         command_line: report.again().pop().unwrap_or_default(),
         campaign: Some(CampaignFacts {
@@ -99,23 +100,6 @@ fn new_junit(report: &CampaignReport<'_>, path: &Path) -> Result<NamedTempFile, 
     Ok(new)
 }
 
-/// Times of the first and the last result.
-type Times = (Option<String>, Option<String>);
-
-/// Returns the times of the first and the last result.
-fn times(report: &CampaignReport<'_>, folder: &Path) -> Result<Times, ReportError> {
-    let results = CampaignResults::open(folder)?;
-    let run = (0..report.rows.len()).filter(|place| report.rows.has_run(*place));
-    let cases = run.filter_map(|place| report.rows.case(place));
-    let (mut first, mut last): (Option<SystemTime>, Option<SystemTime>) = (None, None);
-    for time in cases.filter_map(|case| results.time(&case.id)) {
-        first = Some(first.map_or(time, |first| first.min(time)));
-        last = last.max(Some(time));
-    }
-    let text = |time: SystemTime| octant_base::utc::seconds(time);
-    Ok((first.map(text), last.map(text)))
-}
-
 /// Copies the campaign's file, its requirements and its scenarios, if they are still the planned
 /// ones. An existing copy stays.
 fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportError> {
@@ -141,7 +125,7 @@ fn inputs(report: &mut CampaignReport<'_>, folder: &Path) -> Result<(), ReportEr
             );
         }
     // Only if the campaign's plan is still the same.
-    } else if octant_campaign::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
+    } else if plan.is_of(&plan.campaign) {
         files.push((plan.campaign.clone(), folder.join("campaign.toml")));
         let campaign = octant_scenario::campaign::Campaign::load(&plan.campaign).ok();
         if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {

@@ -42,13 +42,16 @@ pub fn percentile(values: &[f64], p: f64) -> Option<f64> {
 
 /// Percentile as in [`percentile`], of values in ascending order.
 pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
-    if sorted.is_empty() {
-        return None;
-    }
-    let at = p.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
+    percentile_of_ranks(sorted.len(), p, |rank| sorted[rank])
+}
+
+/// Percentile as in [`percentile`], of `count` values that are known by their ranks from 0, in ascending order.
+#[must_use]
+pub fn percentile_of_ranks(count: usize, p: f64, value: impl Fn(usize) -> f64) -> Option<f64> {
+    let last = count.checked_sub(1)?;
+    let at = p.clamp(0.0, 1.0) * last as f64;
     let (low, part) = (at as usize, at - libm::floor(at));
-    let high = (low + 1).min(sorted.len() - 1);
-    let (below, above) = (sorted[low], sorted[high]);
+    let (below, above) = (value(low), value((low + 1).min(last)));
     // The difference of two infinities is NaN, and so is every multiple of it.
     Some(if part == 0.0 || below == above { below } else { below + part * (above - below) })
 }

@@ -64,11 +64,17 @@ pub fn number_of(value: &FactorValue) -> Option<f64> {
 /// one value of the others.
 #[must_use]
 pub fn of_grid(plan: &Plan) -> Vec<String> {
+    // A list: a map of millions of replicates would take several times the memory.
+    let mut order: Vec<u32> = (0..).take(plan.cases.len()).collect();
+    let case = |index: &u32| plan.cases.get(*index as usize);
+    order.sort_unstable_by_key(|index| (case(index).map(|case| case.replicate), *index));
     let is = |factor: &&String| {
-        let mut first: HashMap<u32, &FactorValue> = HashMap::new();
-        plan.cases.iter().any(|case| {
+        let mut first: Option<(u32, &FactorValue)> = None;
+        order.iter().filter_map(case).any(|case| {
             let Some(value) = case.factors.get(factor) else { return false };
-            *first.entry(case.replicate).or_insert(value) != value
+            let of_replicate = first.filter(|(replicate, _)| *replicate == case.replicate);
+            let (_, of_first) = *first.insert(of_replicate.unwrap_or((case.replicate, value)));
+            of_first != value
         })
     };
     plan.factors.iter().filter(is).cloned().collect()

@@ -26,6 +26,7 @@ use octant_requirements::trace::CampaignTrace;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::time::SystemTime;
 
 /// Version of `statistics.json`.
 pub const SCHEMA: u32 = 1;
@@ -120,6 +121,8 @@ pub struct CampaignReport<'a> {
     pub tables: Vec<(String, String)>,
     /// Units of errors on the page.
     pub units: CampaignUnits,
+    /// Times at which the first and the last result were stored.
+    pub run_between: [Option<SystemTime>; 2],
     /// Independent draw of each case.
     draws: Vec<usize>,
 }
@@ -130,6 +133,18 @@ fn check(rows: &ReportRows<'_>) -> Result<(), ReportError> {
     let wrong =
         |source| ReportError::System { action: "read the results of cases from", path, source };
     rows.error().map_or(Ok(()), |source| Err(wrong(source)))
+}
+
+/// Returns the times at which the first and the last result were stored.
+fn run_between(rows: &ReportRows<'_>, results: &CampaignResults) -> [Option<SystemTime>; 2] {
+    let cases = (0..rows.len()).filter(|place| rows.has_run(*place));
+    let times = cases.filter_map(|place| results.time(&rows.case(place)?.id));
+    let (mut first, mut last): (Option<SystemTime>, Option<SystemTime>) = (None, None);
+    for time in times {
+        first = Some(first.map_or(time, |first| first.min(time)));
+        last = last.max(Some(time));
+    }
+    [first, last]
 }
 
 impl<'a> CampaignReport<'a> {
@@ -189,6 +204,7 @@ impl<'a> CampaignReport<'a> {
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
         };
         check(&rows)?;
+        let run_between = run_between(&rows, &results);
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let name = absolute.file_name().map_or(".".into(), |name| name.to_string_lossy());
         let name = name.into_owned();
@@ -207,6 +223,7 @@ impl<'a> CampaignReport<'a> {
             notes,
             tables,
             units: CampaignUnits::of(plan, folder),
+            run_between,
             draws,
         })
     }
@@ -234,15 +251,11 @@ impl<'a> CampaignReport<'a> {
             let figures = self.statistics.combinations.get(combination)?;
             return figures.envelope.as_ref().map(ShownEnvelope::from);
         }
-        let (curves, beyond) =
-            figures::curves(self.combinations.get(combination)?, &self.rows, &self.draws);
-        let curves: Vec<_> = (curves.iter())
-            .map(|(case, curve)| {
-                let units = self.units.at(*case);
-                (curve, [units.latitude().factor, units.longitude().factor])
-            })
-            .collect();
-        ShownEnvelope::of(&curves, beyond)
+        let combination = self.combinations.get(combination)?;
+        figures::envelope_in(combination, &self.rows, &self.draws, |case| {
+            let units = self.units.at(case);
+            [units.latitude().factor, units.longitude().factor]
+        })
     }
 
     /// Returns the number of discrepancies without a disposition.

@@ -109,18 +109,16 @@ impl StoredCurve {
         self.at
     }
 
-    /// Reads some points of an axis: 0 latitude, 1 longitude, arcmin. `None` if they can't be read, which
-    /// the file of the curves remembers.
-    pub(super) fn read(&self, axis: usize, from: usize, points: usize) -> Option<Vec<f64>> {
-        if from + points > self.points {
-            return None;
-        }
-        let at = self.at + 8 * (axis * self.points + from) as u64;
+    /// Reads the points of both axes, latitude before longitude, arcmin. `None` if they can't be read, which the file
+    /// of the curves remembers.
+    pub(super) fn read(&self) -> Option<Vec<f64>> {
+        let mut bytes = vec![0; 16 * self.points];
         let mut inner = self.file.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (file, error) = &mut *inner;
-        let mut bytes = vec![0; 8 * points];
         let read = match file {
-            Some(file) => file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes)),
+            Some(file) => {
+                file.seek(SeekFrom::Start(self.at)).and_then(|_| file.read_exact(&mut bytes))
+            }
             None => Err(io::ErrorKind::UnexpectedEof.into()),
         };
         if let Err(wrong) = read {
@@ -129,6 +127,12 @@ impl StoredCurve {
         }
         let (values, _) = bytes.as_chunks::<8>();
         Some(values.iter().map(|value| f64::from_le_bytes(*value)).collect())
+    }
+
+    /// Remembers an error of a file that was made of curves, as one of reading them.
+    pub(super) fn fail(&self, wrong: io::Error) {
+        let mut inner = self.file.0.lock().unwrap_or_else(PoisonError::into_inner);
+        inner.1.get_or_insert(wrong);
     }
 }
 

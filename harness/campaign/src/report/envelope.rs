@@ -1,13 +1,10 @@
 //! Percentiles of the errors over time: in the units of `statistics.json`, and in those of the page.
 
+use super::columns::{Collected, CurveColumns};
 use super::curves::StoredCurve;
-use octant_statistics::envelope::envelope;
+use octant_statistics::sample::percentile_of_ranks;
 use serde::Serialize;
-
-/// Largest number of points of each curve that are in memory at a time.
-const BLOCK: usize = 64;
-/// Number of points of all curves together that are in memory at a time.
-const VALUES: usize = 1 << 22;
+use std::cmp::Ordering;
 
 /// Percentiles of the envelopes.
 pub const PERCENTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -28,9 +25,9 @@ pub struct EnvelopeFigures {
 impl EnvelopeFigures {
     /// Builds the envelope up to the end of the shortest navigation; `None` for navigations whose
     /// lengths differ so much that their grids differ.
-    pub(super) fn of(curves: &[&StoredCurve], beyond: usize) -> Option<Self> {
-        let curves: Vec<_> = curves.iter().map(|curve| (*curve, [1.0; 2])).collect();
-        let ShownEnvelope { hours, latitude, longitude } = ShownEnvelope::of(&curves, beyond)?;
+    pub(super) fn of(curves: impl Iterator<Item = StoredCurve>, beyond: usize) -> Option<Self> {
+        let curves = curves.map(|curve| (curve, [1.0; 2]));
+        let ShownEnvelope { hours, latitude, longitude } = ShownEnvelope::of(curves, beyond)?;
         let percentiles = PERCENTILES.to_vec();
         Some(Self { hours, percentiles, latitude_arcmin: latitude, longitude_arcmin: longitude })
     }
@@ -51,34 +48,29 @@ impl ShownEnvelope {
     /// Builds the envelope of errors, each with the number of units in a minute of arc of latitude and of
     /// longitude at its site. The errors are converted first: where the sites differ, percentiles of
     /// distances aren't the distances of percentiles.
-    pub(super) fn of(curves: &[(&StoredCurve, [f64; 2])], beyond: usize) -> Option<Self> {
-        let step_s = curves.first()?.0.step_s;
-        if curves.iter().any(|(curve, _)| curve.step_s != step_s) {
-            return None;
-        }
-        let points = curves.iter().map(|(curve, _)| curve.points).min()?;
-        // Some points of all curves at a time.
-        let block = (VALUES / curves.len().max(1)).clamp(1, BLOCK);
-        let of = |axis: usize| {
-            let mut found = vec![Vec::with_capacity(points); PERCENTILES.len()];
-            for from in (0..points).step_by(block) {
-                let count = block.min(points - from);
-                let one = |(curve, factors): &(&StoredCurve, [f64; 2])| {
-                    let mut values = curve.read(axis, from, count)?;
-                    values.iter_mut().for_each(|value| *value *= factors[axis]);
-                    Some(values)
-                };
-                let all = curves.iter().map(one).collect::<Option<Vec<Vec<f64>>>>()?;
-                let block = percentiles(&all, count, beyond)?;
-                found.iter_mut().zip(block).for_each(|(curve, more)| curve.extend(more));
+    pub(super) fn of(
+        curves: impl Iterator<Item = (StoredCurve, [f64; 2])>,
+        beyond: usize,
+    ) -> Option<Self> {
+        let mut first = None;
+        let kept = curves.inspect(|(curve, _)| _ = first.get_or_insert_with(|| curve.clone()));
+        let Collected::Columns(mut columns) = CurveColumns::of(kept) else { return None };
+        let mut values = Vec::with_capacity(columns.count);
+        let mut of = |axis: usize| {
+            let mut found = vec![Vec::with_capacity(columns.points); PERCENTILES.len()];
+            for point in 0..columns.points {
+                if let Err(error) = columns.read(axis, point, &mut values) {
+                    first.as_ref()?.fail(error);
+                    return None;
+                }
+                let at_point = percentiles(&mut values, beyond)?;
+                found.iter_mut().zip(at_point).for_each(|(curve, value)| curve.push(value));
             }
             Some(found)
         };
-        Some(Self {
-            hours: (0..points).map(|k| k as f64 * step_s / 3600.0).collect(),
-            latitude: of(0)?,
-            longitude: of(1)?,
-        })
+        let (latitude, longitude) = (of(0)?, of(1)?);
+        let hours = (0..columns.points).map(|k| k as f64 * columns.step_s / 3600.0).collect();
+        Some(Self { hours, latitude, longitude })
     }
 }
 
@@ -90,22 +82,81 @@ impl From<&EnvelopeFigures> for ShownEnvelope {
     }
 }
 
-/// Percentiles of columns at each point, a curve for each of [`PERCENTILES`].
+/// Percentiles of errors, [`PERCENTILES`] in their order; `None` if an error is no number.
 ///
 /// An error has a sign, and one beyond every number may have either: it counts as far below for
 /// the percentiles under the median and as far above for those over it. The median of such a
 /// sample isn't defined.
-fn percentiles(all: &[Vec<f64>], points: usize, beyond: usize) -> Option<Vec<Vec<f64>>> {
-    let with = |far: f64, percentiles: &[f64]| {
-        let far = vec![far; points];
-        let rest = std::iter::repeat_n(far.as_slice(), beyond);
-        let all: Vec<&[f64]> = all.iter().map(Vec::as_slice).chain(rest).collect();
-        envelope(&all, points, percentiles).ok()
+fn percentiles(values: &mut [f64], beyond: usize) -> Option<[f64; PERCENTILES.len()]> {
+    if values.iter().any(|value| value.is_nan()) {
+        return None;
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    let count = values.len() + beyond;
+    let below = |rank: usize| {
+        let rank = rank.checked_sub(beyond);
+        rank.and_then(|rank| values.get(rank)).copied().unwrap_or(f64::NEG_INFINITY)
     };
-    let curve = |p: f64| match p.total_cmp(&0.5) {
-        std::cmp::Ordering::Less => with(f64::NEG_INFINITY, &[p])?.curves.pop(),
-        std::cmp::Ordering::Equal if beyond > 0 => Some(vec![f64::NAN; points]),
-        _ => with(f64::INFINITY, &[p])?.curves.pop(),
+    let above = |rank: usize| values.get(rank).copied().unwrap_or(f64::INFINITY);
+    let of = |p: f64| match p.total_cmp(&0.5) {
+        Ordering::Less => percentile_of_ranks(count, p, below),
+        Ordering::Equal if beyond > 0 => Some(f64::NAN),
+        _ => percentile_of_ranks(count, p, above),
     };
-    PERCENTILES.into_iter().map(curve).collect()
+    let mut found = [f64::NAN; PERCENTILES.len()];
+    for (found, p) in found.iter_mut().zip(PERCENTILES) {
+        *found = of(p)?;
+    }
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curves::{Curve, CurveWriter};
+    use super::*;
+
+    /// More curves than a block has, of different lengths.
+    #[test]
+    fn percentiles_of_many_curves_are_those_of_each_time() {
+        let mut writer = CurveWriter::new();
+        let count = 2500;
+        let value = |case: usize, point: usize| ((case * 7919) % count) as f64 - point as f64;
+        let curves: Vec<StoredCurve> = (0..count)
+            .map(|case| {
+                let of = |factor: f64| -> Vec<f64> {
+                    (0..5 + case % 3).map(|point| factor * value(case, point)).collect()
+                };
+                let (latitude_arcmin, longitude_arcmin) = (of(1.0), of(-2.0));
+                writer.push(&Curve { step_s: 60.0, latitude_arcmin, longitude_arcmin }).unwrap()
+            })
+            .collect();
+        writer.flush().unwrap();
+        let found = EnvelopeFigures::of(curves.iter().cloned(), 0).unwrap();
+        assert_eq!(found.hours.len(), 5);
+        for (k, p) in PERCENTILES.into_iter().enumerate() {
+            for point in 0..5 {
+                let all: Vec<f64> = (0..count).map(|case| value(case, point)).collect();
+                let doubled: Vec<f64> = all.iter().map(|value| -2.0 * value).collect();
+                let of = octant_statistics::sample::percentile;
+                assert_eq!(Some(found.latitude_arcmin[k][point]), of(&all, p));
+                assert_eq!(Some(found.longitude_arcmin[k][point]), of(&doubled, p));
+            }
+        }
+        let shown = ShownEnvelope::of(curves.iter().cloned().zip([[3.0, 1.0]; 2500]), 0).unwrap();
+        assert_eq!(shown.latitude[2][1], 3.0 * found.latitude_arcmin[2][1]);
+        let other = Curve { step_s: 1.0, latitude_arcmin: vec![0.0], longitude_arcmin: vec![0.0] };
+        let other = writer.push(&other).unwrap();
+        writer.flush().unwrap();
+        assert_eq!(EnvelopeFigures::of(curves.into_iter().chain([other]), 0), None);
+    }
+
+    #[test]
+    fn an_error_beyond_every_number_is_on_both_sides() {
+        let mut values: Vec<f64> = (0..9).map(f64::from).collect();
+        let [least, low, middle, high, greatest] = percentiles(&mut values, 2).unwrap();
+        assert_eq!((least, greatest), (f64::NEG_INFINITY, f64::INFINITY));
+        assert!(middle.is_nan());
+        assert_eq!((low, high), (0.5, 7.5));
+        assert_eq!(percentiles(&mut [1.0, f64::NAN], 0), None);
+    }
 }

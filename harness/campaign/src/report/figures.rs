@@ -10,7 +10,7 @@
 
 use super::combination::{self, Combination, number_of, takes_part};
 use super::curves::StoredCurve;
-use super::envelope::EnvelopeFigures;
+use super::envelope::{EnvelopeFigures, ShownEnvelope};
 use super::rows::{CaseDrift, ReportRows};
 use crate::plan::{Case, Plan};
 use octant_statistics::convergence::{ConvergenceStep, convergence};
@@ -199,20 +199,19 @@ impl<'a> Sample<'a> {
 
     /// Reads the cases, each with its drift.
     fn cases(&self) -> impl Iterator<Item = (&'a Case, Option<CaseDrift>)> {
-        let rows = self.rows.at(self.places.iter().copied());
-        rows.map(|row| (row.case, row.outcome.and_then(|outcome| outcome.drift)))
+        self.rows.drifts_at(self.places.iter().copied())
     }
 
     /// Reads the drifts of the cases that navigated.
     fn drifts(&self) -> impl Iterator<Item = CaseDrift> {
         let there = self.places.iter().copied().filter(|place| self.rows.has_drift(*place));
-        self.rows.at(there).filter_map(|row| row.outcome?.drift)
+        self.rows.drifts_at(there).filter_map(|(_, drift)| drift)
     }
 
-    /// Returns the errors over time, each with the place of its case.
-    fn curves(&self) -> Vec<(usize, StoredCurve)> {
+    /// Reads the errors over time, each with the place of its case.
+    fn curves(&self) -> impl Iterator<Item = (usize, StoredCurve)> {
         let cases = self.places.iter().zip(self.cases());
-        cases.filter_map(|(place, (_, drift))| Some((*place, drift?.curve?))).collect()
+        cases.filter_map(|(place, (_, drift))| Some((*place, drift?.curve?)))
     }
 
     fn navigated(&self) -> usize {
@@ -253,11 +252,8 @@ impl CombinationFigures {
         let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
-        let envelope = || {
-            let curves = sample.curves();
-            let curves: Vec<&StoredCurve> = curves.iter().map(|(_, curve)| curve).collect();
-            EnvelopeFigures::of(&curves, sample.beyond())
-        };
+        let envelope =
+            || EnvelopeFigures::of(sample.curves().map(|(_, curve)| curve), sample.beyond());
         let is_number = |name: &String| {
             let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
             cases.filter_map(|case| case.factors.get(name)).all(|v| number_of(v).is_some())
@@ -286,15 +282,17 @@ impl CombinationFigures {
     }
 }
 
-/// Returns the errors over time on which the figures of a combination are based, each with the place of its
-/// case, and the number of draws that are beyond every number.
-pub(super) fn curves(
+/// Builds the envelope of a combination, in units of which each case, by its place, has so many in a minute of arc of
+/// latitude and of longitude.
+pub(super) fn envelope_in(
     combination: &Combination,
     rows: &ReportRows<'_>,
     draws: &[usize],
-) -> (Vec<(usize, StoredCurve)>, usize) {
+    factors: impl Fn(usize) -> [f64; 2],
+) -> Option<ShownEnvelope> {
     let sample = Sample::of_draws(rows, &combination.cases, draws);
-    (sample.curves(), sample.beyond())
+    let curves = sample.curves().map(|(place, curve)| (curve, factors(place)));
+    ShownEnvelope::of(curves, sample.beyond())
 }
 
 /// Collects the largest errors of attitude and velocity that every navigating case has.

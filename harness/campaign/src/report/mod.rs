@@ -6,6 +6,7 @@
 //! The crate of the pages writes all of it into the folder of the campaign.
 
 mod about;
+mod columns;
 pub mod combination;
 mod contents;
 mod curves;

@@ -55,15 +55,18 @@ pub struct CaseDrift {
     pub curve: Option<StoredCurve>,
 }
 
-impl RowOutcome {
-    pub(super) fn of(
-        result: CaseResult,
-        differs: bool,
-        curves: &mut CurveWriter,
-    ) -> io::Result<Self> {
+/// Result of a case, whose errors over time aren't stored yet.
+#[derive(Debug)]
+pub(super) struct ReadOutcome {
+    outcome: RowOutcome,
+    curve: Option<Curve>,
+}
+
+impl ReadOutcome {
+    pub(super) fn of(result: CaseResult, differs: bool) -> Self {
         let besides = besides(&result);
         let (verdict, error) = (result.verdict, result.error);
-        let mut outcome = Self {
+        let mut outcome = RowOutcome {
             verdict,
             besides,
             error,
@@ -75,7 +78,7 @@ impl RowOutcome {
             stream_hash: None,
             drift: None,
         };
-        let Some(summary) = result.summary else { return Ok(outcome) };
+        let Some(summary) = result.summary else { return Self { outcome, curve: None } };
         let Summary { reasons, requirements, faults, calibration, navigation, stream_hash, .. } =
             summary;
         outcome.reasons = reasons;
@@ -84,11 +87,21 @@ impl RowOutcome {
         outcome.unfired =
             faults.into_iter().filter(|fault| !fault.fired).map(|fault| fault.id).collect();
         outcome.stream_hash = Some(stream_hash);
-        let drift = |navigation: &NavigationScore| CaseDrift::of(navigation, curves);
-        outcome.drift = navigation.as_ref().map(drift).transpose()?;
-        Ok(outcome)
+        outcome.drift = navigation.as_ref().map(CaseDrift::of);
+        let curve = navigation.and_then(|navigation| Curve::of(&navigation.series_hours));
+        Self { outcome, curve }
     }
 
+    /// Stores the errors over time.
+    pub(super) fn keep(self, curves: &mut CurveWriter) -> io::Result<RowOutcome> {
+        let Self { mut outcome, curve } = self;
+        let stored = curve.map(|curve| curves.push(&curve)).transpose()?;
+        outcome.drift.iter_mut().for_each(|drift| drift.curve = stored.clone());
+        Ok(outcome)
+    }
+}
+
+impl RowOutcome {
     /// Returns the verdict of a requirement: an error without a summary, inconclusive if it wasn't
     /// checked.
     #[must_use]
@@ -103,13 +116,13 @@ impl RowOutcome {
 }
 
 impl CaseDrift {
-    fn of(navigation: &NavigationScore, curves: &mut CurveWriter) -> io::Result<Self> {
+    /// Extracts the drift without the errors over time.
+    fn of(navigation: &NavigationScore) -> Self {
         let radial = &navigation.radial_error_nmi;
         let marks = navigation.marks.iter().map(|(name, mark)| (name.clone(), mark.radial_nmi));
         // Latitude and longitude come first.
         let solution = navigation.errors().into_iter().skip(2);
-        let curve = Curve::of(&navigation.series_hours);
-        Ok(Self {
+        Self {
             solution: solution
                 .filter_map(|(name, unit, score)| Some((name, unit, score?.max)))
                 .collect(),
@@ -119,7 +132,7 @@ impl CaseDrift {
             rms_nmi: radial.rms,
             rate_nmi_per_h: radial.rate_per_h,
             marks_nmi: marks.collect(),
-            curve: curve.map(|curve| curves.push(&curve)).transpose()?,
-        })
+            curve: None,
+        }
     }
 }

@@ -86,15 +86,15 @@ fn bound(draws: DrawCounts, confidence: f64) -> Option<f64> {
 }
 
 /// Verdicts of the cases that check a requirement, by check and by draw.
+#[derive(Default)]
 struct Counted {
     counts: VerdictCounts,
-    /// Draw of each case and whether it passed, in the order of the plan.
-    rows: Vec<(usize, Option<bool>)>,
+    draws: DrawTally,
 }
 
 impl Counted {
     fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, ReportRow<'a>)>) -> Self {
-        let mut counted = Self { counts: VerdictCounts::default(), rows: Vec::new() };
+        let mut counted = Self::default();
         for (draw, row) in rows {
             if !checks(plan, &row.case.scenario, id) {
                 continue;
@@ -110,20 +110,18 @@ impl Counted {
             let passed = |outcome: &RowOutcome| {
                 outcome.check(id) == Verdict::Pass && outcome.besides == Verdict::Pass
             };
-            counted.rows.push((draw, row.outcome.as_ref().map(passed)));
+            counted.draws.add(draw, row.outcome.as_ref().map(passed));
         }
         counted
     }
 
     fn draws(&self) -> DrawCounts {
-        DrawCounts::of(self.rows.iter().copied())
+        self.draws.counts()
     }
 
     /// Returns whether each known draw passed, in the order in which they began.
     fn passed(&self) -> Vec<bool> {
-        let mut tally = DrawTally::default();
-        self.rows.iter().for_each(|(draw, passed)| tally.add(*draw, *passed));
-        tally.results().flatten().collect()
+        self.draws.results().flatten().collect()
     }
 }
 

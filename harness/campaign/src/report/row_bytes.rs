@@ -13,13 +13,7 @@ pub(super) type ErrorNames = Vec<(&'static str, &'static str)>;
 pub(super) fn encode(outcome: &RowOutcome, names: &mut ErrorNames, to: &mut Vec<u8>) {
     let RowOutcome { verdict, besides, error, reasons, checks, refused, unfired, .. } = outcome;
     let RowOutcome { differs, stream_hash, drift, .. } = outcome;
-    to.extend([place_of(*verdict), place_of(*besides), u8::from(*differs)]);
-    option(error.as_deref(), to, text);
-    list(reasons, to, |reason, to| text(reason, to));
-    list(checks, to, check);
-    option(refused.as_deref(), to, text);
-    list(unfired, to, |fault, to| text(fault, to));
-    option(stream_hash.as_deref(), to, text);
+    // The drift comes first: most figures need it alone.
     option(drift.as_ref(), to, |drift, to| {
         let CaseDrift { duration_h, final_nmi, max_nmi, rms_nmi, rate_nmi_per_h, .. } = drift;
         for value in [duration_h, final_nmi, max_nmi, rms_nmi, rate_nmi_per_h] {
@@ -45,6 +39,13 @@ pub(super) fn encode(outcome: &RowOutcome, names: &mut ErrorNames, to: &mut Vec<
             to.extend(curve.at().to_le_bytes());
         });
     });
+    to.extend([place_of(*verdict), place_of(*besides), u8::from(*differs)]);
+    option(error.as_deref(), to, text);
+    list(reasons, to, |reason, to| text(reason, to));
+    list(checks, to, check);
+    option(refused.as_deref(), to, text);
+    list(unfired, to, |fault, to| text(fault, to));
+    option(stream_hash.as_deref(), to, text);
 }
 
 fn place_of(verdict: Verdict) -> u8 {
@@ -96,6 +97,7 @@ pub(super) fn decode(
     curves: &Arc<CurveFile>,
 ) -> Option<RowOutcome> {
     let mut rest = Rest(bytes);
+    let drift = rest.option(|rest| rest.drift(names, curves))?;
     let (verdict, besides, differs) = (rest.verdict()?, rest.verdict()?, rest.byte()? != 0);
     let outcome = RowOutcome {
         verdict,
@@ -107,9 +109,18 @@ pub(super) fn decode(
         refused: rest.option(Rest::text)?,
         unfired: rest.list(Rest::text)?,
         stream_hash: rest.option(Rest::text)?,
-        drift: rest.option(|rest| rest.drift(names, curves))?,
+        drift,
     };
     rest.0.is_empty().then_some(outcome)
+}
+
+/// Reads the drift from the bytes of a row. The outer `None`: they are none.
+pub(super) fn decode_drift(
+    bytes: &[u8],
+    names: &ErrorNames,
+    curves: &Arc<CurveFile>,
+) -> Option<Option<CaseDrift>> {
+    Rest(bytes).option(|rest| rest.drift(names, curves))
 }
 
 /// Bytes that aren't read yet.

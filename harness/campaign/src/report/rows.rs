@@ -6,7 +6,9 @@ pub use super::outcome::{CaseDrift, RowOutcome};
 
 use super::curves::{CurveFile, CurveWriter};
 use super::error::ReportError;
-use super::row_bytes::{ErrorNames, decode, encode};
+use super::outcome::ReadOutcome;
+use super::row_bytes::{ErrorNames, decode, decode_drift, encode};
+use crate::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
 use crate::independence;
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
@@ -52,19 +54,6 @@ struct KnownRow {
     navigated: bool,
 }
 
-/// Hashes all results of a plan up to `end`, without keeping any.
-///
-/// # Errors
-/// If an existing result can't be read.
-pub fn hash(plan: &Plan, results: &CampaignResults, end: usize) -> Result<String, ReportError> {
-    let mut hasher = blake3::Hasher::new();
-    for case in plan.cases.iter().take(end) {
-        let hash = results.of_plan(plan, case)?.map_or_else(|| "-".to_owned(), |(_, hash)| hash);
-        hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-    }
-    Ok(hasher.finalize().to_hex().to_string())
-}
-
 /// Reads the rows of a plan up to `end`, and one hash of all results.
 ///
 /// # Errors
@@ -84,18 +73,22 @@ pub fn read<'a>(
         path: std::env::temp_dir(),
         source,
     };
-    for case in cases {
-        let read = results.of_plan(plan, case)?;
-        let Some((result, hash)) = read else {
+    let read = |place: usize| -> Result<Option<Option<(ReadOutcome, String)>>, ReportError> {
+        let Some(case) = cases.get(place) else { return Ok(None) };
+        let Some((result, hash)) = results.of_plan(plan, case)? else { return Ok(Some(None)) };
+        let differs = results.differing(&case.id)?.is_some();
+        Ok(Some(Some((ReadOutcome::of(result, differs), hash))))
+    };
+    read_in_order(cases.len(), RESULTS_AT_ONCE, read, |place, read| {
+        let Some(case) = cases.get(place) else { return Ok(()) };
+        let Some((outcome, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
-            rows.push(None, &mut bytes).map_err(wrong)?;
-            continue;
+            return rows.push(None, &mut bytes).map_err(wrong);
         };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-        let differs = results.differing(&case.id)?.is_some();
-        let outcome = RowOutcome::of(result, differs, &mut curves).map_err(wrong)?;
-        rows.push(Some(&outcome), &mut bytes).map_err(wrong)?;
-    }
+        let outcome = outcome.keep(&mut curves).map_err(wrong)?;
+        rows.push(Some(&outcome), &mut bytes).map_err(wrong)
+    })?;
     curves.flush().map_err(wrong)?;
     rows.flush(&mut bytes).map_err(wrong)?;
     Ok((rows, hasher.finalize().to_hex().to_string()))
@@ -202,18 +195,42 @@ impl<'a> ReportRows<'a> {
         places.into_iter().filter_map(move |place| self.row(place, &mut window))
     }
 
-    fn row(&self, place: usize, window: &mut RowWindow) -> Option<ReportRow<'a>> {
-        let case = self.cases.get(place)?;
-        let outcome = if self.has_run(place) { self.outcome(place, window) } else { None };
-        Some(ReportRow { case, outcome })
+    /// Reads the cases at these places, each with its drift, as [`ReportRows::at`] does.
+    pub(super) fn drifts_at<P: IntoIterator<Item = usize>>(
+        &self,
+        places: P,
+    ) -> impl Iterator<Item = (&'a Case, Option<CaseDrift>)> + use<'_, 'a, P> {
+        let mut window = RowWindow { start: 0, bytes: Vec::new() };
+        places.into_iter().filter_map(move |place| {
+            let case = self.cases.get(place)?;
+            let drift = self.known.get(place)?.navigated.then(|| {
+                self.read(place, &mut window, |bytes| {
+                    decode_drift(bytes, &self.names, &self.curves)
+                })
+            });
+            Some((case, drift.flatten().flatten()))
+        })
     }
 
-    fn outcome(&self, place: usize, window: &mut RowWindow) -> Option<RowOutcome> {
+    fn row(&self, place: usize, window: &mut RowWindow) -> Option<ReportRow<'a>> {
+        let case = self.cases.get(place)?;
+        let outcome = self
+            .has_run(place)
+            .then(|| self.read(place, window, |bytes| decode(bytes, &self.names, &self.curves)));
+        Some(ReportRow { case, outcome: outcome.flatten() })
+    }
+
+    /// Reads the bytes of a row; `None` where that fails, which [`ReportRows::error`] tells.
+    fn read<T>(
+        &self,
+        place: usize,
+        window: &mut RowWindow,
+        decode: impl FnOnce(&[u8]) -> Option<T>,
+    ) -> Option<T> {
         let end = *self.ends.get(place)?;
         let start = place.checked_sub(1).map_or(Some(0), |last| self.ends.get(last).copied())?;
         let decoded = self.bytes(start, end, window).and_then(|bytes| {
-            let outcome = decode(bytes, &self.names, &self.curves);
-            outcome.ok_or_else(|| io::Error::other("what was written is not what is read"))
+            decode(bytes).ok_or_else(|| io::Error::other("what was written is not what is read"))
         });
         let keep = |error| {
             let mut inner = self.file.lock().unwrap_or_else(PoisonError::into_inner);

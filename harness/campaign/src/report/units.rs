@@ -13,11 +13,19 @@ pub struct CampaignUnits {
     shown: DisplayUnits,
     /// Units that were chosen, in place of the scenarios'.
     chosen: Option<UnitChoice>,
-    /// Length of a minute of arc of latitude and of longitude in each case, m; or the reason why it isn't
-    /// known.
-    sites: Result<Vec<[f64; 2]>, String>,
+    /// Sites of the cases, or the reason why they aren't known.
+    sites: Result<CaseSites, String>,
     /// Quantities of which the scenarios have several units.
     several: Vec<&'static str>,
+}
+
+/// Sites of cases.
+#[derive(Clone, Debug, PartialEq)]
+struct CaseSites {
+    /// Length of a minute of arc of latitude and of longitude at each site, m.
+    arcmin_m: Vec<[f64; 2]>,
+    /// Site of each case, by its place among them.
+    places: Vec<u32>,
 }
 
 impl CampaignUnits {
@@ -46,8 +54,8 @@ impl CampaignUnits {
                     if agree("velocity", |a, b| a.velocity == b.velocity) {
                         shown.velocity = first.velocity;
                     }
-                    let length = |at: &u32| all.get(*at as usize).map(|units| units.arcmin_m);
-                    lengths = Ok(places.iter().filter_map(length).collect());
+                    let arcmin_m = all.iter().map(|units| units.arcmin_m).collect();
+                    lengths = Ok(CaseSites { arcmin_m, places });
                 }
             }
         }
@@ -87,7 +95,10 @@ impl CampaignUnits {
     /// Units of errors at the site of a case, by its place in the plan.
     #[must_use]
     pub fn at(&self, case: usize) -> DisplayUnits {
-        let length = self.sites.as_ref().ok().and_then(|sites| sites.get(case));
+        let length = self.sites.as_ref().ok().and_then(|sites| {
+            let place = sites.places.get(case)?;
+            sites.arcmin_m.get(*place as usize)
+        });
         DisplayUnits { arcmin_m: length.copied().unwrap_or(self.shown.arcmin_m), ..self.shown }
     }
 
@@ -137,7 +148,7 @@ impl CampaignUnits {
 mod tests {
     use super::*;
 
-    fn units(sites: Result<Vec<[f64; 2]>, String>) -> CampaignUnits {
+    fn units(sites: Result<CaseSites, String>) -> CampaignUnits {
         CampaignUnits {
             shown: DisplayUnits::default(),
             chosen: None,
@@ -155,7 +166,8 @@ mod tests {
         assert!(unknown.are_default(), "nothing is chosen by halves");
         unknown.choose(choice("deg")).unwrap();
         assert_eq!(unknown.shown().attitude().name, "deg");
-        let mut known = units(Ok(vec![[1850.0, 1850.0], [1850.0, 925.0]]));
+        let arcmin_m = vec![[1850.0, 1850.0], [1850.0, 925.0]];
+        let mut known = units(Ok(CaseSites { arcmin_m, places: vec![0, 1] }));
         assert!(known.at_all([0, 1]).is_some(), "minutes of arc are the same everywhere");
         assert!(known.remark().unwrap().contains("position and velocity"));
         known.choose(choice("km")).unwrap();

@@ -10,13 +10,17 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub(super) enum Stored {
     /// A file of its own.
-    File {
-        path: PathBuf,
-        /// True if its name says that it differs from the first.
-        is_second: bool,
-    },
+    File(Box<StoredFile>),
     /// A record of a part.
     Record(StoredRecord),
+}
+
+/// A result in a file of its own.
+#[derive(Clone, Debug)]
+pub(super) struct StoredFile {
+    pub(super) path: PathBuf,
+    /// True if its name says that it differs from the first.
+    pub(super) is_second: bool,
 }
 
 /// A record with a result, by its place.
@@ -28,15 +32,15 @@ pub(super) struct StoredRecord {
     pub(super) has_facts: bool,
 }
 
-/// Id of a case as a record has it: that of a planned case, or any other text.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Id of a case as a record has it: that of a planned case, or any other text. The ids of planned cases come first.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum StoredId {
     Case(CaseId),
     Other(Box<str>),
 }
 
-impl From<String> for StoredId {
-    fn from(text: String) -> Self {
+impl From<&str> for StoredId {
+    fn from(text: &str) -> Self {
         text.parse().map_or_else(|_| Self::Other(text.into()), Self::Case)
     }
 }
@@ -56,19 +60,15 @@ impl Stored {
     /// Order in which the results of a case count: files first, then records by their time.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         match (self, other) {
-            (Self::File { .. }, Self::File { .. }) => Ordering::Equal,
-            (Self::File { .. }, Self::Record(_)) => Ordering::Less,
-            (Self::Record(_), Self::File { .. }) => Ordering::Greater,
+            (Self::File(_), Self::File(_)) => Ordering::Equal,
+            (Self::File(_), Self::Record(_)) => Ordering::Less,
+            (Self::Record(_), Self::File(_)) => Ordering::Greater,
             (Self::Record(one), Self::Record(another)) => one.cmp(another),
         }
     }
 
     pub(super) fn is_beside(&self) -> bool {
-        matches!(self, Self::File { is_second: true, .. })
-    }
-
-    pub(super) fn has_facts(&self) -> bool {
-        matches!(self, Self::Record(StoredRecord { has_facts: true, .. }))
+        matches!(self, Self::File(file) if file.is_second)
     }
 }
 

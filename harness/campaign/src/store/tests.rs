@@ -279,3 +279,20 @@ fn a_result_with_no_number_is_refused() {
         assert!(told.contains(&format!("case {case} at byte")), "{told}");
     }
 }
+
+/// A result that was found consistent is not checked again, unless it is another one by then.
+#[test]
+fn a_result_that_was_consistent_is_read_again_and_another_one_in_its_place_is_checked() {
+    let [one, other] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let text = broken("a1", "gone");
+    let part = put(&mut PartWriter::new(one.path(), "1-of-1"), "a1", &text);
+    let changed = text.replace(r#""verdict":"error""#, r#""verdict":"pass""#);
+    assert_ne!(text, changed);
+    let contradicts = put(&mut PartWriter::new(other.path(), "1-of-1"), "a1", &changed);
+    let results = CampaignResults::open(one.path()).unwrap();
+    let first = results.result("a1").unwrap().unwrap();
+    assert_eq!(results.result("a1").unwrap().unwrap(), first);
+    std::fs::write(part.path(), std::fs::read(contradicts.path()).unwrap()).unwrap();
+    let found = results.result("a1");
+    assert!(matches!(&found, Err(ResultError::Contradiction { .. })), "{found:?}");
+}

@@ -166,8 +166,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
         Command::Run(arguments) => run::command(arguments),
         Command::Status { folder, json } => {
-            let status =
-                status::of(&read(folder)?, folder, Shard::WHOLE).map_err(Failure::bench)?;
+            let status = status::of_folder(folder, || read(folder))?.map_err(Failure::bench)?;
             if *json {
                 print_json(&status)?
             } else {
