@@ -108,6 +108,9 @@ struct Read {
     error: Option<(usize, String)>,
 }
 
+/// Line of a case that is hashed, and the limits of its result that differ.
+type OfCase = (String, Vec<String>);
+
 /// Reads each result once: hashes those of the cases up to `end`, and compares the limits in all of them with those of
 /// their scenarios, if the folder has these. Limits of the requirements' file are in the plan, and are compared
 /// whenever a result is read.
@@ -115,7 +118,7 @@ fn read(plan: &Plan, folder: &Path, stored: &CampaignResults, end: usize) -> Rea
     let of_scenarios = ScenarioLimits::of(plan, folder);
     let mut hasher = blake3::Hasher::new();
     let mut limits = Vec::new();
-    let of_case = |place: usize| -> Result<Option<(String, Vec<String>)>, (usize, String)> {
+    let of_case = |place: usize| -> Result<Option<OfCase>, (usize, String)> {
         let Some(case) = plan.cases.get(place) else { return Ok(None) };
         let expected = of_scenarios.limits(case);
         if place >= end && expected.is_none() {

@@ -61,9 +61,7 @@ pub fn write(
         _ => {}
     }
     let program = program_sha256();
-    let [first, last] = report
-        .run_between
-        .map(|time| time.map(|time| humantime::format_rfc3339_seconds(time).to_string()));
+    let [first, last] = report.run_between.map(|time| time.map(octant_base::utc::seconds));
     let facts = RunFacts {
         command_line: report.again().pop().unwrap_or_default(),
         campaign: Some(CampaignFacts {
