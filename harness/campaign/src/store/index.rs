@@ -67,7 +67,7 @@ impl CampaignResults {
         let mut forgotten: BTreeMap<Box<str>, BTreeSet<Checksum>> = BTreeMap::new();
         for (part, path) in (0..).zip(paths) {
             let file = File::open(&path).map_err(PartError::system("read", &path))?;
-            scan(&path, &file, |Found { head, offset }| {
+            scan(&path, &file, |Found { head, offset, .. }| {
                 if head.kind == RecordKind::Forgotten {
                     let case = head.case.into_boxed_str();
                     forgotten.entry(case).or_default().insert(first(&head.blake3));
