@@ -82,7 +82,7 @@ END
 }
 
 # image TREE GLIBC FOLDER NAME: makes the OCI image FOLDER/NAME.oci.tar, tag "octant:VERSION", of an unpacked archive and of
-# Debian's C library in a folder, without an engine. Nothing else is in it.
+# Debian's C library and certificates in a folder, without an engine. Nothing else is in it.
 image() {
   local tree=$1 glibc=$2 folder=$3 name=$4 root layout time version library
   version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
@@ -98,6 +98,10 @@ image() {
   ln -s /lib/x86_64-linux-gnu/ld-linux-x86-64.so.2 "$root/root/lib64/"
   mkdir -p "$root/root/usr/share/doc/libc6"
   cp "$glibc/usr/share/doc/libc6/copyright" "$root/root/usr/share/doc/libc6/"
+  # Certificates of services on object storage, where libraries look for them.
+  mkdir -p "$root/root/etc/ssl/certs" "$root/root/usr/share/doc/ca-certificates"
+  cat "$glibc"/usr/share/ca-certificates/mozilla/*.crt >"$root/root/etc/ssl/certs/ca-certificates.crt"
+  cp "$glibc/usr/share/doc/ca-certificates/copyright" "$root/root/usr/share/doc/ca-certificates/"
   printf 'root:x:0:0:root:/:/bin/false\noctant:x:1000:1000:octant:/work:/bin/false\n' >"$root/root/etc/passwd"
   printf 'root:x:0:\noctant:x:1000:\n' >"$root/root/etc/group"
   # The user of the image writes there, whoever that is.

@@ -117,6 +117,13 @@ print(*process["args"])' "$folder/bundle/config.json")
   }
   started --version
   same "image" "$(hashes_of "$root/work/run" started run /usr/share/octant/scenarios/quick.toml "${short[@]}" --out /work/run)"
+  # Without certificates it would not get as far as the connection that is refused.
+  if AWS_ENDPOINT_URL=https://127.0.0.1:9 AWS_ACCESS_KEY_ID=none AWS_SECRET_ACCESS_KEY=none OCTANT_STORAGE_RETRY_S=0 \
+    started campaign status s3://bucket/none 2>"$work/refused" || ! grep -q 'failed to read s3://bucket/none' "$work/refused"; then
+    cat "$work/refused" >&2
+    echo "FAIL the image has no certificates" >&2
+    return 1
+  fi
   started fmu build --out /work/fmus >/dev/null
   in_its_own_process started fmu run /work/fmus/plant_fmi3.fmu --stop 1
 }

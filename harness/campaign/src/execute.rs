@@ -61,7 +61,7 @@ pub fn execute(
             .iter()
             .enumerate()
             .filter(|(index, _)| options.shard.has(*index) && options.selection.picks(*index));
-        let mut writer = PartWriter::new(options.folder, &stem(options.shard));
+        let mut writer = PartWriter::new(options.folder, &options.shard.stem());
         forget_errors(&results, &mut writer, mine.map(|(_, case)| case.id.as_str()))
             .map_err(StatusError)?;
         results = open(options.folder)?;
@@ -81,7 +81,7 @@ pub fn execute(
         plan,
         folder: options.folder,
         program: options.program,
-        stem: &stem(options.shard),
+        stem: &options.shard.stem(),
         cancel: options.cancel,
     };
     // A case that is run again is run as it is alone.
@@ -126,11 +126,6 @@ pub fn execute(
 
 fn open(folder: &Path) -> Result<CampaignResults, ExecuteError> {
     CampaignResults::open(folder).map_err(|error| StatusError(error).into())
-}
-
-/// Beginning of the names of a shard's part files.
-fn stem(shard: Shard) -> String {
-    format!("{}-of-{}", shard.number, shard.of)
 }
 
 /// Removes incomplete results that killed processes of older versions left.

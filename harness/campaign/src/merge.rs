@@ -19,8 +19,7 @@ use std::sync::Arc;
 /// Returns the file of a shard's table in the folder of its campaign.
 #[must_use]
 pub fn part(folder: &Path, shard: Shard, table: &str) -> PathBuf {
-    let name = format!("{}-of-{}.{table}.parquet", shard.number, shard.of);
-    folder.join("parts").join(name)
+    folder.join("parts").join(format!("{}.{table}.parquet", shard.stem()))
 }
 
 /// Returns the file of a merged table in the folder of its campaign.

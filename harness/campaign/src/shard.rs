@@ -69,6 +69,12 @@ impl Shard {
         }
     }
 
+    /// Returns the beginning of the names of its part files.
+    #[must_use]
+    pub fn stem(self) -> String {
+        format!("{}-of-{}", self.number, self.of)
+    }
+
     /// Parses `3/16`.
     ///
     /// # Errors

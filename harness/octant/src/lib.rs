@@ -28,6 +28,7 @@ mod minimise;
 pub mod new;
 mod nightly;
 mod observe;
+mod place;
 mod progress;
 pub mod progress_bar;
 mod reexecute;

@@ -3,6 +3,7 @@
 
 use super::reexecute::{Count, Reexecuted};
 use crate::failure::Failure;
+use crate::place::{CampaignPlace, Needs};
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::number::counted;
@@ -20,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder of a run or of a campaign.
+    /// Folder of a run or of a campaign; or the address of a campaign on object storage, s3://BUCKET/PREFIX.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Public key that must have signed the manifest: a minisign file, or the key itself. Without it,
@@ -147,7 +148,8 @@ struct Found {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let folder = crate::run_folder::folder_of(&arguments.folder);
+    let place = CampaignPlace::of(&arguments.folder, Needs::All)?;
+    let folder = crate::run_folder::folder_of(place.folder());
     let mut differences = Vec::new();
     let path = folder.join(manifest::FILE_NAME);
     let mut signed_by = None;
@@ -178,7 +180,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let named = manifest.signature.as_deref().unwrap_or("none");
         differences.push(format!("the manifest names another key: {named}"));
     }
-    let second = second(arguments, &manifest, &mut differences)?;
+    let second = second(arguments, folder, &manifest, &mut differences)?;
     // A folder with a FIFO in it is reported, and its contents are not opened.
     let opened = !found.iter().any(|difference| matches!(difference, FolderDifference::NoFile(..)));
     let inside = match &manifest.campaign {
@@ -207,7 +209,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         crate::terminal::write(out, format!("{statement:#}\n"))?;
     }
     let found = Found {
-        folder: folder.display().to_string(),
+        folder: place.shown(folder),
         whole,
         files: manifest.files.len(),
         differences,
@@ -242,10 +244,10 @@ struct Second {
 /// Checks the second signature if a key is given, or if it belongs to nothing.
 fn second(
     arguments: &Arguments,
+    folder: &Path,
     manifest: &Manifest,
     differences: &mut Vec<String>,
 ) -> Result<Second, Failure> {
-    let folder = crate::run_folder::folder_of(&arguments.folder);
     let there = std::fs::symlink_metadata(folder.join(signature::SECOND)).is_ok();
     // A signature with a given key is reported by the result of its check.
     let ignored = there && arguments.second_key.is_none();

@@ -141,3 +141,23 @@ fn folders_that_a_scheduler_does_not_find_are_refused() {
     let job = text(&emitted(&bench, &["k8s", &absolute, "--shards", "2"]));
     assert!(job.contains("completions: 2\n") && job.contains(&absolute), "{job}");
 }
+
+#[test]
+fn a_job_of_kubernetes_tells_a_lost_pod_from_a_verdict() {
+    let bench = planned("out");
+    let folder = bench.at("out").display().to_string();
+    let job = text(&emitted(&bench, &["k8s", &folder, "--shards", "8", "--claim", "data-1.site"]));
+    for expected in [
+        "claimName: \"data-1.site\"\n",
+        "\"--any-verdict\"]\n",
+        "backoffLimitPerIndex: 5\n",
+        "- action: Ignore\n        onPodConditions:\n          - type: DisruptionTarget\n",
+        "values: [2]\n",
+    ] {
+        assert!(job.contains(expected), "{expected}: {job}");
+    }
+    for name in ["Data", "data-", "a..b", "a b", ""] {
+        let said = refused(&emitted(&bench, &["k8s", &folder, "--shards", "8", "--claim", name]));
+        assert!(said.contains(&format!("the name {name:?}: expected lower-case")), "{said}");
+    }
+}

@@ -13,6 +13,7 @@ mod campaign_alike;
 mod campaign_bundle;
 #[cfg(unix)]
 mod campaign_emit;
+mod campaign_objects;
 mod campaign_report;
 mod campaign_scale;
 mod campaign_selection;
@@ -30,6 +31,8 @@ mod dashboard;
 mod dashboard_small;
 mod design;
 mod diff;
+mod diff_fields;
+mod diff_settings;
 mod document_links;
 mod ensemble_against;
 mod equipment;

@@ -2,52 +2,169 @@
 
 use super::{EmitError, SchedulerJob};
 
-/// Renders a job for `kubectl apply`: indexed, one completion per part, the folder on a volume
-/// shared by all pods.
+/// Place from which every pod has the campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KubernetesVolume<'a> {
+    /// A volume that all pods see, by the name of its claim.
+    Claim(&'a str),
+    /// Object storage: the folder of the job is an address.
+    Objects {
+        /// Secret with the variables of the environment that give access.
+        secret: Option<&'a str>,
+    },
+}
+
+/// Renders a job for `kubectl apply`: indexed, one completion per part, whose folder is on a volume that all pods
+/// see, or on object storage.
+///
+/// A part is done when each of its cases has a result, whatever the verdicts. A pod that is lost is replaced, and
+/// goes on where its predecessor was interrupted: after an eviction any number of times, otherwise up to five times.
+/// Bad input ends the job, because no repetition would help.
 ///
 /// # Errors
-/// If the folder is relative.
-pub fn kubernetes(job: &SchedulerJob, image: &str, claim: &str) -> Result<String, EmitError> {
+/// If the folder on a volume is relative, or a name isn't one of Kubernetes.
+pub fn kubernetes(
+    job: &SchedulerJob,
+    image: &str,
+    volume: KubernetesVolume<'_>,
+) -> Result<String, EmitError> {
     let text = |text: &str| serde_json::Value::from(text).to_string();
     let SchedulerJob { shards, jobs, cases, title, name, folder, memory_mib } = job;
-    if !folder.starts_with('/') {
-        return Err(EmitError::Relative { found: folder.clone() });
-    }
+    let volume = match volume {
+        KubernetesVolume::Claim(_) if !folder.starts_with('/') => {
+            return Err(EmitError::Relative { found: folder.clone() });
+        }
+        KubernetesVolume::Claim(claim) => {
+            check(claim)?;
+            format!(
+                r#"
+          volumeMounts:
+            - name: campaign
+              mountPath: {folder}
+      volumes:
+        - name: campaign
+          persistentVolumeClaim:
+            claimName: {claim}"#,
+                folder = text(folder),
+                claim = text(claim)
+            )
+        }
+        KubernetesVolume::Objects { secret: None } => String::new(),
+        KubernetesVolume::Objects { secret: Some(secret) } => {
+            check(secret)?;
+            let secret = text(secret);
+            format!(
+                r#"
+          # AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY and others.
+          envFrom:
+            - secretRef:
+                name: {secret}"#
+            )
+        }
+    };
     Ok(format!(
-        "# {cases} cases of {title} in {shards} parts. After the last: octant campaign merge\n\
-         apiVersion: batch/v1\n\
-         kind: Job\n\
-         metadata:\n  \
-           name: {name}\n\
-         spec:\n  \
-           completionMode: Indexed\n  \
-           completions: {shards}\n  \
-           parallelism: {shards}\n  \
-           # A part that is evicted goes on where it was interrupted.\n  \
-           backoffLimitPerIndex: 5\n  \
-           template:\n    \
-             spec:\n      \
-               restartPolicy: Never\n      \
-               containers:\n        \
-                 - name: octant\n          \
-                   image: {}\n          \
-                   command: [\"octant\", \"campaign\", \"run\", {}, \"--jobs\", \"{jobs}\"]\n          \
-                   env:\n            \
-                     - name: OCTANT_SHARDS\n              \
-                       value: \"{shards}\"\n          \
-                   resources:\n            \
-                     requests: {{ cpu: \"{jobs}\", memory: {memory_mib}Mi }}\n            \
-                     limits: {{ memory: {memory_mib}Mi }}\n          \
-                   volumeMounts:\n            \
-                     - name: campaign\n              \
-                       mountPath: {}\n      \
-               volumes:\n        \
-                 - name: campaign\n          \
-                   persistentVolumeClaim:\n            \
-                     claimName: {}\n",
-        text(image),
-        text(folder),
-        text(folder),
-        text(claim),
+        r#"# {cases} cases of {title} in {shards} parts. After the last: octant campaign merge
+apiVersion: batch/v1
+kind: Job
+metadata:
+  name: {name}
+spec:
+  completionMode: Indexed
+  completions: {shards}
+  parallelism: {shards}
+  # A part that is lost goes on where it was interrupted.
+  backoffLimitPerIndex: 5
+  podFailurePolicy:
+    rules:
+      # Evictions aren't counted.
+      - action: Ignore
+        onPodConditions:
+          - type: DisruptionTarget
+            status: "True"
+      # Bad input: no part can run.
+      - action: FailJob
+        onExitCodes:
+          containerName: octant
+          operator: In
+          values: [2]
+  template:
+    spec:
+      restartPolicy: Never
+      # Time in which results are uploaded.
+      terminationGracePeriodSeconds: 120
+      containers:
+        - name: octant
+          image: {image}
+          command: ["octant", "campaign", "run", {folder}, "--jobs", "{jobs}", "--any-verdict"]
+          env:
+            - name: OCTANT_SHARDS
+              value: "{shards}"
+          resources:
+            requests: {{ cpu: "{jobs}", memory: {memory_mib}Mi }}
+            limits: {{ memory: {memory_mib}Mi }}{volume}
+"#,
+        image = text(image),
+        folder = text(folder),
     ))
+}
+
+/// Checks a name of Kubernetes: a DNS subdomain.
+fn check(name: &str) -> Result<(), EmitError> {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
+    let fits = |part: &str| {
+        part.starts_with(plain)
+            && part.ends_with(plain)
+            && part.chars().all(|c| plain(c) || c == '-')
+    };
+    if name.len() <= 253 && name.split('.').all(fits) {
+        return Ok(());
+    }
+    Err(EmitError::KubernetesName { found: name.to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    fn job(folder: &str) -> SchedulerJob {
+        SchedulerJob {
+            title: "two words".to_owned(),
+            cases: 6,
+            name: "octant-0123".to_owned(),
+            folder: folder.to_owned(),
+            shards: 3,
+            jobs: 2,
+            memory_mib: 768,
+        }
+    }
+
+    #[test]
+    fn pods_have_the_campaign_from_object_storage_or_from_a_volume() {
+        let objects = |secret| KubernetesVolume::Objects { secret };
+        let stored = job("s3://bucket/two words");
+        let with = kubernetes(&stored, "registry/octant:1", objects(Some("storage"))).unwrap();
+        for expected in [
+            "# 6 cases of two words in 3 parts.",
+            "command: [\"octant\", \"campaign\", \"run\", \"s3://bucket/two words\", \"--jobs\", \"2\", \"--any-verdict\"]",
+            "            - secretRef:\n                name: \"storage\"\n",
+            "limits: { memory: 768Mi }",
+        ] {
+            assert!(with.contains(expected), "{expected}: {with}");
+        }
+        assert!(!with.contains("volume"), "{with}");
+        let without = kubernetes(&stored, "i", objects(None)).unwrap();
+        assert!(
+            !without.contains("envFrom") && without.ends_with("memory: 768Mi }\n"),
+            "{without}"
+        );
+        let refused = kubernetes(&stored, "i", objects(Some("a_b"))).unwrap_err();
+        assert_eq!(refused, EmitError::KubernetesName { found: "a_b".to_owned() });
+        let volume = KubernetesVolume::Claim("data");
+        assert!(kubernetes(&job("data/cert"), "i", volume).is_err());
+        let claimed = kubernetes(&job("/data/cert"), "i", volume).unwrap();
+        assert!(claimed.contains("mountPath: \"/data/cert\"\n"), "{claimed}");
+        assert!(claimed.ends_with("claimName: \"data\"\n"), "{claimed}");
+    }
 }

@@ -7,7 +7,7 @@ mod snakemake;
 use super::plan::{Plan, short};
 use std::path::Path;
 
-pub use kubernetes::kubernetes;
+pub use kubernetes::{KubernetesVolume, kubernetes};
 pub use slurm::slurm;
 pub use snakemake::snakemake;
 
@@ -46,6 +46,14 @@ pub enum EmitError {
         "the folder {found:?}: expected a name without braces, which are wildcards of Snakemake"
     )]
     Braces {
+        /// The name.
+        found: String,
+    },
+    /// The name of a claim or of a secret isn't one of Kubernetes.
+    #[error(
+        "the name {found:?}: expected lower-case letters, digits, - and . as Kubernetes has them in names"
+    )]
+    KubernetesName {
         /// The name.
         found: String,
     },

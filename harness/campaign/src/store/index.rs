@@ -54,7 +54,7 @@ impl ScannedPart {
     fn of(path: &Path, part: u32, stays_open: bool) -> Result<Self, ResultError> {
         let (mut stored, mut forgotten) = (Vec::new(), Vec::new());
         let file = File::open(path).map_err(PartError::system("read", path))?;
-        scan(path, &file, |Found { head, offset }| {
+        scan(path, &file, |Found { head, offset, .. }| {
             if head.kind == RecordKind::Forgotten {
                 forgotten.push((head.case.into_boxed_str(), first(&head.blake3)));
                 return;

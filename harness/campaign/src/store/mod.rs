@@ -11,6 +11,7 @@ mod frame;
 mod index;
 mod keep;
 mod scan;
+pub mod segment;
 mod stored;
 pub mod writer;
 

@@ -25,6 +25,10 @@ pub(super) struct Found {
     pub(super) head: RecordHead,
     /// Byte at which it begins.
     pub(super) offset: u64,
+    /// Byte after it.
+    pub(super) next: u64,
+    /// Checksum at its end, which names it.
+    pub(super) own: Checksum,
 }
 
 /// Records of a file, up to the byte from which the end is torn.
@@ -41,6 +45,16 @@ pub(super) struct Scanned {
 pub(super) fn scan(
     path: &Path,
     file: &File,
+    each: impl FnMut(Found),
+) -> Result<Scanned, PartError> {
+    scan_from(path, file, FILE_HEAD as u64, each)
+}
+
+/// Reads the heads of the records from a byte on at which one begins, as [`scan`] does.
+pub(super) fn scan_from(
+    path: &Path,
+    file: &File,
+    from: u64,
     mut each: impl FnMut(Found),
 ) -> Result<Scanned, PartError> {
     let system = |source| PartError::System { action: "read", path: path.to_owned(), source };
@@ -56,12 +70,12 @@ pub(super) fn scan(
         }
         FileHead::Foreign => return Err(PartError::Foreign { path: path.to_owned() }),
     }
-    let mut end = FILE_HEAD as u64;
+    let mut end = from;
     while end < bytes {
         match reader.record(end).map_err(system)? {
-            At::Record(found, next) => {
+            At::Record(found) => {
+                end = found.next;
                 each(found);
-                end = next;
             }
             At::Torn => break,
             At::Damaged { found, expected } => {
@@ -135,13 +149,9 @@ fn no_head(path: &Path, offset: u64) -> PartError {
 }
 
 enum At {
-    /// A record, and the byte after it.
-    Record(Found, u64),
+    Record(Found),
     Torn,
-    Damaged {
-        found: String,
-        expected: String,
-    },
+    Damaged { found: String, expected: String },
 }
 
 /// Writes bytes as hexadecimal digits.
@@ -266,7 +276,7 @@ impl Source<'_> {
                 },
             });
         }
-        Ok(At::Record(Found { head, offset }, next))
+        Ok(At::Record(Found { head, offset, next, own }))
     }
 
     fn is_whole(&mut self, head: &RecordHead, body: u64, own: Checksum) -> io::Result<bool> {

@@ -149,13 +149,19 @@ fn figures(report: &CampaignReport<'_>) -> Markup {
 }
 
 fn provenance(report: &CampaignReport<'_>) -> Markup {
+    let file = &report.plan.campaign;
+    // The folder of a bundle may be anywhere, and be gone after this.
+    let campaign = match (&report.plan.bundled, file.file_name()) {
+        (Some(_), Some(name)) => format!("{}, from a bundle", name.to_string_lossy()),
+        _ => file.display().to_string(),
+    };
     html! {
         (heading("provenance"))
         table {
             tbody {
                 tr { td { "octant" } td.mono { (env!("CARGO_PKG_VERSION")) } }
                 tr { td { "plan" } td.mono { (report.plan.id) } }
-                tr { td { "campaign" } td.mono { (report.plan.campaign.display()) } }
+                tr { td { "campaign" } td.mono { (campaign) } }
                 @for scenario in &report.plan.scenarios {
                     tr { td { "scenario " (scenario.id) ", BLAKE3" } td.mono { (scenario.blake3) } }
                 }

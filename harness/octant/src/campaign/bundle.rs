@@ -2,6 +2,7 @@
 
 use super::planned::read;
 use crate::failure::Failure;
+use crate::place::{self, Needs, StoredCampaign};
 use crate::terminal::{note, print};
 use octant_base::number::counted;
 use octant_campaign::bundle::contents::BundleContents;
@@ -24,15 +25,25 @@ impl From<BundleError> for Failure {
     }
 }
 
-/// Writes the bundle of a campaign.
+/// Writes the bundle of a campaign, as a file or to object storage.
 pub(super) fn bundle(folder: &Path, out: &Path) -> Result<Verdict, Failure> {
-    let contents = write(read(folder)?, out)?;
+    let plan = read(folder)?;
+    let contents = match place::address(out) {
+        Some(text) => place::push(plan, text)?,
+        None => write(plan, out)?,
+    };
     outside(&contents);
     told(&contents, out)
 }
 
-/// Makes the folder of a campaign from its bundle.
+/// Makes the folder of a campaign from its bundle, or from all of its objects.
 pub(super) fn unbundle(bundle: &Path, folder: &Path) -> Result<Verdict, Failure> {
+    if let Some(text) = place::address(bundle) {
+        StoredCampaign::fetch(text, Some(folder), Needs::All)?;
+        check_origin(&read(folder)?, folder)?;
+        print(&format!("{}\n", folder.display()))?;
+        return Ok(Verdict::Pass);
+    }
     let contents = unpack(bundle, folder)?;
     outside(&contents);
     if let Some(told) = contents.by_another() {

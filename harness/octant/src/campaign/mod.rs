@@ -2,22 +2,22 @@
 
 mod bundle;
 mod countersign;
+mod emit;
+mod merge;
 mod planned;
 mod report;
 pub(super) mod run;
 
 use crate::failure::Failure;
+use crate::place::{CampaignPlace, Needs};
 use crate::terminal::{print, print_json, write};
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use octant_base::number::counted;
-use octant_campaign::emit::SchedulerJob;
 use octant_campaign::execute::{ExecuteError, Shard};
-use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
+use octant_campaign::status;
 use octant_campaign::store::CampaignResults;
-use octant_campaign::table::TableError;
 use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
-use octant_campaign::{emit, status};
 use octant_requirements::Verdict;
 use octant_requirements::trace::{TraceRow, UnknownRequirement};
 use planned::read;
@@ -47,7 +47,7 @@ enum Command {
     Run(run::Arguments),
     /// Print the progress of a campaign, and its failures.
     Status {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// Print one JSON object.
@@ -56,7 +56,7 @@ enum Command {
     },
     /// Merge the parts of all shards into cases.parquet, checks.parquet and drift.parquet.
     Merge {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// Further folders with parts of the same plan, from other hosts.
@@ -65,7 +65,7 @@ enum Command {
     },
     /// Trace the requirements of the campaign and of its scenarios to cases and results, and back.
     Trace {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// New folder for a StrictDoc project.
@@ -79,13 +79,13 @@ enum Command {
     Report(report::Arguments),
     /// Sign the dispositions of a reported campaign as the second person, with the key of OCTANT_SIGNING_KEY.
     Countersign {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
     /// Run one case again, with all the evidence of a run.
     Case {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// Id of the case.
@@ -97,16 +97,16 @@ enum Command {
     },
     /// Write the plan of a campaign, with every file that its cases need, as one file.
     Bundle {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
-        /// The bundle, a new file.
+        /// The bundle, a new file; or an address on object storage for the campaign, s3://BUCKET/PREFIX.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
     /// Make the folder of a campaign from a bundle, and check every file.
     Unbundle {
-        /// The bundle.
+        /// The bundle; or the address of a campaign on object storage, whose results, tables and report come too.
         #[arg(value_name = "FILE")]
         bundle: PathBuf,
         /// New folder of the campaign.
@@ -114,32 +114,10 @@ enum Command {
         folder: PathBuf,
     },
     /// Print the job file with which a scheduler runs a campaign; nothing is submitted.
-    Emit {
-        /// Scheduler of the job file.
-        #[arg(value_enum)]
-        scheduler: Scheduler,
-        /// Folder of the campaign, as the nodes see it.
-        #[arg(value_name = "DIR")]
-        folder: PathBuf,
-        /// Number of shards of the campaign.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
-        shards: u32,
-        /// Number of parallel cases of each shard.
-        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
-        jobs: u16,
-        /// Largest number of tasks of an array, for Slurm: the site's MaxArraySize less one.
-        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
-        array: u32,
-        /// Image with the program, for Kubernetes.
-        #[arg(long, value_name = "IMAGE", default_value = "octant:latest")]
-        image: String,
-        /// Claim of the volume that holds the folder, for Kubernetes.
-        #[arg(long, value_name = "NAME", default_value = "octant")]
-        claim: String,
-    },
+    Emit(emit::Arguments),
     /// Print the stored result of one case: the JSON object of its verdict and summary.
     Result {
-        /// Folder of the campaign.
+        /// Folder of the campaign, or its address on object storage.
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         /// Id of the case.
@@ -151,21 +129,13 @@ enum Command {
     Work,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Scheduler {
-    /// A script that submits itself to sbatch as arrays, and the merge after them.
-    Slurm,
-    /// A Snakefile.
-    Snakemake,
-    /// An indexed job for kubectl.
-    K8s,
-}
-
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     match &arguments.command {
         Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
         Command::Run(arguments) => run::command(arguments),
         Command::Status { folder, json } => {
+            let place = CampaignPlace::of(folder, Needs::Results)?;
+            let folder = place.folder();
             let status = status::of_folder(folder, || read(folder))?.map_err(Failure::bench)?;
             if *json {
                 print_json(&status)?
@@ -174,23 +144,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             }
             Ok(status.verdict())
         }
-        Command::Merge { folder, others } => merge_parts(folder, others),
+        Command::Merge { folder, others } => merge::command(folder, others),
         Command::Trace { folder, strictdoc, json } => trace(folder, strictdoc.as_deref(), *json),
         Command::Report(arguments) => report::command(arguments),
         Command::Countersign { folder } => countersign::command(folder),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Bundle { folder, out } => bundle::bundle(folder, out),
         Command::Unbundle { bundle, folder } => bundle::unbundle(bundle, folder),
-        Command::Emit { scheduler, folder, shards, jobs, array, image, claim } => {
-            let plan = read(folder)?;
-            let job = SchedulerJob::new(&plan, folder, *shards, *jobs).map_err(Failure::input)?;
-            print(&match scheduler {
-                Scheduler::Slurm => emit::slurm(&job, *array),
-                Scheduler::Snakemake => emit::snakemake(&job).map_err(Failure::input)?,
-                Scheduler::K8s => emit::kubernetes(&job, image, claim).map_err(Failure::input)?,
-            })?;
-            Ok(Verdict::Pass)
-        }
+        Command::Emit(arguments) => emit::command(arguments),
         Command::Result { folder, case } => result(folder, case),
         Command::Work => work(),
     }
@@ -222,21 +183,6 @@ impl From<ExecuteError> for Failure {
     }
 }
 
-impl From<MergeError> for Failure {
-    fn from(error: MergeError) -> Self {
-        match error {
-            MergeError::Table(
-                TableError::System { action: "write", .. } | TableError::Write { .. },
-            )
-            | MergeError::Differs { .. } => Self::bench(error).failed(),
-            MergeError::Table(_)
-            | MergeError::Nothing { .. }
-            | MergeError::Numerics { .. }
-            | MergeError::Foreign { .. } => Self::input(error).failed(),
-        }
-    }
-}
-
 fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Failure> {
     let plan = Plan::of(campaign)?;
     let stem = campaign.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
@@ -255,29 +201,9 @@ fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Fa
     Ok(Verdict::Pass)
 }
 
-fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
-    let plan = read(folder)?;
-    let mut folders = vec![folder.to_owned()];
-    folders.extend_from_slice(others);
-    let end = merge::end(&plan, &folders)?;
-    let merged = merge::merge(&plan, &folders, folder, end)?;
-    let missing = match merged.missing {
-        0 => String::new(),
-        missing => format!(", {missing} without a result yet"),
-    };
-    print(&format!(
-        "{} of {} from {}{missing}\n",
-        merged.cases,
-        counted(end, "case", "cases"),
-        counted(merged.parts, "part", "parts")
-    ))?;
-    for (table, _) in octant_campaign::results::TABLES {
-        print(&format!("{}\n", merge::merged(folder, table).display()))?;
-    }
-    Ok(if merged.missing == 0 { Verdict::Pass } else { Verdict::Inconclusive })
-}
-
 fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
+    let place = CampaignPlace::of(folder, Needs::Results)?;
+    let folder = place.folder();
     let plan = read(folder)?;
     let requirements = with_those_of_scenarios(&plan, &requirements_of(&plan)?);
     // The campaign's verdict is computed in one place: a case may fail in parts that no requirement
@@ -381,7 +307,8 @@ fn case_of<'a>(plan: &'a Plan, id: &str, action: &str) -> Result<&'a Case, Failu
 
 /// Runs one case as `octant run` does.
 fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure> {
-    let plan = read(folder)?;
+    let place = CampaignPlace::of(folder, Needs::Plan)?;
+    let plan = read(place.folder())?;
     let case = case_of(&plan, id, "run")?;
     let planned = plan.planned(case)?;
     // Checks that the scenario is the planned one.
@@ -392,9 +319,11 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
 
 /// Prints the stored result of a case as it is.
 fn result(folder: &Path, id: &str) -> Result<Verdict, Failure> {
-    let plan = read(folder)?;
+    let place = CampaignPlace::of(folder, Needs::Results)?;
+    let plan = read(place.folder())?;
     let case = case_of(&plan, id, "print the result of")?;
-    let results = CampaignResults::open(folder).map_err(|error| Failure::bench(error).failed())?;
+    let results =
+        CampaignResults::open(place.folder()).map_err(|error| Failure::bench(error).failed())?;
     let stored = results.bytes(&case.id).map_err(|error| Failure::bench(error).failed())?;
     let Some(stored) = stored else {
         return Err(Failure::input(format!(

@@ -2,6 +2,7 @@
 
 use super::planned::read;
 use crate::failure::Failure;
+use crate::place::{CampaignPlace, Needs};
 use crate::signing::signing_key;
 use crate::terminal::{print, write};
 use clap::Args;
@@ -17,7 +18,7 @@ use std::time::SystemTime;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder of the campaign.
+    /// Folder of the campaign, or its address on object storage.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Write only the page, to this file, and leave the folder unchanged.
@@ -31,7 +32,8 @@ pub(super) struct Arguments {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let started = SystemTime::now();
-    let folder = &arguments.folder;
+    let place = CampaignPlace::of(&arguments.folder, Needs::All)?;
+    let folder = place.folder();
     let plan = read(folder)?;
     // An invalid key is reported before anything is written.
     let key = if arguments.out.is_none() { signing_key()? } else { None };
@@ -48,6 +50,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
         None => {
             evidence::write(&mut report, folder, key, started)?;
+            place.put_back()?;
             folder.join(PAGE)
         }
     };
@@ -59,7 +62,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         verdict.name(),
         counted(found),
         report.open(),
-        path.display()
+        place.shown(&path)
     ))?;
     Ok(verdict)
 }

@@ -1,5 +1,0 @@
-//! Tests of comparisons, in one program.
-#![allow(clippy::unwrap_used)]
-
-mod fields;
-mod settings;
