@@ -4,7 +4,8 @@
 //! earlier case keeps its id.
 
 pub use super::plan_error::PlanError;
-pub(crate) use super::plan_error::{short, system};
+pub use super::plan_error::short;
+pub(crate) use super::plan_error::system;
 pub use super::planned::{Case, INPUTS, PlannedFile, PlannedScenario};
 
 use super::requirements::Planned;
@@ -257,7 +258,9 @@ impl Plan {
         self.cases.iter().map(|case| case.id.as_str())
     }
 
-    pub(super) fn to_json(&self) -> String {
+    /// Content of `plan.json`.
+    #[must_use]
+    pub fn to_json(&self) -> String {
         let mut text = Vec::new();
         // Values of these types can always be serialised, as text.
         let _ = self.write_json(&mut text);

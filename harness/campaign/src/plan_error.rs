@@ -42,7 +42,8 @@ pub enum PlanError {
 }
 
 /// Returns the first digits of a hash, for display.
-pub(crate) fn short(hash: &str) -> &str {
+#[must_use]
+pub fn short(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
 }
 

@@ -67,7 +67,7 @@ fn check(file: &Path, blake3: &str, after: &str) -> Result<(), PlanError> {
 }
 
 /// Returns the BLAKE3 of a file, hexadecimal, and its length.
-pub(super) fn hash_of_file(path: &Path) -> std::io::Result<(String, u64)> {
+pub fn hash_of_file(path: &Path) -> std::io::Result<(String, u64)> {
     let mut hasher = blake3::Hasher::new();
     std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
     Ok((hasher.finalize().to_hex().to_string(), hasher.count()))

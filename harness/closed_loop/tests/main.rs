@@ -10,6 +10,7 @@ mod core_consistency;
 mod core_faults;
 mod core_hardened;
 mod core_spikes;
+mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
 mod state_core;

@@ -4,13 +4,13 @@
 
 use crate::common::program::program;
 use octant_calibration::table::CalibrationTable;
-use octant_campaign::bundle::unpack::unpack;
 use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_campaign::store::{CampaignResults, file};
 use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
 use octant_campaign::{merge, requirements, status};
+use octant_dispatch::bundle::unpack::unpack;
 use octant_evidence::manifest::Manifest;
 use octant_evidence::signature::{self, SigningKey};
 use octant_recorder::reader::{Item, Recording};

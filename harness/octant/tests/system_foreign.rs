@@ -293,8 +293,7 @@ fn an_fmu_that_fails_at_its_end_ends_the_run_with_what_was_recorded() {
     let (replaced, code, expected) = foreign::BAD_ENDS[0];
     let bad = foreign::altered("gain_fmi2", code, replaced);
     let resource = folder.path().join("resources/gain_fmi2.fmu");
-    std::fs::remove_file(&resource).unwrap();
-    std::fs::rename(bad.path(), &resource).unwrap();
+    foreign::pack_into(bad.path(), &resource);
     let out = folder.path().join("run");
     let ran = run(folder.path(), &out, &["--stop", "0.4 s", "--csv"]);
     let error = error(&ran);

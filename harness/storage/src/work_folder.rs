@@ -3,10 +3,10 @@
 use super::error::StorageError;
 use super::layout::{BUNDLE, RESULTS, SegmentName, may_share};
 use super::storage::Storage;
-use octant_campaign::bundle::contents::{BundleContents, FILE_NAME as LIST};
-use octant_campaign::bundle::error::BundleError;
-use octant_campaign::bundle::unpack::unpack;
 use octant_campaign::execute::Shard;
+use octant_dispatch::bundle::contents::{BundleContents, FILE_NAME as LIST};
+use octant_dispatch::bundle::error::BundleError;
+use octant_dispatch::bundle::unpack::unpack;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};

@@ -1,11 +1,11 @@
 //! A planned campaign on object storage, and results that a worker could have stored.
 
-use octant_campaign::bundle::write::write;
 use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{FILE_NAME, Plan};
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{StoreOutcome, keep_in};
+use octant_dispatch::bundle::write::write;
 use octant_storage::layout::BUNDLE;
 use octant_storage::{PutOutcome, Storage, WorkFolder, WorkScope};
 use std::path::Path;

@@ -5,11 +5,11 @@ use crate::failure::Failure;
 use crate::place::{self, Needs, StoredCampaign};
 use crate::terminal::{note, print};
 use octant_base::number::counted;
-use octant_campaign::bundle::contents::BundleContents;
-use octant_campaign::bundle::error::BundleError;
-use octant_campaign::bundle::unpack::unpack;
-use octant_campaign::bundle::write::write;
 use octant_campaign::plan::Plan;
+use octant_dispatch::bundle::contents::BundleContents;
+use octant_dispatch::bundle::error::BundleError;
+use octant_dispatch::bundle::unpack::unpack;
+use octant_dispatch::bundle::write::write;
 use octant_requirements::Verdict;
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::place::{self, CampaignPlace, Needs};
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
-use octant_campaign::emit::{self, KubernetesVolume, SchedulerJob};
+use octant_dispatch::emit::{self, KubernetesVolume, SchedulerJob};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
 

@@ -2,9 +2,9 @@
 
 use super::Needs;
 use crate::failure::Failure;
-use octant_campaign::bundle::contents::BundleContents;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
+use octant_dispatch::bundle::contents::BundleContents;
 use octant_requirements::Verdict;
 use std::path::Path;
 use std::time::Duration;

@@ -5,10 +5,10 @@ use crate::failure::Failure;
 use crate::terminal::{note, print};
 use octant_base::interrupt;
 use octant_base::number::counted;
-use octant_campaign::bundle::contents::BundleContents;
-use octant_campaign::bundle::write::write;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
+use octant_dispatch::bundle::contents::BundleContents;
+use octant_dispatch::bundle::write::write;
 use octant_requirements::Verdict;
 use octant_storage::layout::BUNDLE;
 use octant_storage::{

@@ -1,7 +1,7 @@
 //! A campaign with files of its own, and its bundle.
 
 use crate::common::program::{ended, octant_in};
-use octant_campaign::bundle::unpack::unpack;
+use octant_dispatch::bundle::unpack::unpack;
 use octant_fmu_build::{Options, build};
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};

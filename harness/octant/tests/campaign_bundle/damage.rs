@@ -1,8 +1,8 @@
 //! Bundles that were truncated, damaged or edited.
 
 use super::bench::{Bench, Entries, entries, names, pack};
-use octant_campaign::bundle::contents::{BundleContents, SCHEMA};
-use octant_campaign::bundle::unpack::unpack;
+use octant_dispatch::bundle::contents::{BundleContents, SCHEMA};
+use octant_dispatch::bundle::unpack::unpack;
 
 #[test]
 fn a_damaged_bundle_is_refused_or_gives_the_same_files() {

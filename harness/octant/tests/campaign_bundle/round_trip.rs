@@ -2,8 +2,8 @@
 
 use super::bench::{Bench, SCENARIO, core, entries, names};
 use crate::common::program::{ends, json};
-use octant_campaign::bundle::contents::{BundleContents, SCHEMA};
 use octant_campaign::plan::Plan;
+use octant_dispatch::bundle::contents::{BundleContents, SCHEMA};
 use std::path::{Path, PathBuf};
 
 #[test]

@@ -161,6 +161,13 @@ pub const BAD_ENDS: [(&[&str], &str, &str); 4] = [
     ),
 ];
 
+/// Packs an unpacked FMU into a file.
+pub fn pack_into(folder: &Path, file: &Path) {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    pack(&mut archive, folder, "");
+    std::fs::write(file, archive.finish().unwrap().into_inner()).unwrap();
+}
+
 fn pack(archive: &mut zip::ZipWriter<std::io::Cursor<Vec<u8>>>, folder: &Path, prefix: &str) {
     let mut entries: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap()).collect();

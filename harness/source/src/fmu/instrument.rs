@@ -404,6 +404,6 @@ impl Source for FmuSource {
     }
 
     fn conclude(&mut self, _: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
-        (None, super::freed(&mut self.stepper))
+        (None, super::ending::freed(&mut self.stepper))
     }
 }

@@ -1,5 +1,6 @@
 //! FMUs as a source: our own plant, a foreign instrument, or the ship under our plant.
 
+mod ending;
 pub(super) mod instrument;
 pub(super) mod motion;
 
@@ -53,12 +54,6 @@ fn of_instance(
         position: matches!(scenario.aiding.kind, plant::AidingKind::DockPosition { .. }),
     };
     Ok(FmuSource::new(stepper, instrument, timing, fmu.step_ns, own.is_some()).into())
-}
-
-/// Frees the FMU of a source at the end of a run; returns its failure.
-fn freed(stepper: &mut Stepper) -> Option<SourceError> {
-    let error = stepper.finish().err()?;
-    Some(SourceError::Gone { uri: stepper.uri().to_owned(), reason: error.to_string() })
 }
 
 /// Opens the case motion that an FMU outputs, at its start.

@@ -331,6 +331,6 @@ impl Source for MovedPlant {
     }
 
     fn conclude(&mut self, _: Option<&str>) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
-        (None, super::freed(&mut self.moving.stepper))
+        (None, super::ending::freed(&mut self.moving.stepper))
     }
 }

@@ -1,6 +1,6 @@
 //! Reasons why a bundle can't be made or used.
 
-use crate::plan::PlanError;
+use octant_campaign::plan::PlanError;
 use octant_scenario::{FileNameError, ScenarioError};
 use std::path::PathBuf;
 

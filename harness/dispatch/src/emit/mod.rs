@@ -4,7 +4,7 @@ mod kubernetes;
 mod slurm;
 mod snakemake;
 
-use super::plan::{Plan, short};
+use octant_campaign::plan::{Plan, short};
 use std::path::Path;
 
 pub use kubernetes::{KubernetesVolume, kubernetes};

@@ -3,8 +3,8 @@
 use super::collect::Collected;
 use super::contents::{BundleContents, BundledFile, FILE_NAME};
 use super::error::BundleError;
-use crate::plan::{FILE_NAME as PLAN, Plan};
-use crate::planned::hash_of_file;
+use octant_campaign::plan::{FILE_NAME as PLAN, Plan};
+use octant_campaign::planned::hash_of_file;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
@@ -43,8 +43,9 @@ pub fn write(plan: Plan, out: &Path) -> Result<BundleContents, BundleError> {
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(BundleError::system("create", folder))?;
-    crate::clean(folder);
-    let new = crate::new_file(folder).map_err(BundleError::system("create a file in", folder))?;
+    octant_campaign::clean(folder);
+    let new = octant_campaign::new_file(folder)
+        .map_err(BundleError::system("create a file in", folder))?;
     let wrong = |error: ZipError| BundleError::system("write", out)(error.into());
     let mut archive = ZipWriter::new(BufWriter::new(new.as_file()));
     // The list comes first, so that it is found without reading the rest.

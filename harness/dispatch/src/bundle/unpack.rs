@@ -2,7 +2,7 @@
 
 use super::contents::{BundleContents, BundledFile, FILE_NAME, check_path};
 use super::error::BundleError;
-use crate::plan::{FILE_NAME as PLAN, Plan, short};
+use octant_campaign::plan::{FILE_NAME as PLAN, Plan, short};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};

@@ -1,7 +1,7 @@
 //! The list of a bundle, `bundle.json`: version, plan, program, and every file with its BLAKE3.
 
 use super::error::{BundleError, EntryNameError};
-use crate::plan::{FILE_NAME as PLAN, Plan, PlannedFile, short};
+use octant_campaign::plan::{FILE_NAME as PLAN, Plan, PlannedFile, short};
 use octant_evidence::manifest::program_sha256;
 use octant_score::numerics::{NUMERICS, differs};
 use serde::{Deserialize, Serialize};
