@@ -66,7 +66,8 @@ struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     fn rest(&self) -> &'a [u8] {
-        &self.text.as_bytes()[self.at..]
+        // A value without its second quote ends behind the file.
+        self.text.as_bytes().get(self.at..).unwrap_or_default()
     }
 
     /// Goes to the next `<`; false: there is none.
