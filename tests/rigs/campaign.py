@@ -183,7 +183,7 @@ def for_schedulers(folder):
     job = octant("campaign", "emit", "k8s", folder, "--shards", 16, "--image", "registry/octant:1")
     document = yaml.safe_load(job.stdout)
     try:
-        kubernetes_validate.validate(document, "1.28", strict=True)
+        kubernetes_validate.validate(document, "1.31", strict=True)
         wrong = ""
     except kubernetes_validate.ValidationError as error:
         wrong = str(error)
