@@ -403,8 +403,11 @@ class EndpointFmuModes(Section):
 
 class EndpointFmu(Section):
     """How the FMU of endpoint.uri is run, and what its variables are. Takes a table with interface, process,
-    time_limit, tolerance, parameters, map, modes. Default: fmu: the defaults of its keys."""
+    time_limit, allow_tool, tolerance, parameters, map, modes. Default: fmu: the defaults of its keys."""
 
+    allow_tool: bool
+    """Whether the FMU is run although it needs the tool that made it, which has to be installed. Takes true or
+    false. Default: false."""
     interface: Literal["auto", "co-simulation", "model-exchange"]
     """Interface type of the FMU. Takes one of "auto", "co-simulation", "model-exchange". Default: "auto"."""
     @property
@@ -457,7 +460,7 @@ class Endpoint(Section):
     @property
     def fmu(self) -> EndpointFmu:
         """How the FMU of endpoint.uri is run, and what its variables are. Takes a table with interface, process,
-        time_limit, tolerance, parameters, map, modes. Default: fmu: the defaults of its keys."""
+        time_limit, allow_tool, tolerance, parameters, map, modes. Default: fmu: the defaults of its keys."""
     @fmu.setter
     def fmu(self, value: EndpointFmu | Mapping[str, Any]) -> None: ...
     @property
@@ -1360,8 +1363,11 @@ class SourceFmuMap(Section):
 
 class SourceFmu(Section):
     """How the FMU of source.uri is run, and what its variables are. Takes a table with interface, process,
-    time_limit, step, tolerance, parameters, map. Default: fmu: the defaults of its keys."""
+    time_limit, allow_tool, step, tolerance, parameters, map. Default: fmu: the defaults of its keys."""
 
+    allow_tool: bool
+    """Whether the FMU is run although it needs the tool that made it, which has to be installed. Takes true or
+    false. Default: false."""
     interface: Literal["auto", "co-simulation", "model-exchange"]
     """Interface type of the FMU. Takes one of "auto", "co-simulation", "model-exchange". Default: "auto"."""
     @property
@@ -1766,7 +1772,7 @@ class Source(Section):
     @property
     def fmu(self) -> SourceFmu:
         """How the FMU of source.uri is run, and what its variables are. Takes a table with interface, process,
-        time_limit, step, tolerance, parameters, map. Default: fmu: the defaults of its keys."""
+        time_limit, allow_tool, step, tolerance, parameters, map. Default: fmu: the defaults of its keys."""
     @fmu.setter
     def fmu(self, value: SourceFmu | Mapping[str, Any]) -> None: ...
     @property
