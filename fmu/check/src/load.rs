@@ -84,7 +84,7 @@ fn one(
     if step {
         first_step(&mut *instance, checked, description, name)?;
     }
-    // What crashes or hangs at the very end comes too late for any result, but not for others.
+    // A crash or hang at the end changes no result, but breaks other importers.
     instance.finish().map_err(|error| Failure::of(&error, &LOAD_SURVIVES))
 }
 

@@ -1,5 +1,5 @@
 //! Cases that begin alike: cases of one scenario and seed that differ by their faults and their navigation alone.
-//! What they have in common, before the first fault sets in or the calibration ends, is computed once.
+//! Their common beginning, up to the first fault or the end of the calibration, is computed once.
 
 use super::case::{CaseError, CaseResult, hash_of};
 use super::plan::{Case, PlannedScenario};

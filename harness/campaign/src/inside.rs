@@ -98,7 +98,7 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
     Ok(())
 }
 
-/// What the results of a campaign tell.
+/// Hash and findings of all results of a campaign.
 struct Read {
     /// BLAKE3 over all that count, as in `statistics.json`.
     results: String,

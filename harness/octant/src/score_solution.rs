@@ -26,7 +26,7 @@ pub(super) struct SolutionArguments {
     /// Time at the beginning of the solution that isn't scored, such as its alignment.
     #[arg(long, value_name = "TIME", requires = "solution")]
     skip: Option<String>,
-    /// What is added to the solution's times to get those of the reference.
+    /// Time added to the solution's times to get those of the reference.
     #[arg(long, value_name = "TIME", requires = "solution", allow_negative_numbers = true)]
     offset: Option<String>,
     /// How far the offset may be wrong (95 %).
@@ -76,7 +76,7 @@ impl SolutionArguments {
         set.extend(self.set.iter().cloned());
         let text = self.scenario.is_none().then(|| titled(solution));
         let path = self.scenario.clone().unwrap_or_else(|| solution.to_owned());
-        // What the caller sets counts.
+        // Keys of the caller come last and take precedence.
         let found = found(&path, text.as_deref(), &set)?;
         let set = [&found[..], &set].concat();
         evidenced::run(&RunRequest {

@@ -82,7 +82,7 @@ fn a_drift_is_scored_as_it_was_made() {
     assert!((number("/heading_error_arcmin/rms") - 3.0).abs() < 1e-4, "{navigation}");
     assert!((number("/velocity_north_error_mps/rms") - 0.01).abs() < 1e-6, "{navigation}");
     assert_eq!(found["verdict"], "fail", "{found}");
-    // What is there can be rendered and judged again, and is evidence.
+    // The folder can be rendered, scored and verified again.
     for command in [&["report", "out"][..], &["score", "out/recording.mcap"], &["verify", "out"]] {
         let ended = program(command).current_dir(here).output().unwrap();
         let status = ended.status.code();
@@ -98,6 +98,27 @@ fn a_drift_is_scored_as_it_was_made() {
             ["--scenario", "trial.toml", "--offset", "1000 s", "--offset-uncertainty", uncertainty];
         let ended = score(here, &arguments);
         assert_eq!(ended.status.code(), Some(status), "{uncertainty}: {ended:?}");
+    }
+}
+
+/// Every point counts: 60 nmi for a tenth of a second between two seconds.
+#[test]
+fn a_jump_between_two_seconds_is_scored() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let jumps = |t: f64| {
+        let mut row = drifting(t);
+        row[0] += if (t - 1000.5).abs() < 0.01 { 1.0 } else { 0.0 };
+        row
+    };
+    let tenths = || (0..=18_000).map(|k| f64::from(k) / 10.0);
+    std::fs::write(here.join("ref.csv"), rows(seconds(0, 1800), circle, 0.0)).unwrap();
+    std::fs::write(here.join("trial.toml"), REQUIRED).unwrap();
+    for (solution, status) in [(rows(tenths(), drifting, 0.0), 0), (rows(tenths(), jumps, 0.0), 1)]
+    {
+        std::fs::write(here.join("ins.csv"), solution).unwrap();
+        let ended = score(here, &["--scenario", "trial.toml", "--offset", "0 s"]);
+        assert_eq!(ended.status.code(), Some(status), "{ended:?}");
     }
 }
 

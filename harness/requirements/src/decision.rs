@@ -50,7 +50,7 @@ pub struct NavigationContext {
     pub height_m: f64,
     /// Length of the navigation, s.
     pub navigation_s: f64,
-    /// What is in doubt because the times of solution and reference may differ.
+    /// Uncertainty of the times of solution and reference.
     pub timing: Option<TimeDoubt>,
 }
 

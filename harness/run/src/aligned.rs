@@ -10,7 +10,7 @@ use octant_score::summary::{AlignmentReference, AlignmentResult, SolutionScore};
 /// Builds the result of a method's alignment; `None` if the unit never had an attitude.
 pub(super) fn alignment(scenario: &Scenario, watcher: &Watcher) -> Option<AlignmentResult> {
     if matches!(scenario.source, SourceSpec::Solution(_)) {
-        // Whoever made the solution aligned, and nothing is known of it.
+        // The alignment of a foreign solution is unknown.
         return None;
     }
     let point = watcher.aligned.as_ref()?;

@@ -210,7 +210,7 @@ pub fn assemble_with(
     Ok(Run { summary, report })
 }
 
-/// What is in doubt because the times of a solution and its reference may differ.
+/// Uncertainty of the times of a solution against its reference.
 fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
     let SourceSpec::Solution(spec) = &scenario.source else { return None };
     let [speed_mps, acceleration_mps2, turning_radps] = run.watcher.moved.rates();

@@ -28,3 +28,8 @@ pub(super) fn errors(attitude: Option<CaseAngles>, velocity_mps: Option<[f64; 2]
     let [north, east] = velocity_mps.unwrap_or([f64::NAN; 2]);
     [arcmin(|a| a.heading_rad), arcmin(|a| a.pitch_rad), arcmin(|a| a.roll_rad), north, east]
 }
+
+/// Device time of an output, h.
+pub(super) fn hours(output: &Output) -> f64 {
+    output.device_time.seconds() / 3600.0
+}

@@ -8,7 +8,7 @@ use super::at_rest::AtRest;
 use super::done::{Done, PlannedWork};
 use super::filtered::FilteredSeries;
 use super::follow::RunFollower;
-use super::solution::{attitude_error, errors, velocity_error};
+use super::solution::{attitude_error, errors, hours, velocity_error};
 use super::true_motion::TrueMotion;
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
@@ -45,6 +45,7 @@ pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
 #[derive(Clone, Debug)]
 pub struct Watcher {
     next_score_ns: u64,
+    score_period_ns: u64,
     convergence_period_ns: u64,
     next_convergence_ns: u64,
     next_standing_ns: u64,
@@ -124,8 +125,11 @@ impl Watcher {
     #[must_use]
     pub fn new(plan: PlannedWork) -> Self {
         let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
+        let follows = plan.tells().is_none_or(|tells| tells.follows);
         Self {
             next_score_ns: 0,
+            // A solution from elsewhere may jump between two seconds.
+            score_period_ns: if follows { SCORE_PERIOD_NS } else { 1 },
             convergence_period_ns: (calibration_s * 1e9) as u64 / CONVERGENCE_POINTS,
             next_convergence_ns: 0,
             next_standing_ns: 0,
@@ -245,9 +249,10 @@ impl Watcher {
             self.gimbals(output);
         }
         // Also due if time has run back by more than a period: a fault can do that to stamps.
-        let due = self.next_score_ns.wrapping_sub(now_ns).wrapping_sub(1) >= SCORE_PERIOD_NS;
+        let period_ns = self.score_period_ns;
+        let due = self.next_score_ns.wrapping_sub(now_ns).wrapping_sub(1) >= period_ns;
         if due {
-            self.next_score_ns = (now_ns / SCORE_PERIOD_NS + 1) * SCORE_PERIOD_NS;
+            self.next_score_ns = (now_ns / period_ns + 1) * period_ns;
         }
         due
     }
@@ -407,8 +412,9 @@ impl Watcher {
         if let Some(filtered) = &mut self.filtered {
             filtered.errors(output, errors(attitude_error, velocity_error_mps));
         }
-        let Some(start_ns) = self.navigation_start_ns else { return };
-        let now_ns = output.device_time.ns;
+        let (Some(start_ns), now_ns) = (self.navigation_start_ns, output.device_time.ns) else {
+            return;
+        };
         // A drift is a function of time: stamps that a fault puts before the last scored one are
         // left out, as are those of a restarted core.
         if now_ns < start_ns
@@ -490,8 +496,4 @@ impl Watcher {
         events.sort_by(|a, b| a.hours.total_cmp(&b.hours));
         events
     }
-}
-
-fn hours(output: &Output) -> f64 {
-    output.device_time.seconds() / 3600.0
 }

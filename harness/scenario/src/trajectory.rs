@@ -60,7 +60,7 @@ pub struct SolutionSpec {
     pub skip_ns: i64,
     /// The reference.
     pub reference: TrajectorySpec,
-    /// What is added to the solution's times to get those of the reference, ns; `None`: nothing, if both
+    /// Time added to the solution's times to get those of the reference, ns; `None`: nothing, if both
     /// tell the time on a scale that is known.
     pub offset_ns: Option<i64>,
     /// How far that may be wrong (95 %), s.

@@ -87,7 +87,7 @@ struct RunErrors {
     final_names: Option<[(&'static str, &'static str); SOLUTION]>,
 }
 
-/// What a case adds to a sample.
+/// Contribution of a case to a sample.
 enum CaseErrors {
     Open,
     Broken,

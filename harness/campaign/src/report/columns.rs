@@ -36,7 +36,7 @@ struct CurveBlock {
 #[derive(Debug)]
 pub(super) enum Collected {
     Columns(CurveColumns),
-    /// There is no curve, or their steps differ.
+    /// No curve, or curves with different steps.
     None,
     /// A curve can't be read, which its file remembers.
     Unread,
