@@ -123,10 +123,7 @@ impl<'a> Worker<'a> {
         let WorkerProcess { child, record, is_used } = process;
         // Its part is free only when it is gone.
         drop(child);
-        if matches!(ended, ChildEnded::Cancelled) {
-            return Ok(Tried::Cancelled);
-        }
-        // The process may have been ended after it stored the result. A case that is run a second time
+        // The process may have been ended, by a request too, after it stored the result. A case that is run a second time
         // is run once more instead, to compare its results.
         if known.is_empty()
             && let Some(RecordAt { part, offset, .. }) = &record
@@ -135,6 +132,7 @@ impl<'a> Worker<'a> {
             return Ok(Tried::Done(self.stored(case)?));
         }
         let error = match ended {
+            ChildEnded::Cancelled => return Ok(Tried::Cancelled),
             ChildEnded::Outside(by) => return Ok(Tried::Outside(by)),
             ChildEnded::Status(_) if is_used => return Ok(Tried::InUsed),
             ChildEnded::Status(_) | ChildEnded::TooLong if !alike.is_empty() => {
@@ -142,7 +140,6 @@ impl<'a> Worker<'a> {
             }
             ChildEnded::Status(status) => failure(status, &words, plan.limits.memory_mib),
             ChildEnded::TooLong => format!("it took more than its {} s", plan.limits.time_s),
-            ChildEnded::Cancelled => return Ok(Tried::Cancelled),
         };
         self.broken(case, error, known)
     }

@@ -1,50 +1,10 @@
 //! Local moves of the search: small changes of a candidate.
 
 use crate::candidate::{Gimbals, GridStop, Limits, SHARE_MAX};
-use octant_random::normal::words;
-use octant_random::stream::{Phase, key};
+use octant_random::draws::Draws;
 
-/// Random numbers of one step.
-pub(crate) struct Draws {
-    key: octant_random::philox::StreamKey,
-    counter: u64,
-    words: [u64; 4],
-    used: usize,
-}
-
-/// Blocks of four words that a step can use.
-const BLOCKS: u64 = 256;
-
-impl Draws {
-    /// Numbers of a step: they depend on the seed, the name of the stream and the step alone.
-    pub(crate) fn of(seed: u64, stream: &str, step: u64) -> Self {
-        let key = key(seed, stream, Phase::Draw);
-        Self { key, counter: step * BLOCKS, words: [0; 4], used: 4 }
-    }
-
-    fn word(&mut self) -> u64 {
-        if self.used == self.words.len() {
-            self.words = words(self.key, self.counter);
-            self.counter += 1;
-            self.used = 0;
-        }
-        self.used += 1;
-        self.words[self.used - 1]
-    }
-
-    /// A whole number below `count`, which must not be 0.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
-        ((u128::from(self.word()) * count as u128) >> 64) as usize
-    }
-
-    /// A number in (0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
-        octant_random::normal::uniform(self.word())
-    }
-
-    fn of_all<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len())]
-    }
+fn of_all<T: Copy>(draws: &mut Draws, all: &[T]) -> T {
+    all[draws.below(all.len())]
 }
 
 /// Makes a random candidate.
@@ -73,10 +33,10 @@ fn neighbour(limits: &Limits, from: GridStop, draws: &mut Draws) -> GridStop {
             _ => draws.below(2),
         };
         if which != 1 {
-            to.azimuth_deg = draws.of_all(&azimuths);
+            to.azimuth_deg = of_all(draws, &azimuths);
         }
         if which != 0 {
-            to.roll_deg = draws.of_all(&rolls);
+            to.roll_deg = of_all(draws, &rolls);
         }
         if (to.azimuth_deg, to.roll_deg) != (from.azimuth_deg, from.roll_deg) {
             return to;
@@ -106,8 +66,8 @@ fn change(limits: &Limits, stops: &mut Vec<GridStop>, draws: &mut Draws) {
     let [azimuths, rolls] = limits.free().map(|range| limits.values(range));
     let full = 360 / limits.grid_deg.max(1) * limits.grid_deg;
     match draws.below(12) {
-        0 if at > 0 => stops[at].azimuth_deg = draws.of_all(&azimuths),
-        1 if at > 0 => stops[at].roll_deg = draws.of_all(&rolls),
+        0 if at > 0 => stops[at].azimuth_deg = of_all(draws, &azimuths),
+        1 if at > 0 => stops[at].roll_deg = of_all(draws, &rolls),
         2 if at > 0 => {
             let step = limits.grid_deg * [-1, 1][draws.below(2)];
             if draws.below(2) == 0 {

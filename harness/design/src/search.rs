@@ -7,11 +7,12 @@
 use crate::candidate::{GridStop, Limits, sequence_of};
 use crate::judge::{Judge, MeasureWeights};
 use crate::measure::DesignMeasure;
-use crate::mutate::{Draws, changed, random};
+use crate::mutate::{changed, random};
 use crate::ranked::rank;
 use crate::setup::{DesignError, DesignSetup};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
+use octant_random::draws::Draws;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, PoisonError};
 

@@ -41,6 +41,8 @@ enum Command {
     },
     /// Run a grid over the parameters of one fault, and map where it is harmful but undetected.
     Sweep(super::sweep::Arguments),
+    /// Search for the fault that does most harm unnoticed, and make it small.
+    Search(super::search::Arguments),
     /// Find the smallest set of a run's faults with which it still fails.
     Minimise(super::minimise::Arguments),
 }
@@ -80,6 +82,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             })?;
         }
         Command::Sweep(arguments) => return super::sweep::command(arguments),
+        Command::Search(arguments) => return super::search::command(arguments),
         Command::Minimise(arguments) => return super::minimise::command(arguments),
     }
     Ok(Verdict::Pass)

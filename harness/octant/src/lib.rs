@@ -43,6 +43,7 @@ mod score;
 mod score_solution;
 #[cfg(feature = "dashboard")]
 mod screen;
+mod search;
 mod selftest;
 mod serve;
 mod side_by_side;

@@ -37,7 +37,7 @@ pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use files::FilePlaces;
 pub use grades::{FLICKER, GRADES, GradeSheet};
-pub use keys::SCHEMA;
+pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
     EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made,

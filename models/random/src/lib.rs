@@ -9,6 +9,7 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod draws;
 pub mod normal;
 pub mod philox;
 pub mod stream;

@@ -142,8 +142,9 @@ fn bounds(bounds: catalogue::ParameterBounds) -> Bounds {
     }
 }
 
-/// Scenario dimension of a dimension in the catalogue.
-pub(crate) fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
+/// Dimension in scenarios of a dimension in the catalogue of faults.
+#[must_use]
+pub fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
     use catalogue::Dimension as Of;
     match dimension {
         Of::Time => UnitDimension::TIME,

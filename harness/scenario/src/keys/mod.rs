@@ -34,9 +34,8 @@ pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_sec
 pub use definition::SCHEMA;
 pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants};
 pub(crate) use drive::DriveKeys;
-pub(crate) use faults::{
-    Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, dimension, kind_section,
-};
+pub use faults::dimension as fault_dimension;
+pub(crate) use faults::{Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;

@@ -17,7 +17,7 @@ pub(super) fn value(
     Ok(match parameter.takes {
         Takes::Quantity(dimensions, _) => {
             let quantity = quantity::parse(table.text(key)?).map_err(|_| missing())?;
-            let fits = |of: &&_| quantity.is(keys::dimension(of));
+            let fits = |of: &&_| quantity.is(keys::fault_dimension(of));
             let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
             Value::Quantity(quantity.si, *dimension)
         }
@@ -25,7 +25,7 @@ pub(super) fn value(
             let texts = table.texts(key);
             let all: Option<Vec<_>> = texts.iter().map(|text| quantity::parse(text).ok()).collect();
             let all = all.filter(|all| all.len() == 3).ok_or_else(missing)?;
-            let fits = |of: &&_| all.iter().all(|quantity| quantity.is(keys::dimension(of)));
+            let fits = |of: &&_| all.iter().all(|quantity| quantity.is(keys::fault_dimension(of)));
             let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
             Value::Vector(std::array::from_fn(|axis| all[axis].si), *dimension)
         }

@@ -1,0 +1,324 @@
+//! `octant faults search`: the fault that does most harm unnoticed.
+
+use super::case_progress::CaseBar;
+use super::progress::{Follower, watch_interrupts};
+use crate::arguments::{ScenarioArguments, load};
+use crate::failure::Failure;
+use crate::terminal::{note, print, print_json, write};
+use clap::{Args, ValueEnum};
+use octant_base::control::Control;
+use octant_base::interrupt;
+use octant_base::names::suggestion;
+use octant_base::pool::processors;
+use octant_faults::catalogue::FaultKind;
+use octant_requirements::Verdict;
+use octant_scenario::Scenario;
+use octant_search::bench::SearchBench;
+use octant_search::derived::{RunTimes, derived, searchable};
+use octant_search::error::SearchError;
+use octant_search::found::{FoundFault, SearchFound, worst};
+use octant_search::minimal::minimal;
+use octant_search::page::render;
+use octant_search::search::{SearchPlan, SearchStrategy, is_run, search};
+use octant_search::space::SearchSpace;
+use octant_search::space_file;
+use octant_search::trial::{FaultTrial, TrialResult};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Kinds to search among, separated by commas; by default all that act on samples or on what makes them.
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', conflicts_with = "space")]
+    kinds: Vec<String>,
+    /// File with the faults to search among, and the values of their keys.
+    #[arg(long, value_name = "FILE")]
+    space: Option<PathBuf>,
+    /// Print the space that would be searched as such a file, and run nothing but the scenario without faults.
+    #[arg(long)]
+    print_space: bool,
+    /// Runs with faults, at least.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..))]
+    runs: u32,
+    /// Share of candidates with two faults at once, from 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.2, value_parser = share)]
+    pairs: f64,
+    /// End when a fault with this harm went unnoticed; 1 is a shift of 3 σ.
+    #[arg(long, value_name = "HARM", value_parser = positive)]
+    enough: Option<f64>,
+    /// How candidates are chosen.
+    #[arg(long, value_enum, default_value = "guided")]
+    strategy: StrategyName,
+    /// Seed of all runs, instead of the scenario's.
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Seed of the candidates.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
+    search_seed: u64,
+    /// Number of parallel runs; by default the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Folder for worst.toml, search.json, search.html and the journal with which an interrupted search goes on;
+    /// by default nothing is written.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print search.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum StrategyName {
+    /// By the results before.
+    Guided,
+    /// A Latin hypercube: all at once, for comparison.
+    Latin,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|share| (0.0..=1.0).contains(share));
+    number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let scenario = load(&arguments.scenario, &[])?;
+    let seed = arguments.seed.unwrap_or(scenario.seed);
+    let control = Control::default();
+    watch_interrupts();
+    let stop = |controls: &[Control], _: Option<u64>| {
+        if interrupt::seen() {
+            controls.iter().for_each(|control| control.cancel.store(true, Ordering::Relaxed));
+        }
+    };
+    let controls = std::slice::from_ref(&control);
+    Follower::Host(&stop)
+        .follow(controls, None, 0.0, || searched(arguments, &scenario, seed, &control))
+}
+
+fn searched(
+    arguments: &Arguments,
+    scenario: &Scenario,
+    seed: u64,
+    control: &Control,
+) -> Result<Verdict, Failure> {
+    // Files are read before anything is run.
+    let asked = asked(arguments, scenario)?;
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let bench = SearchBench::new(scenario, seed, jobs, control).map_err(failure)?;
+    let (space, left_out) = possible(&bench, asked, arguments.space.as_deref())?;
+    if arguments.print_space {
+        print(&space_file::to_toml(&space))?;
+        return Ok(Verdict::Pass);
+    }
+    if let Some(folder) = &arguments.out {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            Failure::bench(format!("failed to create {}: {error}", folder.display()))
+        })?;
+    }
+    let strategy = match arguments.strategy {
+        StrategyName::Guided => SearchStrategy::Guided,
+        StrategyName::Latin => SearchStrategy::Latin,
+    };
+    let plan = SearchPlan {
+        strategy,
+        runs: arguments.runs as usize,
+        seed: arguments.search_seed,
+        pairs: arguments.pairs,
+        enough: arguments.enough,
+    };
+    let journal = arguments.out.as_ref().map(|folder| folder.join("search.jsonl"));
+    let bar = CaseBar::new("search", plan.runs, jobs, plan.enough.is_some());
+    let mut told = 0;
+    let mut tell = |trials: &[FaultTrial]| {
+        trials[told..].iter().filter(|trial| is_run(trial)).for_each(|_| bar.ended(None, false));
+        told = trials.len();
+    };
+    let name = |_: usize| String::new();
+    let work = || search(&bench, &space, &plan, journal.as_deref(), control, &mut tell);
+    let trials = bar.during(&name, work).map_err(failure)?;
+    let found = SearchFound {
+        scenario: scenario.title.clone(),
+        seed,
+        search_seed: plan.seed,
+        strategy: strategy.name().to_owned(),
+        pairs: plan.pairs,
+        left_out,
+        ..SearchFound::of(&trials, &space)
+    };
+    conclude(arguments, &bench, &space, &trials, found, control)
+}
+
+/// The space that was asked for.
+fn asked(arguments: &Arguments, scenario: &Scenario) -> Result<SearchSpace, Failure> {
+    let sample_s = scenario.sample_period_ns as f64 * 1e-9;
+    let Some(samples) = scenario.samples() else {
+        return Err(Failure::input(format!(
+            "failed to search {}: found a run whose length isn't known before, expected one that is",
+            arguments.scenario.scenario.display()
+        )));
+    };
+    let times = RunTimes { sample_s, length_s: samples as f64 * sample_s };
+    if let Some(file) = &arguments.space {
+        return space_file::read(file, times)
+            .map_err(|error| Failure::input(format!("failed to read {error}")));
+    }
+    let kinds = match arguments.kinds.as_slice() {
+        [] => searchable().collect(),
+        names => names.iter().map(|name| the_kind(name)).collect::<Result<Vec<_>, _>>()?,
+    };
+    Ok(derived(&kinds, times))
+}
+
+fn the_kind(name: &str) -> Result<&'static FaultKind, Failure> {
+    let known: Vec<&str> = searchable().map(|kind| kind.name).collect();
+    searchable().find(|kind| kind.name == name).ok_or_else(|| {
+        let known = suggestion(name, known.iter().copied(), "kinds");
+        Failure::input(format!(
+            "--kinds: found {name:?}, which is no kind that a search takes, {known}"
+        ))
+    })
+}
+
+/// The part of a space that the scenario can have. A file has to be possible as a whole.
+fn possible(
+    bench: &SearchBench,
+    asked: SearchSpace,
+    file: Option<&Path>,
+) -> Result<(SearchSpace, Vec<(String, String)>), Failure> {
+    if let Some(file) = file {
+        return match bench.impossible(&asked) {
+            None => Ok((asked, Vec::new())),
+            Some((form, reason)) => Err(Failure::input(format!(
+                "failed to read {}: faults[{}]: {reason}",
+                file.display(),
+                form + 1
+            ))),
+        };
+    }
+    let (space, left_out) = bench.possible(&asked);
+    match left_out.first() {
+        Some((_, reason)) if space.forms.is_empty() => {
+            Err(failure(SearchError::EmptySpace(reason.clone())))
+        }
+        _ => Ok((space, left_out)),
+    }
+}
+
+/// Makes the worst fault smaller, runs it undivided, writes and prints the result.
+fn conclude(
+    arguments: &Arguments,
+    bench: &SearchBench,
+    space: &SearchSpace,
+    trials: &[FaultTrial],
+    mut found: SearchFound,
+    control: &Control,
+) -> Result<Verdict, Failure> {
+    let missed =
+        worst(trials).filter(|trial| trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0));
+    let mut scenario = None;
+    if let Some(trial) = missed {
+        let smaller = minimal(bench, space, trial, control).map_err(failure)?;
+        let about = [
+            "The worst fault that went unnoticed, found by octant faults search.".to_owned(),
+            rerun(arguments, bench.seed()),
+        ];
+        let text = bench.text_of(&smaller.space, &smaller.trial.candidate, &about);
+        let again = bench.again(&text, control).map_err(failure)?;
+        if again != smaller.trial.result {
+            let words = smaller.trial.candidate.words(&smaller.space);
+            return Err(failure(SearchError::Differs(format!(
+                "{words}: undivided it had another effect"
+            ))));
+        }
+        found.minimal = FoundFault::of(&smaller.trial, &smaller.space);
+        found.minimal_runs = smaller.runs;
+        scenario = Some(text);
+    }
+    if let Some(folder) = &arguments.out {
+        let json = serde_json::to_string_pretty(&found)
+            .map_err(|error| Failure::bench(format!("failed to write search.json: {error}")))?;
+        write(&folder.join("search.json"), json + "\n")?;
+        write(
+            &folder.join("search.html"),
+            render(&found, trials, space, &rerun(arguments, bench.seed())),
+        )?;
+        if let Some(text) = &scenario {
+            write(&folder.join("worst.toml"), text.clone())?;
+        }
+    }
+    if arguments.json {
+        print_json(&found)?;
+    } else {
+        print(&found.text())?;
+        if let (Some(folder), Some(_)) = (&arguments.out, &scenario) {
+            print(&format!(
+                "octant run {} --seed {}\n",
+                folder.join("worst.toml").display(),
+                bench.seed()
+            ))?;
+        }
+    }
+    Ok(verdict(&found, trials))
+}
+
+/// A fail where something harmful went unnoticed; a pass needs runs whose faults acted.
+fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
+    let acted = trials.iter().filter_map(FaultTrial::effect).any(|effect| effect.fired);
+    let broken = trials.iter().any(|trial| matches!(trial.result, TrialResult::Broken(_)));
+    match found.missed {
+        0 if !acted => {
+            note!("octant: no fault altered anything: the search shows nothing");
+            Verdict::Inconclusive
+        }
+        0 if broken => Verdict::Inconclusive,
+        0 => Verdict::Pass,
+        _ => Verdict::Fail,
+    }
+}
+
+fn failure(error: SearchError) -> Failure {
+    let message = format!("failed to search: {error}");
+    match error {
+        SearchError::Method(error) => Failure::from(error),
+        SearchError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
+        SearchError::Cancelled => Failure { status: Verdict::Inconclusive.exit_code(), message },
+        SearchError::Journal { .. } | SearchError::Differs(_) => Failure::bench(message),
+        SearchError::HasFaults(_)
+        | SearchError::Unwritable(_)
+        | SearchError::Unreadable(_)
+        | SearchError::NoCalibration
+        | SearchError::EmptySpace(_)
+        | SearchError::OtherSearch { .. } => Failure::input(message),
+    }
+}
+
+/// Returns the command line that makes the search again.
+fn rerun(arguments: &Arguments, seed: u64) -> String {
+    let mut line = format!("octant faults search {}", arguments.scenario.scenario.display());
+    for set in &arguments.scenario.set {
+        line += &format!(" --set '{set}'");
+    }
+    if !arguments.kinds.is_empty() {
+        line += &format!(" --kinds {}", arguments.kinds.join(","));
+    }
+    if let Some(space) = &arguments.space {
+        line += &format!(" --space {}", space.display());
+    }
+    if let StrategyName::Latin = arguments.strategy {
+        line += " --strategy latin";
+    }
+    if let Some(enough) = arguments.enough {
+        line += &format!(" --enough {enough}");
+    }
+    line + &format!(
+        " --runs {} --pairs {} --seed {seed} --search-seed {}",
+        arguments.runs, arguments.pairs, arguments.search_seed
+    )
+}

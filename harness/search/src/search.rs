@@ -1,0 +1,157 @@
+//! The loop of a search: candidates, their runs, the journal.
+
+use crate::bench::SearchBench;
+use crate::candidate::FaultCandidate;
+use crate::error::SearchError;
+use crate::guide::SearchGuide;
+use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal};
+use crate::latin::latin;
+use crate::space::SearchSpace;
+use crate::space_file::to_toml;
+use crate::trial::{FaultTrial, TrialResult};
+use octant_base::control::Control;
+use octant_score::numerics;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+/// Candidates that are proposed together: their beginnings are shared, whatever the number of processors.
+const PROPOSED: usize = 16;
+
+/// Way in which candidates are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchStrategy {
+    /// By the results before.
+    Guided,
+    /// A Latin hypercube, for comparison.
+    Latin,
+}
+
+impl SearchStrategy {
+    /// Name for the user.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Guided => "guided",
+            Self::Latin => "latin",
+        }
+    }
+}
+
+/// Settings of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchPlan {
+    /// The strategy.
+    pub strategy: SearchStrategy,
+    /// Runs with faults, at least: the last candidates that are proposed together are run to their end.
+    pub runs: usize,
+    /// Seed of the candidates.
+    pub seed: u64,
+    /// Share of new candidates with two faults, from 0 to 1.
+    pub pairs: f64,
+    /// Harm at which the search ends, as a multiple of that from which a fault is harmful; `None`: all runs.
+    pub enough: Option<f64>,
+}
+
+/// Runs a search, or goes on with that of a journal. `tell` is called with all trials after each proposal.
+///
+/// # Errors
+/// If it can't run, or if the end was asked for; the journal stays.
+pub fn search(
+    bench: &SearchBench,
+    space: &SearchSpace,
+    plan: &SearchPlan,
+    journal: Option<&Path>,
+    control: &Control,
+    tell: &mut dyn FnMut(&[FaultTrial]),
+) -> Result<Vec<FaultTrial>, SearchError> {
+    let mut journal =
+        journal.map(|path| SearchJournal::open(path, &identity(bench, space, plan))).transpose()?;
+    let mut proposer = match plan.strategy {
+        SearchStrategy::Guided => Proposer::Guided(SearchGuide::new(space, plan.seed, plan.pairs)),
+        SearchStrategy::Latin => {
+            let mut all = latin(space, plan.seed, plan.pairs, plan.runs);
+            all.reverse();
+            Proposer::Listed(all)
+        }
+    };
+    let mut trials: Vec<FaultTrial> = Vec::new();
+    let (mut runs, mut proposed) = (0, 0);
+    // Candidates that the scenario can't have cost no run, and don't go on forever.
+    while runs < plan.runs && proposed < 20 * plan.runs.max(PROPOSED) {
+        let candidates = proposer.propose(PROPOSED);
+        if candidates.is_empty() {
+            break;
+        }
+        if control.cancel.load(Ordering::Relaxed) {
+            return Err(SearchError::Cancelled);
+        }
+        let known = journal.as_mut().map(|journal| journal.take(&candidates)).transpose()?;
+        let results = match known.flatten() {
+            Some(known) => known,
+            None => {
+                let results = bench.run(space, candidates, control)?;
+                if let Some(journal) = &mut journal {
+                    journal.keep(&results)?;
+                }
+                results
+            }
+        };
+        proposer.learn(&results);
+        proposed += results.len();
+        runs += results.iter().filter(|trial| is_run(trial)).count();
+        trials.extend(results);
+        tell(&trials);
+        let worst = trials.iter().filter_map(FaultTrial::unnoticed_harm).fold(0.0, f64::max);
+        if plan.enough.is_some_and(|enough| worst >= enough) {
+            break;
+        }
+    }
+    Ok(trials)
+}
+
+/// True for a trial that took a run.
+#[must_use]
+pub fn is_run(trial: &FaultTrial) -> bool {
+    !matches!(trial.result, TrialResult::Refused(_))
+}
+
+enum Proposer<'a> {
+    Guided(SearchGuide<'a>),
+    /// Candidates, the first last.
+    Listed(Vec<FaultCandidate>),
+}
+
+impl Proposer<'_> {
+    fn propose(&mut self, count: usize) -> Vec<FaultCandidate> {
+        match self {
+            Self::Guided(guide) => guide.propose(count),
+            Self::Listed(all) => {
+                all.split_off(all.len().saturating_sub(count)).into_iter().rev().collect()
+            }
+        }
+    }
+
+    fn learn(&mut self, results: &[FaultTrial]) {
+        if let Self::Guided(guide) = self {
+            guide.learn(results);
+        }
+    }
+}
+
+fn identity(bench: &SearchBench, space: &SearchSpace, plan: &SearchPlan) -> SearchIdentity {
+    let hash = |text: &str| blake3::hash(text.as_bytes()).to_hex().to_string();
+    let strategy = match plan.strategy {
+        SearchStrategy::Guided => format!("guided, pairs {}", plan.pairs),
+        SearchStrategy::Latin => format!("latin, pairs {}, runs {}", plan.pairs, plan.runs),
+    };
+    SearchIdentity {
+        schema: JOURNAL_SCHEMA,
+        octant: env!("CARGO_PKG_VERSION").to_owned(),
+        numerics: numerics::NUMERICS,
+        scenario_blake3: hash(bench.base()),
+        space_blake3: hash(&to_toml(space)),
+        seed: bench.seed(),
+        search_seed: plan.seed,
+        strategy,
+    }
+}

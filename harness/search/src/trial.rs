@@ -1,0 +1,113 @@
+//! What a candidate did.
+
+use crate::candidate::FaultCandidate;
+use octant_run::method::MethodRun;
+use octant_run::twin::between;
+use octant_scenario::Scenario;
+use octant_score::counterfactual::{Counterfactual, HARMFUL_SHIFT_SIGMA};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A candidate with its result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FaultTrial {
+    /// The candidate.
+    pub candidate: FaultCandidate,
+    /// Its result.
+    pub result: TrialResult,
+}
+
+/// Result of a candidate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrialResult {
+    /// The scenario can't have these faults; the reason.
+    Refused(String),
+    /// The run with them ended without a comparison; the reason.
+    Broken(String),
+    /// It ran.
+    Ran(TrialEffect),
+}
+
+/// Effect of the faults of a candidate, against the run without them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrialEffect {
+    /// True if every fault altered something.
+    pub fired: bool,
+    /// First report of the core that the run without the faults doesn't have, or its refusal.
+    pub noticed_by: Option<String>,
+    /// Largest shift of a parameter in posterior σ, with its name.
+    pub worst: Option<(String, f64)>,
+    /// Largest distance from the navigation without the faults, nmi, and the largest radial error of that one.
+    pub radial_nmi: Option<[f64; 2]>,
+    /// Shift of each parameter in posterior σ, where nothing was noticed.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub shifts_sigma: BTreeMap<String, f64>,
+}
+
+impl TrialEffect {
+    /// Compares a run with its twin; `None` if one of them has no end.
+    pub(crate) fn of(scenario: &Scenario, run: &MethodRun, twin: &MethodRun) -> Option<Self> {
+        let found = between(scenario, run, twin)?;
+        let refused = run.calibration.as_ref().and_then(|c| c.refused.clone());
+        let report = found.faults.iter().find_map(|fault| fault.noticed_by.clone());
+        let noticed_by = report.or_else(|| refused.map(|why| format!("refused: {why}")));
+        let shifts = |found: &Counterfactual| {
+            found
+                .parameters
+                .iter()
+                .map(|(name, shift)| (name.clone(), finite(shift.sigma)))
+                .collect()
+        };
+        Some(Self {
+            fired: run.receipts.iter().all(|receipt| receipt.fired()),
+            worst: found.worst_parameter.clone().zip(found.worst_shift_sigma.map(finite)),
+            radial_nmi: (found.navigation.as_ref())
+                .map(|n| [n.radial_max_nmi, n.twin_radial_max_nmi].map(finite)),
+            shifts_sigma: if noticed_by.is_none() { shifts(&found) } else { BTreeMap::new() },
+            noticed_by,
+        })
+    }
+
+    /// Harm as a multiple of that from which a fault counts as harmful: a shift of 3 σ, or a difference of
+    /// position as large as the error of the run without the fault.
+    #[must_use]
+    pub fn harm(&self) -> f64 {
+        let shift = self.worst.as_ref().map_or(0.0, |(_, sigma)| sigma / HARMFUL_SHIFT_SIGMA);
+        let drift = self.radial_nmi.map_or(
+            0.0,
+            |[radial, of_twin]| {
+                if of_twin > 0.0 { radial / of_twin } else { 0.0 }
+            },
+        );
+        shift.max(drift)
+    }
+
+    /// True if every fault acted and none was noticed.
+    #[must_use]
+    pub fn is_unnoticed(&self) -> bool {
+        self.fired && self.noticed_by.is_none()
+    }
+}
+
+/// The number, or the largest one: an effect that isn't a number is more than any.
+fn finite(number: f64) -> f64 {
+    if number.is_finite() { number } else { f64::MAX }
+}
+
+impl FaultTrial {
+    /// Effect of a candidate that ran.
+    #[must_use]
+    pub fn effect(&self) -> Option<&TrialEffect> {
+        match &self.result {
+            TrialResult::Ran(effect) => Some(effect),
+            TrialResult::Refused(_) | TrialResult::Broken(_) => None,
+        }
+    }
+
+    /// Harm, where it went unnoticed.
+    #[must_use]
+    pub fn unnoticed_harm(&self) -> Option<f64> {
+        self.effect().filter(|effect| effect.is_unnoticed()).map(TrialEffect::harm)
+    }
+}
