@@ -2,7 +2,7 @@
 
 use crate::candidate::FaultCandidate;
 use crate::error::SearchError;
-use crate::space::{FormKey, KeyValues, SearchSpace};
+use crate::space::{FormKey, KeyValues, NumberRange, SearchSpace};
 use crate::trial::{FaultTrial, TrialEffect, TrialResult};
 use octant_base::control::Control;
 use octant_run::branches::{BranchPlan, run_branches};
@@ -177,6 +177,11 @@ impl SearchBench {
             for (place, key) in form.keys.iter().enumerate() {
                 if let Some(texts) = self.accepted(space, index, place, key) {
                     kept.keys[place].values = KeyValues::OneOf(texts);
+                } else if let Some(range) = kept.keys[place].values.range_mut() {
+                    let is_possible = |at: f64| {
+                        self.check(space, &middle(space, index, Some((place, at)))).is_ok()
+                    };
+                    *range = within(range, &is_possible);
                 }
             }
             let none =
@@ -192,8 +197,8 @@ impl SearchBench {
         (SearchSpace { forms }, left_out)
     }
 
-    /// The first form of a space that the scenario can't have with every choice and the ends of every range,
-    /// with the reason.
+    /// The first form of a space that the scenario can't have with every choice and the middle of every range, with
+    /// the reason.
     #[must_use]
     pub fn impossible(&self, space: &SearchSpace) -> Option<(usize, String)> {
         let places = |key: &FormKey| match &key.values {
@@ -201,7 +206,8 @@ impl SearchBench {
             KeyValues::OneOf(all) => {
                 (0..all.len()).map(|index| (index as f64 + 0.5) / all.len() as f64).collect()
             }
-            KeyValues::Between(_) => vec![0.0, 1.0],
+            // An end may be impossible beside the middle of another key; such candidates cost no run.
+            KeyValues::Between(_) | KeyValues::Multiple(_) => vec![0.5],
         };
         (0..space.forms.len()).find_map(|form| {
             let keys = space.forms[form].keys.iter().enumerate();
@@ -234,6 +240,23 @@ impl SearchBench {
             _ => None,
         }
     }
+}
+
+/// The part of a range whose ends are possible, if its middle is.
+fn within(range: &NumberRange, is_possible: &dyn Fn(f64) -> bool) -> NumberRange {
+    const HALVINGS: u32 = 8;
+    let end = |end: f64| {
+        if is_possible(end) || !is_possible(0.5) {
+            return range.at(end);
+        }
+        let (mut good, mut bad) = (0.5, end);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (good + bad);
+            if is_possible(middle) { good = middle } else { bad = middle }
+        }
+        range.at(good)
+    };
+    NumberRange { from: end(0.0), to: end(1.0), ..range.clone() }.rounded_inward()
 }
 
 /// A candidate of a form with every value in its middle, but for one key at another place.

@@ -1,6 +1,6 @@
 //! The space that the catalogue of faults gives: every kind, around the values of its example.
 
-use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, SearchSpace};
+use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, SearchSpace};
 use crate::toml_text::written;
 use octant_faults::catalogue::{Acts, FaultKind, Lasts, ParameterBounds, Takes};
 use octant_faults::kinds;
@@ -49,12 +49,19 @@ fn forms_of(kind: &'static FaultKind, times: RunTimes) -> Vec<FaultForm> {
     };
     let has_channels = kind.parameters.iter().any(|p| p.takes == Takes::Channels);
     let most = kind.parameters.iter().map(dimensions).max().unwrap_or(1);
-    let triads = if has_channels { 2 } else { 1 };
-    (0..most.max(triads))
-        .map(|triad| {
+    let triads = most.max(if has_channels { 2 } else { 1 });
+    // A vector along one axis is tried along each.
+    let has_axis = kind.parameters.iter().any(|p| {
+        let vector = example.get(p.name).and_then(|value| vector(value, 0));
+        vector.is_some_and(|vector| non_zero(&vector) == 1)
+    });
+    let turns = if has_axis { 3 } else { 1 };
+    (0..triads * turns)
+        .map(|form| (form / turns, form % turns))
+        .map(|(triad, turn)| {
             let given = |name: &str| example.get(name);
             let of = |p: &'static octant_faults::catalogue::FaultParameter| {
-                values(p, triad, given(p.name), times)
+                values(p, [triad, turn], given(p.name), times)
                     .map(|values| FormKey { name: p.name.to_owned(), values })
             };
             let mut keys: Vec<FormKey> = kind.parameters.iter().filter_map(of).collect();
@@ -80,10 +87,11 @@ fn seconds(from: f64, to: f64, is_logarithmic: bool) -> NumberRange {
     NumberRange { from, to, unit, is_logarithmic, is_whole: false, digits: TIME_DIGITS }
 }
 
-/// Values of a parameter; `None` leaves it at its default. `triad` is 0 for gyros, 1 for accelerometers.
+/// Values of a parameter; `None` leaves it at its default. `triad` is 0 for gyros, 1 for accelerometers;
+/// a vector along one axis is turned by `turn` axes.
 fn values(
     parameter: &'static octant_faults::catalogue::FaultParameter,
-    triad: usize,
+    [triad, turn]: [usize; 2],
     given: Option<&toml::Value>,
     times: RunTimes,
 ) -> Option<KeyValues> {
@@ -110,14 +118,47 @@ fn values(
                 .filter(|text| quantity_of(text).is_ok_and(|quantity| quantity.is(dimension)));
             let text = own.unwrap_or(dimension.example);
             let (middle, unit) = divided(text)?;
-            around(middle, bounds, unit, times).map(KeyValues::Between)
+            match around(middle, bounds, unit, times).filter(|range| range.from < range.to) {
+                Some(range) => Some(KeyValues::Between(range)),
+                None => fixed(),
+            }
         }
-        Takes::Vector(_) | Takes::Value | Takes::Difference(_) => fixed(),
+        Takes::Vector(_) => given.map(|value| {
+            vector(value, turn)
+                .map_or_else(|| KeyValues::Fixed(written(value)), KeyValues::Multiple)
+        }),
+        Takes::Value | Takes::Difference(_) => fixed(),
     }
 }
 
 fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or(value.as_integer().map(|whole| whole as f64))
+}
+
+/// A vector that isn't zero, times a factor around 1.
+fn vector(value: &toml::Value, turn: usize) -> Option<ScaledVector> {
+    let component = |value: &toml::Value| match value.as_str() {
+        Some(text) => divided(text).map(|(number, unit)| (number, unit.to_owned())),
+        None => Some((number(value)?, String::new())),
+    };
+    let all = value.as_array()?.iter().map(component).collect::<Option<Vec<_>>>()?;
+    let factor = NumberRange {
+        from: 1.0 / AROUND,
+        to: AROUND,
+        unit: String::new(),
+        is_logarithmic: true,
+        is_whole: false,
+        digits: DIGITS,
+    };
+    let mut vector = ScaledVector { components: all, factor };
+    if non_zero(&vector) == 1 {
+        vector.components.rotate_right(turn);
+    }
+    (non_zero(&vector) > 0).then_some(vector)
+}
+
+fn non_zero(vector: &ScaledVector) -> usize {
+    vector.components.iter().filter(|(number, _)| *number != 0.0).count()
 }
 
 fn bounds_middle(bounds: ParameterBounds) -> Option<f64> {
@@ -151,6 +192,19 @@ fn around(
     let si = |text: String| quantity_of(&text).map(|quantity| quantity.si).ok();
     let factor = if unit.is_empty() { 1.0 } else { si(format!("1 {unit}"))? };
     let size = middle.abs();
+    if size == 0.0 && unit == "deg" {
+        // An angle that may be any, such as a phase.
+        let unit = unit.to_owned();
+        let (is_logarithmic, is_whole) = (false, false);
+        return Some(NumberRange {
+            from: 0.0,
+            to: 360.0,
+            unit,
+            is_logarithmic,
+            is_whole,
+            digits: DIGITS,
+        });
+    }
     let (mut from, mut to) = (size / AROUND, size * AROUND);
     if let ParameterBounds::Within(low, high, _) = bounds {
         from = from.max(low / factor);

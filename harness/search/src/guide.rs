@@ -2,9 +2,8 @@
 //!
 //! Both the harm of a fault and its chance to be noticed grow with its size. The largest harm that goes
 //! unnoticed is therefore just below the size at which it is noticed. A line looks for that size: it starts in
-//! the middle, extrapolates the harm to the size that would be worst so far, and halves the distance between
-//! what went unnoticed and what was noticed. A line ends early where even its largest size without notice can't
-//! be worse than what is known. New lines are begun at random for each kind in turn, near the worst of what was
+//! the middle, and tries next the size at which the harm, extrapolated, would be worse than all so far. Noticed
+//! there, it ends; unnoticed, it goes on to the size at which it is noticed. New lines are begun at random for each kind in turn, near the worst of what was
 //! found, or as two of its faults at once.
 //!
 //! Each proposal depends on the seed and the results before it alone.
@@ -15,9 +14,9 @@ use crate::trial::FaultTrial;
 use octant_random::draws::Draws;
 
 /// Runs of a line, at most.
-const RUNS_MAX: u32 = 7;
+const RUNS_MAX: u32 = 10;
 /// Runs of a line that has found nothing unnoticed, at most.
-const RUNS_MAX_NOTICED: u32 = 4;
+const RUNS_MAX_NOTICED: u32 = 3;
 /// Ratio of noticed to unnoticed size below which a line has found the edge.
 const EDGE: f64 = 1.15;
 /// Share of new lines that begin at random, once something was found.
@@ -30,8 +29,15 @@ const ELITES_OF_A_KIND: usize = 3;
 const CHANGE: f64 = 0.08;
 /// Chance that a changed fault has another value of a choice, or any other value of a range.
 const REDRAW: f64 = 0.2;
-/// Harm that a line aims at, as a multiple of the worst so far.
-const BEYOND: f64 = 1.3;
+/// Harm that a line aims at, as a multiple of the worst so far: noticed there, it has nothing to add.
+const BEYOND: f64 = 1.1;
+/// Ratio of the sizes of a line that is the worst so far.
+const CLIMB: f64 = 1.6;
+/// Most decades between two sizes of a line.
+const JUMP_MAX: f64 = 2.5;
+/// Harm that isn't extrapolated, and runs of a line that finds no more.
+const HARMLESS: f64 = 1e-4;
+const RUNS_MAX_HARMLESS: u32 = 2;
 
 /// A guided search.
 #[derive(Debug)]
@@ -101,7 +107,7 @@ impl<'a> SearchGuide<'a> {
 
     /// Takes the results of the candidates that were proposed last.
     pub fn learn(&mut self, trials: &[FaultTrial]) {
-        // What a line aims at is the same for all of one proposal, in whatever order they ran.
+        // What a line aims at is the same for all of one proposal.
         let worst = self.elites.first().map_or(1.0, |elite| elite.harm).max(1.0);
         for (place, trial) in trials.iter().enumerate() {
             let Some(line) = self.lines.get_mut(place) else { continue };
@@ -196,7 +202,9 @@ impl<'a> SearchGuide<'a> {
                 KeyValues::Fixed(_) => *place,
                 _ if redrawn => draws.unit(),
                 KeyValues::OneOf(_) => *place,
-                KeyValues::Between(_) => (place + CHANGE * draws.normal()).clamp(0.0, 1.0),
+                KeyValues::Between(_) | KeyValues::Multiple(_) => {
+                    (place + CHANGE * draws.normal()).clamp(0.0, 1.0)
+                }
             }
         });
         PlacedFault { form: fault.form, places: places.collect() }
@@ -220,34 +228,30 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
     if line.runs >= runs_max {
         return;
     }
-    let KeyValues::Between(range) = &space.forms[line.candidate.faults[0].form].keys[key].values
-    else {
-        return;
-    };
+    let form = &space.forms[line.candidate.faults[0].form];
+    let Some(range) = form.keys[key].values.range() else { return };
     let (Some(edge), Some(decade)) = (range.distance_of(EDGE), range.distance_of(10.0)) else {
         return;
     };
-    line.next = match (line.low, line.high) {
-        // Much smaller: what is noticed at one size may be harmless a decade below.
-        (None, Some(high)) => {
-            (high > 0.0).then(|| (high - decade.min(0.5 * high.max(edge))).max(0.0))
-        }
-        (Some((low, harm)), None) => {
-            let ratio = BEYOND * worst / harm;
-            let jump = match range.distance_of(ratio) {
-                Some(jump) if harm > 0.0 => jump.max(edge),
-                // No harm yet: nothing to extrapolate.
-                _ => decade,
-            };
-            (low < 1.0).then(|| (low + jump.min(2.0 * decade)).min(1.0))
-        }
-        (Some((low, harm)), Some(high)) => {
-            let most = harm * range.at(high) / range.at(low);
-            let is_open = high - low > edge && most > 0.5 * worst;
-            is_open.then_some(0.5 * (low + high))
-        }
-        (None, None) => None,
+    let Some((low, harm)) = line.low else {
+        // What is noticed at one size may be harmless at a tenth of it.
+        line.next = line.high.filter(|high| *high > 0.0).map(|high| (high - decade).max(0.0));
+        return;
     };
+    let up = |distance: f64| (low < 1.0).then(|| (low + distance).min(1.0));
+    let next = if harm > worst {
+        // The worst so far: on to the edge.
+        match line.high {
+            Some(high) => (high - low > edge).then_some(0.5 * (low + high)),
+            None => range.distance_of(CLIMB).and_then(up),
+        }
+    } else if harm < HARMLESS {
+        // Nothing to extrapolate.
+        (line.runs <= RUNS_MAX_HARMLESS).then(|| up(decade)).flatten()
+    } else {
+        range.distance_of(BEYOND * worst / harm).and_then(|jump| up(jump.min(JUMP_MAX * decade)))
+    };
+    line.next = next.filter(|next| line.high.is_none_or(|high| *next < high));
 }
 
 #[cfg(test)]

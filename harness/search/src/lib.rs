@@ -22,5 +22,7 @@ pub mod page;
 pub mod search;
 pub mod space;
 pub mod space_file;
+#[cfg(test)]
+mod tests;
 mod toml_text;
 pub mod trial;

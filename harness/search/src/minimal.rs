@@ -3,7 +3,7 @@
 use crate::bench::SearchBench;
 use crate::candidate::FaultCandidate;
 use crate::error::SearchError;
-use crate::space::{FaultForm, KeyValues, SearchSpace};
+use crate::space::{FaultForm, SearchSpace};
 use crate::trial::FaultTrial;
 use octant_base::control::Control;
 
@@ -78,9 +78,7 @@ fn with_digits(
 ) -> Result<Option<FaultTrial>, SearchError> {
     let candidate = smallest.trial.candidate.clone();
     let mut space = smallest.space.clone();
-    let KeyValues::Between(range) = &mut space.forms[form].keys[key].values else {
-        return Ok(None);
-    };
+    let Some(range) = space.forms[form].keys[key].values.range_mut() else { return Ok(None) };
     if range.digits <= digits {
         return Ok(None);
     }

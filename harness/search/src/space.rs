@@ -46,6 +46,58 @@ pub enum KeyValues {
     OneOf(Vec<String>),
     /// A number between two others.
     Between(NumberRange),
+    /// A vector, times a number between two others.
+    Multiple(ScaledVector),
+}
+
+impl KeyValues {
+    /// Range of the number that is chosen.
+    #[must_use]
+    pub fn range(&self) -> Option<&NumberRange> {
+        match self {
+            Self::Between(range) => Some(range),
+            Self::Multiple(vector) => Some(&vector.factor),
+            Self::Fixed(_) | Self::OneOf(_) => None,
+        }
+    }
+
+    /// The same, to change it.
+    pub(crate) fn range_mut(&mut self) -> Option<&mut NumberRange> {
+        match self {
+            Self::Between(range) => Some(range),
+            Self::Multiple(vector) => Some(&mut vector.factor),
+            Self::Fixed(_) | Self::OneOf(_) => None,
+        }
+    }
+}
+
+/// A vector that is multiplied by a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScaledVector {
+    /// Numbers and units of its components; a unit may be empty.
+    pub components: Vec<(f64, String)>,
+    /// The factor; its digits are those of the components.
+    pub factor: NumberRange,
+}
+
+impl ScaledVector {
+    fn text(&self, place: f64) -> String {
+        let factor = self.factor.at(place);
+        let one = |(number, unit): &(f64, String)| {
+            quantity(rounded(factor * number, self.factor.digits), unit)
+        };
+        format!("[{}]", self.components.iter().map(one).collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// A number with few digits.
+fn rounded(number: f64, digits: i32) -> f64 {
+    plain(number, digits).parse().unwrap_or(number)
+}
+
+/// A number and its unit as TOML.
+fn quantity(number: f64, unit: &str) -> String {
+    if unit.is_empty() { format!("{number:?}") } else { format!("\"{number} {unit}\"") }
 }
 
 /// A range of numbers, with the unit in which they are written.
@@ -84,19 +136,32 @@ impl NumberRange {
             .then(|| ratio.ln() / (self.to / self.from).ln())
     }
 
+    /// The same with ends of a few digits that are within it.
+    pub(crate) fn rounded_inward(self) -> Self {
+        let inward = |end: f64, away: f64| {
+            let near = rounded(end, self.digits);
+            if (self.from..=self.to).contains(&near) {
+                near
+            } else {
+                rounded(end * away, self.digits)
+            }
+        };
+        // One unit of the last digit is less than this.
+        let step = 1.0 + 10f64.powi(1 - self.digits);
+        let (from, to) = match self.from > 0.0 {
+            true => (inward(self.from, step), inward(self.to, 1.0 / step)),
+            false => (self.from, inward(self.to, 1.0 / step)),
+        };
+        if from < to { Self { from, to, ..self } } else { self }
+    }
+
     /// A value as TOML, rounded to the digits of the range and kept within it.
     fn text(&self, place: f64) -> String {
         let value = self.at(place);
         if self.is_whole {
             return format!("{}", value.round().clamp(self.from, self.to));
         }
-        let rounded: f64 = plain(value, self.digits).parse().unwrap_or(value);
-        let number = rounded.clamp(self.from, self.to);
-        if self.unit.is_empty() {
-            format!("{number:?}")
-        } else {
-            format!("\"{number} {}\"", self.unit)
-        }
+        quantity(rounded(value, self.digits).clamp(self.from, self.to), &self.unit)
     }
 }
 
@@ -108,6 +173,7 @@ impl FormKey {
             KeyValues::Fixed(text) => text.clone(),
             KeyValues::OneOf(texts) => texts[index(place, texts.len())].clone(),
             KeyValues::Between(range) => range.text(place),
+            KeyValues::Multiple(vector) => vector.text(place),
         };
         if self.name == ONSET {
             format!("trigger = {{ at = {value} }}")
@@ -136,14 +202,10 @@ impl FaultForm {
     /// than a time, else the duration.
     #[must_use]
     pub fn size(&self) -> Option<usize> {
-        let is_size = |key: &&FormKey| match &key.values {
-            KeyValues::Between(range) => range.is_logarithmic && !is_time(&key.name),
-            _ => false,
-        };
-        let named = |key: &FormKey| {
-            key.name == "duration"
-                && matches!(&key.values, KeyValues::Between(range) if range.is_logarithmic)
-        };
+        let is_scaled =
+            |key: &FormKey| key.values.range().is_some_and(|range| range.is_logarithmic);
+        let is_size = |key: &&FormKey| is_scaled(key) && !is_time(&key.name);
+        let named = |key: &FormKey| key.name == "duration" && is_scaled(key);
         let sized = self.keys.iter().find(is_size).map(|key| &key.name);
         match sized {
             Some(name) => self.keys.iter().position(|key| key.name == *name),

@@ -1,7 +1,7 @@
 //! The space of a search as a file.
 
 use crate::derived::{RunTimes, divided};
-use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, SearchSpace};
+use crate::space::{FaultForm, FormKey, KeyValues, NumberRange, ONSET, ScaledVector, SearchSpace};
 use crate::toml_text::written;
 use octant_base::names::suggestion;
 use octant_faults::kinds;
@@ -131,29 +131,38 @@ fn values(key: &str, value: &Value, times: RunTimes) -> Result<KeyValues, String
             _ => Err("expected { one_of = [VALUE, ...] } and nothing else".to_owned()),
         };
     }
-    let known = ["from", "to", "scale"];
-    if let Some(other) = table.keys().find(|key| !known.contains(&key.as_str())) {
-        return Err(format!(
-            "unknown key {other:?}, {}",
-            suggestion(other, known.into_iter(), "keys")
-        ));
+    if let Some(vector) = table.get("times") {
+        let factor = range("times", table, &["times", "from", "to", "scale"])?;
+        return scaled(vector, factor).map(KeyValues::Multiple);
     }
-    let (Some(from), Some(to)) = (table.get("from"), table.get("to")) else {
-        return Err("expected a value, { one_of = [...] } or { from = ..., to = ... }".to_owned());
-    };
-    let range = range(key, from, to, table.get("scale"))?;
+    let range = range(key, table, &["from", "to", "scale"])?;
     if key == ONSET && range.to * factor(&range.unit) > times.length_s {
         return Err(format!("found an onset after the end of the run, {} s", times.length_s));
     }
     Ok(KeyValues::Between(range))
 }
 
-fn range(
-    key: &str,
-    from: &Value,
-    to: &Value,
-    scale: Option<&Value>,
-) -> Result<NumberRange, String> {
+/// A vector of numbers, with units where they are texts.
+fn scaled(vector: &Value, factor: NumberRange) -> Result<ScaledVector, String> {
+    let all = vector.as_array().filter(|all| !all.is_empty());
+    let all = all.ok_or_else(|| "times: expected a vector".to_owned())?;
+    if !factor.unit.is_empty() {
+        return Err(format!("found a factor in {}, expected numbers", factor.unit));
+    }
+    let components = all.iter().map(number).collect::<Result<_, _>>()?;
+    Ok(ScaledVector { components, factor: NumberRange { is_whole: false, ..factor } })
+}
+
+/// Reads `from`, `to` and `scale`.
+fn range(key: &str, table: &Table, known: &[&str]) -> Result<NumberRange, String> {
+    if let Some(other) = table.keys().find(|key| !known.contains(&key.as_str())) {
+        let known = suggestion(other, known.iter().copied(), "keys");
+        return Err(format!("unknown key {other:?}, {known}"));
+    }
+    let (Some(from), Some(to)) = (table.get("from"), table.get("to")) else {
+        return Err("expected a value, { one_of = [...] } or { from = ..., to = ... }".to_owned());
+    };
+    let scale = table.get("scale");
     let is_whole = from.is_integer() && to.is_integer();
     let ((from, unit_from), (to, unit)) = (number(from)?, number(to)?);
     let same = unit_from.is_empty() == unit.is_empty()
@@ -182,12 +191,14 @@ fn range(
 /// A number, with its unit where it is a text.
 fn number(value: &Value) -> Result<(f64, String), String> {
     let plain = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    if let Some(number) = plain {
+    if let Some(number) = plain.filter(|number| number.is_finite()) {
         return Ok((number, String::new()));
     }
     let text = value.as_str().unwrap_or_default();
     match divided(text) {
-        Some((number, unit)) if one(unit).is_ok() => Ok((number, unit.to_owned())),
+        Some((number, unit)) if number.is_finite() && one(unit).is_ok() => {
+            Ok((number, unit.to_owned()))
+        }
         _ => Err(format!("found {}, expected a number, or a number and a unit", written(value))),
     }
 }
@@ -212,22 +223,29 @@ pub fn to_toml(space: &SearchSpace) -> String {
             let values = match &key.values {
                 KeyValues::Fixed(text) => text.clone(),
                 KeyValues::OneOf(texts) => format!("{{ one_of = [{}] }}", texts.join(", ")),
-                KeyValues::Between(range) => {
-                    let scale = if range.is_logarithmic { "log" } else { "linear" };
-                    let end = |value: f64| match (range.unit.as_str(), range.is_whole) {
-                        ("", true) => format!("{value}"),
-                        ("", false) => format!("{value:?}"),
-                        (unit, _) => format!("\"{value} {unit}\""),
-                    };
-                    format!(
-                        "{{ from = {}, to = {}, scale = {scale:?} }}",
-                        end(range.from),
-                        end(range.to)
-                    )
+                KeyValues::Between(range) => format!("{{ {} }}", range_text(range)),
+                KeyValues::Multiple(vector) => {
+                    let one = |(number, unit): &(f64, String)| end(*number, unit, false);
+                    let all: Vec<String> = vector.components.iter().map(one).collect();
+                    format!("{{ times = [{}], {} }}", all.join(", "), range_text(&vector.factor))
                 }
             };
             out += &format!("{} = {values}\n", key.name);
         }
     }
     out
+}
+
+fn range_text(range: &NumberRange) -> String {
+    let scale = if range.is_logarithmic { "log" } else { "linear" };
+    let end = |value| end(value, &range.unit, range.is_whole);
+    format!("from = {}, to = {}, scale = {scale:?}", end(range.from), end(range.to))
+}
+
+fn end(value: f64, unit: &str, is_whole: bool) -> String {
+    match (unit, is_whole) {
+        ("", true) => format!("{value}"),
+        ("", false) => format!("{value:?}"),
+        (unit, _) => format!("\"{value} {unit}\""),
+    }
 }

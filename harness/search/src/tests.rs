@@ -1,0 +1,260 @@
+//! Searches on a short run at a low rate.
+
+use crate::bench::SearchBench;
+use crate::candidate::{FaultCandidate, PlacedFault};
+use crate::derived::{RunTimes, derived, searchable};
+use crate::error::SearchError;
+use crate::found::{SearchFound, worst};
+use crate::minimal::minimal;
+use crate::search::{SearchPlan, SearchStrategy, is_run, search};
+use crate::space::{FormKey, SearchSpace};
+use crate::space_file::{SpaceError, read, to_toml};
+use crate::trial::{FaultTrial, TrialResult};
+use octant_base::control::Control;
+use octant_faults::kinds;
+use octant_scenario::Scenario;
+use std::path::Path;
+
+/// 24 minutes at 20 Hz.
+const SHORT: &str = "schema = 1
+title = \"short\"
+seed = 1
+[imu]
+rate = \"20 Hz\"
+[procedure.calibration]
+positions = \"eight\"
+duration = \"24 min\"
+";
+const TIMES: RunTimes = RunTimes { sample_s: 0.05, length_s: 1440.0 };
+
+fn scenario(changes: &[&str]) -> Scenario {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    Scenario::parse(SHORT, "short.toml", Path::new("."), &changes).unwrap()
+}
+
+fn bench(jobs: usize) -> SearchBench {
+    SearchBench::new(&scenario(&[]), 1, jobs, &Control::default()).unwrap()
+}
+
+fn space(names: &[&str]) -> SearchSpace {
+    let all: Vec<_> = names.iter().map(|name| kinds::named(name).unwrap()).collect();
+    derived(&all, TIMES)
+}
+
+fn plan(runs: usize) -> SearchPlan {
+    SearchPlan { strategy: SearchStrategy::Guided, runs, seed: 1, pairs: 0.3, enough: None }
+}
+
+fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<FaultTrial> {
+    let space = space(&["bias-step", "spike", "scale-step"]);
+    search(bench, &space, &plan(runs), journal, &Control::default(), &mut |_| {}).unwrap()
+}
+
+#[test]
+fn threads_and_interruptions_change_nothing() {
+    let one = searched(&bench(1), 48, None);
+    assert!(one.iter().filter(|trial| is_run(trial)).count() >= 48);
+    assert_eq!(searched(&bench(2), 48, None), one);
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("search.jsonl");
+    let bench = bench(2);
+    assert_eq!(searched(&bench, 48, Some(&journal)), one);
+    let whole = std::fs::read(&journal).unwrap();
+    // Cut anywhere, as a kill does: in the middle of a line, of a proposal, of the first line.
+    for kept in [whole.len() - 7, whole.len() / 2, 1000, 30, 0] {
+        std::fs::write(&journal, &whole[..kept]).unwrap();
+        assert_eq!(searched(&bench, 48, Some(&journal)), one, "{kept}");
+        assert_eq!(std::fs::read(&journal).unwrap(), whole, "{kept}");
+    }
+    // A longer search begins as the shorter one.
+    let longer = searched(&bench, 60, Some(&journal));
+    assert_eq!(longer[..one.len()], one);
+}
+
+#[test]
+fn a_journal_of_another_search_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("search.jsonl");
+    let bench = bench(2);
+    let tried = |space: &SearchSpace, plan: &SearchPlan| {
+        search(&bench, space, plan, Some(&journal), &Control::default(), &mut |_| {})
+            .map(|trials| trials.len())
+            .map_err(|error| error.to_string())
+    };
+    let bias = space(&["bias-step"]);
+    tried(&bias, &plan(16)).unwrap();
+    let told = tried(&space(&["spike"]), &plan(16)).unwrap_err();
+    assert!(told.contains("line 1: found space_blake3"), "{told}");
+    let told = tried(&bias, &SearchPlan { seed: 2, ..plan(16) }).unwrap_err();
+    assert!(told.contains("found search_seed 1, expected 2"), "{told}");
+    let text = std::fs::read_to_string(&journal).unwrap();
+    // A result that was edited belongs to its candidate still; a candidate that was edited is no longer this search's.
+    let edited = text.replacen("\"places\":[0.", "\"places\":[0.9", 1);
+    std::fs::write(&journal, edited).unwrap();
+    let told = tried(&bias, &plan(16)).unwrap_err();
+    assert!(told.contains("line 2: found another candidate"), "{told}");
+    std::fs::write(&journal, text.replace("{\"schema\":1", "{\"schema\":2")).unwrap();
+    let told = tried(&bias, &plan(16)).unwrap_err();
+    assert!(told.contains("newer version"), "{told}");
+}
+
+#[test]
+fn a_pair_is_made_a_single_fault_that_runs_again() {
+    let bench = bench(2);
+    let space = space(&["asymmetry", "aiding-late"]);
+    // All gyros for two minutes; beside them a fault that does nothing to speak of.
+    let placed = |kind: &str, set: &[(&str, f64)]| {
+        let form = space.forms.iter().position(|form| form.kind.name == kind).unwrap();
+        let keys = space.forms[form].keys.iter();
+        let of = |key: &FormKey| match set.iter().find(|(name, _)| *name == key.name) {
+            Some((_, value)) => match key.values.range() {
+                Some(range) if range.is_logarithmic => {
+                    range.distance_of(value / range.from).unwrap()
+                }
+                Some(range) => (value - range.from) / (range.to - range.from),
+                None => *value,
+            },
+            None => 0.01,
+        };
+        PlacedFault { form, places: keys.map(of).collect() }
+    };
+    let gyros = [("channels", 0.9), ("error", 127.0), ("onset", 366.0), ("duration", 131.0)];
+    let faults = vec![placed("asymmetry", &gyros), placed("aiding-late", &[("onset", 1200.0)])];
+    let tried = bench.run(&space, vec![FaultCandidate { faults }], &Control::default()).unwrap();
+    let found = tried.into_iter().next().unwrap();
+    let harm = found.unnoticed_harm().unwrap();
+    assert!(harm >= 1.0, "{harm}");
+    let smaller = minimal(&bench, &space, &found, &Control::default()).unwrap();
+    assert_eq!(smaller.trial.candidate.faults.len(), 1);
+    let text = smaller.trial.candidate.to_toml(&smaller.space);
+    assert!(text.contains("kind = \"asymmetry\"") && !text.contains("aiding"), "{text}");
+    assert!(smaller.trial.unnoticed_harm().unwrap() >= 0.8 * harm);
+    // Written, read and run undivided it has the same effect, to the bit.
+    let text = bench.text_of(&smaller.space, &smaller.trial.candidate, &[]);
+    assert_eq!(bench.again(&text, &Control::default()).unwrap(), smaller.trial.result);
+}
+
+#[test]
+fn every_kind_that_acts_on_samples_has_a_form_or_a_reason() {
+    let all: Vec<_> = searchable().collect();
+    let bench = bench(1);
+    let (space, left_out) = bench.possible(&derived(&all, TIMES));
+    for kind in &all {
+        let has_form = space.forms.iter().any(|form| form.kind.name == kind.name);
+        let why: Vec<_> = left_out.iter().filter(|(name, _)| name == kind.name).collect();
+        assert!(has_form || !why.is_empty(), "{}", kind.name);
+    }
+    assert!(all.len() > 50 && left_out.len() < 12, "{left_out:?}");
+    let sized = space.forms.iter().filter(|form| form.size().is_some()).count();
+    assert!(sized * 10 > space.forms.len() * 8, "{sized} of {}", space.forms.len());
+    // Written as a file and read, it's the same space.
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), to_toml(&space)).unwrap();
+    let again = read(file.path(), TIMES).unwrap();
+    assert_eq!(bench.impossible(&again), None);
+    assert_eq!(again.forms.len(), space.forms.len());
+    for (a, b) in again.forms.iter().zip(&space.forms) {
+        let ends = |form: &crate::space::FaultForm, at: f64| {
+            let mut lines: Vec<String> = form.keys.iter().map(|key| key.line(at)).collect();
+            lines.sort();
+            lines
+        };
+        assert_eq!((ends(a, 0.0), ends(a, 1.0)), (ends(b, 0.0), ends(b, 1.0)), "{}", a.kind.name);
+    }
+}
+
+#[test]
+fn a_file_that_is_no_space_is_refused_with_its_field() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let told = |text: &str| {
+        std::fs::write(file.path(), text).unwrap();
+        let error = read(file.path(), TIMES).unwrap_err();
+        assert!(matches!(error, SpaceError::Field { .. } | SpaceError::Toml { .. }));
+        error.to_string()
+    };
+    let head =
+        "schema = 1\n[[faults]]\nkind = \"bias-step\"\nchannels = \"gyro x\"\nonset = \"5 s\"\n";
+    let cases = [
+        ("", "schema: expected schema = 1"),
+        ("schema = 2", "schema: found 2, of a newer version"),
+        ("schema = 1", "faults: expected one [[faults]] or more"),
+        ("schema = 1\nfault = 3", "fault: unknown key, did you mean \"faults\"?"),
+        (
+            "schema = 1\n[[faults]]\nkind = \"bias-stop\"",
+            "faults[1].kind: found \"bias-stop\", which is no kind, did you mean \"bias-step\"?",
+        ),
+        (&format!("{head}id = \"a\""), "faults[1].id: found an id"),
+        (&format!("{head}trigger = {{ at = \"1 s\" }}"), "faults[1].onset: expected either onset"),
+        (
+            &format!("{head}amplitude = {{ from = \"1 deg/h\" }}"),
+            "faults[1].amplitude: expected a value",
+        ),
+        (
+            &format!("{head}amplitude = {{ from = \"1 deg/h\", to = \"1 ug\" }}"),
+            "expected one dimension",
+        ),
+        (
+            &format!("{head}amplitude = {{ from = \"2 deg/h\", to = \"1 deg/h\" }}"),
+            "expected a larger end",
+        ),
+        (
+            &format!(
+                "{head}amplitude = {{ from = \"-2 deg/h\", to = \"1 deg/h\", scale = \"log\" }}"
+            ),
+            "expected ends above zero",
+        ),
+        (
+            &format!("{head}amplitude = {{ from = \"nan deg/h\", to = \"1 deg/h\" }}"),
+            "expected a number",
+        ),
+        (&format!("{head}amplitude = {{ one_of = [] }}"), "expected { one_of = [VALUE, ...] }"),
+        (&format!("{head}amplitude = {{ from = 1, to = 2, step = 1 }}"), "unknown key \"step\""),
+        ("schema = ", "TOML"),
+    ];
+    for (text, expected) in cases {
+        let told = told(text);
+        assert!(told.contains(expected), "{text}: {told}");
+    }
+    // The values of keys are checked by the scenario.
+    std::fs::write(file.path(), format!("{head}amplitude = {{ from = 1, to = 2 }}")).unwrap();
+    let (form, reason) = bench(1).impossible(&read(file.path(), TIMES).unwrap()).unwrap();
+    assert!(form == 0 && reason.contains("expected"), "{reason}");
+}
+
+#[test]
+fn a_scenario_that_gives_no_reference_is_refused() {
+    let control = Control::default();
+    let tried =
+        |scenario: &Scenario| SearchBench::new(scenario, 1, 1, &control).map(|_| ()).unwrap_err();
+    let fault = "[[faults]]\nid = \"a\"\nkind = \"spike\"\nchannels = \"gyro x\"\namplitude = \"1 deg/h\"\n\
+                 trigger = { at = \"5 s\" }\nduration = \"1 samples\"\n";
+    let text = format!("{SHORT}{fault}");
+    let faulty = Scenario::parse(&text, "short.toml", Path::new("."), &[]).unwrap();
+    assert!(matches!(tried(&faulty), SearchError::HasFaults(1)));
+    control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(matches!(tried(&scenario(&[])), SearchError::Cancelled));
+}
+
+#[test]
+fn counts_of_a_result_add_up() {
+    let trials = searched(&bench(2), 48, None);
+    let space = space(&["bias-step", "spike", "scale-step"]);
+    let found = SearchFound::of(&trials, &space);
+    let unnoticed = trials.iter().filter(|trial| trial.unnoticed_harm().is_some()).count();
+    assert_eq!(found.runs, found.noticed + found.not_fired + unnoticed + found.broken.len());
+    assert_eq!(found.runs + found.refused, trials.len());
+    assert_eq!(
+        found.kinds.iter().map(|kind| kind.runs).sum::<usize>() + found.broken.len(),
+        found.runs
+    );
+    let most = worst(&trials).unwrap();
+    assert_eq!(Some(most.unnoticed_harm().unwrap()), found.worst.as_ref().map(|worst| worst.harm));
+    // Each parameter's largest shift is that of one of the trials, and none is larger.
+    for (parameter, shift) in &found.largest_unnoticed {
+        let largest =
+            trials.iter().filter_map(FaultTrial::effect).filter(|effect| effect.is_unnoticed());
+        let largest = largest.filter_map(|effect| effect.shifts_sigma.get(parameter));
+        assert_eq!(largest.map(|sigma| sigma.abs()).fold(0.0, f64::max), shift.sigma.abs());
+    }
+    assert!(trials.iter().all(|trial| !matches!(trial.result, TrialResult::Broken(_))));
+}
