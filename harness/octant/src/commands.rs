@@ -62,7 +62,7 @@ enum Command {
     Rejudge(rejudge::Arguments),
     /// Watch a run: its progress, drift, parameters, faults and lateness.
     Watch(watch::Arguments),
-    /// List and describe the kinds of faults, sweep a fault, or minimise a set of faults.
+    /// List and describe the kinds of faults, sweep a fault, search for the worst, or minimise a set of faults.
     Faults(faults::Arguments),
     /// Build, check and step FMUs.
     Fmu(fmu::Arguments),

@@ -42,6 +42,7 @@ mod faults_any;
 mod faults_host;
 mod faults_run;
 mod faults_scenario;
+mod faults_search;
 mod faults_suite;
 mod faults_tools;
 mod fmu_bits;

@@ -1,10 +1,11 @@
 //! Runs candidates, each beside the run without faults.
 
-use crate::candidate::FaultCandidate;
+use crate::candidate::{FaultCandidate, PlacedFault};
 use crate::error::SearchError;
-use crate::space::{FormKey, KeyValues, NumberRange, SearchSpace};
+use crate::space::{FaultForm, KeyValues, SearchSpace};
 use crate::trial::{FaultTrial, TrialEffect, TrialResult};
 use octant_base::control::Control;
+use octant_random::draws::Draws;
 use octant_run::branches::{BranchPlan, run_branches};
 use octant_run::drive::Ended;
 use octant_run::method::{MethodError, MethodRun, StreamKeeping, run_method};
@@ -12,6 +13,9 @@ use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
+
+/// Random candidates of a form that are tried before it counts as impossible.
+const TRIES: usize = 16;
 
 /// A scenario without faults, its run, and what it takes to run it with some.
 #[derive(Debug)]
@@ -167,103 +171,75 @@ impl SearchBench {
     }
 
     /// Leaves out of a space the forms, and the choices of keys, that the scenario can't have; with the reasons
-    /// for the forms.
+    /// for the kinds of which no form is left.
     #[must_use]
     pub fn possible(&self, space: &SearchSpace) -> (SearchSpace, Vec<(String, String)>) {
-        let mut left_out = Vec::new();
-        let mut forms = Vec::new();
+        let mut left_out: Vec<(String, String)> = Vec::new();
+        let mut forms: Vec<FaultForm> = Vec::new();
         for (index, form) in space.forms.iter().enumerate() {
-            let mut kept = form.clone();
-            for (place, key) in form.keys.iter().enumerate() {
-                if let Some(texts) = self.accepted(space, index, place, key) {
-                    kept.keys[place].values = KeyValues::OneOf(texts);
-                } else if let Some(range) = kept.keys[place].values.range_mut() {
-                    let is_possible = |at: f64| {
-                        self.check(space, &middle(space, index, Some((place, at)))).is_ok()
-                    };
-                    *range = within(range, &is_possible);
-                }
-            }
-            let none =
-                |key: &FormKey| matches!(&key.values, KeyValues::OneOf(all) if all.is_empty());
-            match self.check(space, &middle(space, index, None)) {
-                _ if !kept.keys.iter().any(none) => forms.push(kept),
+            match self.possible_form(space, index) {
+                Ok(kept) => forms.push(kept),
                 Err(reason) => left_out.push((form.kind.name.to_owned(), reason)),
-                Ok(()) => {
-                    left_out.push((form.kind.name.to_owned(), "no choice is possible".to_owned()))
-                }
             }
         }
+        left_out.retain(|(name, _)| !forms.iter().any(|form| form.kind.name == name));
+        left_out.dedup_by(|a, b| a.0 == b.0);
         (SearchSpace { forms }, left_out)
     }
 
-    /// The first form of a space that the scenario can't have with every choice and the middle of every range, with
-    /// the reason.
-    #[must_use]
-    pub fn impossible(&self, space: &SearchSpace) -> Option<(usize, String)> {
-        let places = |key: &FormKey| match &key.values {
-            KeyValues::Fixed(_) => vec![0.5],
-            KeyValues::OneOf(all) => {
-                (0..all.len()).map(|index| (index as f64 + 0.5) / all.len() as f64).collect()
+    /// A form with the choices that the scenario can have.
+    fn possible_form(&self, space: &SearchSpace, form: usize) -> Result<FaultForm, String> {
+        self.tried(space, form, None)?;
+        let mut kept = space.forms[form].clone();
+        for (key, of) in kept.keys.iter_mut().enumerate() {
+            if let KeyValues::OneOf(texts) = &mut of.values {
+                let count = texts.len() as f64;
+                let mut place = 0.5 / count;
+                texts.retain(|_| {
+                    let is_possible = self.tried(space, form, Some((key, place))).is_ok();
+                    place += 1.0 / count;
+                    is_possible
+                });
             }
-            // An end may be impossible beside the middle of another key; such candidates cost no run.
-            KeyValues::Between(_) | KeyValues::Multiple(_) => vec![0.5],
-        };
-        (0..space.forms.len()).find_map(|form| {
-            let keys = space.forms[form].keys.iter().enumerate();
-            let mut tried =
-                keys.flat_map(|(key, of)| places(of).into_iter().map(move |at| (key, at)));
-            tried.find_map(|other| {
-                Some((form, self.check(space, &middle(space, form, Some(other))).err()?))
-            })
-        })
+        }
+        Ok(kept)
     }
 
-    /// Choices of a key that the scenario can have; `None` for a key without choices that is possible.
-    fn accepted(
+    /// Tries random candidates of a form, with one key at a place, until the scenario can have one.
+    fn tried(
         &self,
         space: &SearchSpace,
         form: usize,
-        place: usize,
-        key: &FormKey,
-    ) -> Option<Vec<String>> {
-        let is_possible =
-            |at: f64| self.check(space, &middle(space, form, Some((place, at)))).is_ok();
-        match &key.values {
-            KeyValues::OneOf(texts) => {
-                let count = texts.len() as f64;
-                let at = |index: usize| (index as f64 + 0.5) / count;
-                let kept = texts.iter().enumerate().filter(|(index, _)| is_possible(at(*index)));
-                Some(kept.map(|(_, text)| text.clone()).collect())
+        other: Option<(usize, f64)>,
+    ) -> Result<(), String> {
+        let mut draws = Draws::of(0, "faults search possible", form as u64);
+        let mut last = Ok(());
+        for _ in 0..TRIES {
+            let mut fault = PlacedFault::random(space, form, &mut draws);
+            if let Some((key, place)) = other {
+                fault.places[key] = place;
             }
-            // With the other keys in the middle it's this one only if all of its values are wrong.
-            _ => None,
+            last = self.check(space, &FaultCandidate { faults: vec![fault] });
+            if last.is_ok() {
+                break;
+            }
         }
+        last
     }
-}
 
-/// The part of a range whose ends are possible, if its middle is.
-fn within(range: &NumberRange, is_possible: &dyn Fn(f64) -> bool) -> NumberRange {
-    const HALVINGS: u32 = 8;
-    let end = |end: f64| {
-        if is_possible(end) || !is_possible(0.5) {
-            return range.at(end);
-        }
-        let (mut good, mut bad) = (0.5, end);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (good + bad);
-            if is_possible(middle) { good = middle } else { bad = middle }
-        }
-        range.at(good)
-    };
-    NumberRange { from: end(0.0), to: end(1.0), ..range.clone() }.rounded_inward()
-}
-
-/// A candidate of a form with every value in its middle, but for one key at another place.
-fn middle(space: &SearchSpace, form: usize, other: Option<(usize, f64)>) -> FaultCandidate {
-    let mut places = vec![0.5; space.forms[form].keys.len()];
-    if let Some((key, place)) = other {
-        places[key] = place;
+    /// The first form of a space of which the scenario can't have every choice, with the reason.
+    #[must_use]
+    pub fn impossible(&self, space: &SearchSpace) -> Option<(usize, String)> {
+        (0..space.forms.len()).find_map(|form| {
+            let keys = space.forms[form].keys.iter().enumerate();
+            let choices = keys.flat_map(|(key, of)| {
+                let count = of.choices();
+                (0..count).map(move |choice| (key, (choice as f64 + 0.5) / count as f64, count))
+            });
+            let fixed =
+                choices.filter(|(.., count)| *count > 1).map(|(key, at, _)| Some((key, at)));
+            let mut tried = std::iter::once(None).chain(fixed);
+            tried.find_map(|other| Some((form, self.tried(space, form, other).err()?)))
+        })
     }
-    FaultCandidate { faults: vec![crate::candidate::PlacedFault { form, places }] }
 }

@@ -136,30 +136,13 @@ impl NumberRange {
             .then(|| ratio.ln() / (self.to / self.from).ln())
     }
 
-    /// The same with ends of a few digits that are within it.
-    pub(crate) fn rounded_inward(self) -> Self {
-        let inward = |end: f64, away: f64| {
-            let near = rounded(end, self.digits);
-            if (self.from..=self.to).contains(&near) {
-                near
-            } else {
-                rounded(end * away, self.digits)
-            }
-        };
-        // One unit of the last digit is less than this.
-        let step = 1.0 + 10f64.powi(1 - self.digits);
-        let (from, to) = match self.from > 0.0 {
-            true => (inward(self.from, step), inward(self.to, 1.0 / step)),
-            false => (self.from, inward(self.to, 1.0 / step)),
-        };
-        if from < to { Self { from, to, ..self } } else { self }
-    }
-
     /// A value as TOML, rounded to the digits of the range and kept within it.
     fn text(&self, place: f64) -> String {
         let value = self.at(place);
         if self.is_whole {
-            return format!("{}", value.round().clamp(self.from, self.to));
+            let whole = value.round().clamp(self.from, self.to);
+            let unit = &self.unit;
+            return if unit.is_empty() { whole.to_string() } else { format!("\"{whole} {unit}\"") };
         }
         quantity(rounded(value, self.digits).clamp(self.from, self.to), &self.unit)
     }

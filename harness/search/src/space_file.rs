@@ -170,7 +170,7 @@ fn range(key: &str, table: &Table, known: &[&str]) -> Result<NumberRange, String
     if !same {
         return Err(format!("found {unit_from:?} and {unit:?}, expected one dimension"));
     }
-    let from = from * factor(&unit_from) / factor(&unit);
+    let from = if unit_from == unit { from } else { from * factor(&unit_from) / factor(&unit) };
     if !(from < to) {
         return Err(format!("found from {from} to {to} {unit}, expected a larger end"));
     }
