@@ -1,6 +1,9 @@
 //! What a candidate did.
 
 use crate::candidate::FaultCandidate;
+use octant_faults::Receipt;
+use octant_faults::catalogue::Family;
+use octant_faults::kinds;
 use octant_run::method::MethodRun;
 use octant_run::twin::between;
 use octant_scenario::Scenario;
@@ -36,6 +39,10 @@ pub struct TrialEffect {
     pub fired: bool,
     /// First report of the core that the run without the faults doesn't have, or its refusal.
     pub noticed_by: Option<String>,
+    /// True if a change of the instrument lasted to the end of the calibration, whose parameters are then rightly
+    /// those of the changed instrument.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub instrument_changed: bool,
     /// Largest shift of a parameter in posterior σ, with its name.
     pub worst: Option<(String, f64)>,
     /// Largest distance from the navigation without the faults, nmi, and the largest radial error of that one.
@@ -59,21 +66,29 @@ impl TrialEffect {
                 .map(|(name, shift)| (name.clone(), finite(shift.sigma)))
                 .collect()
         };
+        let instrument_changed = run.receipts.iter().any(|receipt| stays(receipt, scenario));
         Some(Self {
+            instrument_changed,
             fired: run.receipts.iter().all(|receipt| receipt.fired()),
             worst: found.worst_parameter.clone().zip(found.worst_shift_sigma.map(finite)),
             radial_nmi: (found.navigation.as_ref())
                 .map(|n| [n.radial_max_nmi, n.twin_radial_max_nmi].map(finite)),
-            shifts_sigma: if noticed_by.is_none() { shifts(&found) } else { BTreeMap::new() },
+            shifts_sigma: if noticed_by.is_none() && !instrument_changed {
+                shifts(&found)
+            } else {
+                BTreeMap::new()
+            },
             noticed_by,
         })
     }
 
     /// Harm as a multiple of that from which a fault counts as harmful: a shift of 3 σ, or a difference of
-    /// position as large as the error of the run without the fault.
+    /// position as large as the error of the run without the fault. The shifts don't count where the instrument
+    /// changed for good.
     #[must_use]
     pub fn harm(&self) -> f64 {
-        let shift = self.worst.as_ref().map_or(0.0, |(_, sigma)| sigma / HARMFUL_SHIFT_SIGMA);
+        let worst = self.worst.as_ref().filter(|_| !self.instrument_changed);
+        let shift = worst.map_or(0.0, |(_, sigma)| sigma / HARMFUL_SHIFT_SIGMA);
         let drift = self.radial_nmi.map_or(
             0.0,
             |[radial, of_twin]| {
@@ -88,6 +103,17 @@ impl TrialEffect {
     pub fn is_unnoticed(&self) -> bool {
         self.fired && self.noticed_by.is_none()
     }
+}
+
+/// True for a change of the instrument that lasted to the last second of the calibration.
+fn stays(receipt: &Receipt, scenario: &Scenario) -> bool {
+    let changes = kinds::named(receipt.kind).is_some_and(|kind| {
+        matches!(kind.family, Family::Analogue | Family::RingLaser)
+            || ["temperature-ramp", "lever-arm"].contains(&kind.name)
+    });
+    let end = scenario.calibration_samples();
+    let last_second = 1_000_000_000 / scenario.sample_period_ns.max(1);
+    changes && receipt.last_sample.is_some_and(|last| last + last_second >= end)
 }
 
 /// The number, or the largest one: an effect that isn't a number is more than any.
