@@ -15,7 +15,7 @@ use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_search::bench::SearchBench;
 use octant_search::derived::{RunTimes, derived, searchable};
-use octant_search::error::SearchError;
+use octant_search::error::FaultSearchError;
 use octant_search::found::{FoundFault, SearchFound, worst};
 use octant_search::minimal::minimal;
 use octant_search::page::render;
@@ -205,7 +205,7 @@ fn possible(
     let (space, left_out) = bench.possible(&asked);
     match left_out.first() {
         Some((_, reason)) if space.forms.is_empty() => {
-            Err(failure(SearchError::EmptySpace(reason.clone())))
+            Err(failure(FaultSearchError::EmptySpace(reason.clone())))
         }
         _ => Ok((space, left_out)),
     }
@@ -233,7 +233,7 @@ fn conclude(
         let again = bench.again(&text, control).map_err(failure)?;
         if again != smaller.trial.result {
             let words = smaller.trial.candidate.words(&smaller.space);
-            return Err(failure(SearchError::Differs(format!(
+            return Err(failure(FaultSearchError::Differs(format!(
                 "{words}: undivided it had another effect"
             ))));
         }
@@ -283,19 +283,21 @@ fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
     }
 }
 
-fn failure(error: SearchError) -> Failure {
+fn failure(error: FaultSearchError) -> Failure {
     let message = format!("failed to search: {error}");
     match error {
-        SearchError::Method(error) => Failure::from(error),
-        SearchError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
-        SearchError::Cancelled => Failure { status: Verdict::Inconclusive.exit_code(), message },
-        SearchError::Journal { .. } | SearchError::Differs(_) => Failure::bench(message),
-        SearchError::HasFaults(_)
-        | SearchError::Unwritable(_)
-        | SearchError::Unreadable(_)
-        | SearchError::NoCalibration
-        | SearchError::EmptySpace(_)
-        | SearchError::OtherSearch { .. } => Failure::input(message),
+        FaultSearchError::Method(error) => Failure::from(error),
+        FaultSearchError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
+        FaultSearchError::Cancelled => {
+            Failure { status: Verdict::Inconclusive.exit_code(), message }
+        }
+        FaultSearchError::Journal { .. } | FaultSearchError::Differs(_) => Failure::bench(message),
+        FaultSearchError::HasFaults(_)
+        | FaultSearchError::Unwritable(_)
+        | FaultSearchError::Unreadable(_)
+        | FaultSearchError::NoCalibration
+        | FaultSearchError::EmptySpace(_)
+        | FaultSearchError::OtherSearch { .. } => Failure::input(message),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Runs candidates, each beside the run without faults.
 
 use crate::candidate::{FaultCandidate, PlacedFault};
-use crate::error::SearchError;
+use crate::error::FaultSearchError;
 use crate::space::{FaultForm, KeyValues, SearchSpace};
 use crate::trial::{FaultTrial, TrialEffect, TrialResult};
 use octant_base::control::Control;
@@ -37,20 +37,20 @@ impl SearchBench {
         seed: u64,
         jobs: usize,
         control: &Control,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, FaultSearchError> {
         if !scenario.faults.is_empty() {
-            return Err(SearchError::HasFaults(scenario.faults.len()));
+            return Err(FaultSearchError::HasFaults(scenario.faults.len()));
         }
-        let base = scenario.to_toml_with(&[], &[]).map_err(SearchError::Unwritable)?;
+        let base = scenario.to_toml_with(&[], &[]).map_err(FaultSearchError::Unwritable)?;
         let twin = run_method(scenario, Method::Primary, seed, StreamKeeping::Hash, control)?;
         if twin.ended == Ended::Cancelled {
-            return Err(SearchError::Cancelled);
+            return Err(FaultSearchError::Cancelled);
         }
         match twin.calibration.as_ref() {
-            None => return Err(SearchError::NoCalibration),
+            None => return Err(FaultSearchError::NoCalibration),
             Some(score) => {
                 if let Some(reason) = &score.refused {
-                    return Err(SearchError::TwinRefused(reason.clone()));
+                    return Err(FaultSearchError::TwinRefused(reason.clone()));
                 }
             }
         }
@@ -108,7 +108,7 @@ impl SearchBench {
         space: &SearchSpace,
         candidates: Vec<FaultCandidate>,
         control: &Control,
-    ) -> Result<Vec<FaultTrial>, SearchError> {
+    ) -> Result<Vec<FaultTrial>, FaultSearchError> {
         let scenarios: Vec<Result<Scenario, String>> = (candidates.iter())
             .map(|candidate| self.scenario_of(&self.text_of(space, candidate, &[])))
             .collect();
@@ -132,7 +132,7 @@ impl SearchBench {
         let is_cancelled = cancelled.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         if is_cancelled || results.len() != plans.len() {
-            return Err(SearchError::Cancelled);
+            return Err(FaultSearchError::Cancelled);
         }
         for (place, scenario) in scenarios.into_iter().enumerate() {
             if let Err(reason) = scenario {
@@ -161,11 +161,11 @@ impl SearchBench {
     ///
     /// # Errors
     /// If it can't be read or run.
-    pub fn again(&self, text: &str, control: &Control) -> Result<TrialResult, SearchError> {
-        let scenario = self.scenario_of(text).map_err(SearchError::Unreadable)?;
+    pub fn again(&self, text: &str, control: &Control) -> Result<TrialResult, FaultSearchError> {
+        let scenario = self.scenario_of(text).map_err(FaultSearchError::Unreadable)?;
         let run = run_method(&scenario, Method::Primary, self.seed, StreamKeeping::Hash, control)?;
         if run.ended == Ended::Cancelled {
-            return Err(SearchError::Cancelled);
+            return Err(FaultSearchError::Cancelled);
         }
         Ok(self.judged(&scenario, Ok(run)))
     }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// Reasons why a search gave no result.
 #[derive(Debug, thiserror::Error)]
-pub enum SearchError {
+pub enum FaultSearchError {
     /// The scenario has faults of its own.
     #[error("found a scenario with {0} of its own [[faults]], expected none: the search sets them")]
     HasFaults(usize),

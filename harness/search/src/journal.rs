@@ -3,7 +3,7 @@
 //! Lines of JSON. The first names the search, each further one is a trial. A line without an end was
 //! interrupted, and is cut off.
 
-use crate::error::SearchError;
+use crate::error::FaultSearchError;
 use crate::trial::FaultTrial;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
@@ -50,9 +50,10 @@ impl SearchJournal {
     ///
     /// # Errors
     /// If it is of another search, is damaged, or the operating system refuses.
-    pub fn open(path: &Path, identity: &SearchIdentity) -> Result<Self, SearchError> {
-        let failed =
-            |action| move |source| SearchError::Journal { action, path: path.to_owned(), source };
+    pub fn open(path: &Path, identity: &SearchIdentity) -> Result<Self, FaultSearchError> {
+        let failed = |action| {
+            move |source| FaultSearchError::Journal { action, path: path.to_owned(), source }
+        };
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
         let mut file = options.open(path).map_err(failed("open"))?;
@@ -60,7 +61,7 @@ impl SearchJournal {
         let text = std::fs::read(path).map_err(failed("read"))?;
         let end = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let other =
-            |line, problem| SearchError::OtherSearch { path: path.to_owned(), line, problem };
+            |line, problem| FaultSearchError::OtherSearch { path: path.to_owned(), line, problem };
         let whole = std::str::from_utf8(&text[..end])
             .map_err(|_| other(1, "found bytes that are not UTF-8".to_owned()))?;
         let mut known = Vec::new();
@@ -90,7 +91,7 @@ impl SearchJournal {
     pub fn take(
         &mut self,
         candidates: &[crate::candidate::FaultCandidate],
-    ) -> Result<Option<Vec<FaultTrial>>, SearchError> {
+    ) -> Result<Option<Vec<FaultTrial>>, FaultSearchError> {
         if self.known.len() < candidates.len() {
             // A part of a proposal is run again as a whole.
             let kept = !self.known.is_empty();
@@ -104,7 +105,7 @@ impl SearchJournal {
         for (trial, candidate) in trials.iter().zip(candidates) {
             self.line += 1;
             if trial.candidate != *candidate {
-                return Err(SearchError::OtherSearch {
+                return Err(FaultSearchError::OtherSearch {
                     path: self.path.clone(),
                     line: self.line,
                     problem: "found another candidate than this search has here".to_owned(),
@@ -115,9 +116,9 @@ impl SearchJournal {
     }
 
     /// Cuts off all lines but the first ones.
-    fn forget_from(&mut self, lines: usize) -> Result<(), SearchError> {
+    fn forget_from(&mut self, lines: usize) -> Result<(), FaultSearchError> {
         let failed =
-            |source| SearchError::Journal { action: "cut", path: self.path.clone(), source };
+            |source| FaultSearchError::Journal { action: "cut", path: self.path.clone(), source };
         let text = std::fs::read(&self.path).map_err(failed)?;
         let kept = text.split_inclusive(|byte| *byte == b'\n').take(lines).map(<[u8]>::len);
         let kept = kept.sum::<usize>() as u64;
@@ -130,14 +131,14 @@ impl SearchJournal {
     ///
     /// # Errors
     /// If the operating system refuses.
-    pub fn keep(&mut self, trials: &[FaultTrial]) -> Result<(), SearchError> {
+    pub fn keep(&mut self, trials: &[FaultTrial]) -> Result<(), FaultSearchError> {
         self.line += trials.len();
         self.append(trials)
     }
 
-    fn append<T: Serialize>(&mut self, values: &[T]) -> Result<(), SearchError> {
+    fn append<T: Serialize>(&mut self, values: &[T]) -> Result<(), FaultSearchError> {
         let failed =
-            |source| SearchError::Journal { action: "write", path: self.path.clone(), source };
+            |source| FaultSearchError::Journal { action: "write", path: self.path.clone(), source };
         let mut text = String::new();
         for value in values {
             text += &serde_json::to_string(value).map_err(|error| failed(error.into()))?;

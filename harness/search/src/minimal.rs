@@ -2,7 +2,7 @@
 
 use crate::bench::SearchBench;
 use crate::candidate::FaultCandidate;
-use crate::error::SearchError;
+use crate::error::FaultSearchError;
 use crate::space::{FaultForm, SearchSpace};
 use crate::trial::FaultTrial;
 use octant_base::control::Control;
@@ -31,7 +31,7 @@ pub fn minimal(
     space: &SearchSpace,
     found: &FaultTrial,
     control: &Control,
-) -> Result<MinimalFault, SearchError> {
+) -> Result<MinimalFault, FaultSearchError> {
     let least = (HARM_KEPT * found.unnoticed_harm().unwrap_or(0.0)).max(1.0);
     let mut smallest = MinimalFault { trial: found.clone(), space: space.clone(), runs: 0 };
     if found.candidate.faults.len() > 1 {
@@ -75,7 +75,7 @@ fn with_digits(
     digits: i32,
     least: f64,
     control: &Control,
-) -> Result<Option<FaultTrial>, SearchError> {
+) -> Result<Option<FaultTrial>, FaultSearchError> {
     let candidate = smallest.trial.candidate.clone();
     let mut space = smallest.space.clone();
     let Some(range) = space.forms[form].keys[key].values.range_mut() else { return Ok(None) };

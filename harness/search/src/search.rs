@@ -2,7 +2,7 @@
 
 use crate::bench::SearchBench;
 use crate::candidate::FaultCandidate;
-use crate::error::SearchError;
+use crate::error::FaultSearchError;
 use crate::guide::SearchGuide;
 use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal};
 use crate::latin::latin;
@@ -63,7 +63,7 @@ pub fn search(
     journal: Option<&Path>,
     control: &Control,
     tell: &mut dyn FnMut(&[FaultTrial]),
-) -> Result<Vec<FaultTrial>, SearchError> {
+) -> Result<Vec<FaultTrial>, FaultSearchError> {
     let mut journal =
         journal.map(|path| SearchJournal::open(path, &identity(bench, space, plan))).transpose()?;
     let mut proposer = match plan.strategy {
@@ -83,7 +83,7 @@ pub fn search(
             break;
         }
         if control.cancel.load(Ordering::Relaxed) {
-            return Err(SearchError::Cancelled);
+            return Err(FaultSearchError::Cancelled);
         }
         let known = journal.as_mut().map(|journal| journal.take(&candidates)).transpose()?;
         let results = match known.flatten() {

@@ -3,7 +3,7 @@
 use crate::bench::SearchBench;
 use crate::candidate::{FaultCandidate, PlacedFault};
 use crate::derived::{RunTimes, derived, searchable};
-use crate::error::SearchError;
+use crate::error::FaultSearchError;
 use crate::found::{SearchFound, worst};
 use crate::minimal::minimal;
 use crate::search::{SearchPlan, SearchStrategy, is_run, search};
@@ -231,9 +231,9 @@ fn a_scenario_that_gives_no_reference_is_refused() {
                  trigger = { at = \"5 s\" }\nduration = \"1 samples\"\n";
     let text = format!("{SHORT}{fault}");
     let faulty = Scenario::parse(&text, "short.toml", Path::new("."), &[]).unwrap();
-    assert!(matches!(tried(&faulty), SearchError::HasFaults(1)));
+    assert!(matches!(tried(&faulty), FaultSearchError::HasFaults(1)));
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(matches!(tried(&scenario(&[])), SearchError::Cancelled));
+    assert!(matches!(tried(&scenario(&[])), FaultSearchError::Cancelled));
 }
 
 #[test]
