@@ -1,0 +1,5 @@
+//! Tests of the characterisation.
+
+mod coverage;
+mod synthetic;
+mod variances;
