@@ -2,33 +2,58 @@
 
 use crate::synthetic::{Coefficients, stream};
 use octant_characterise::deviations::Deviations;
+use octant_characterise::drift::{BlockMeans, RampEstimate};
 use octant_characterise::fit::{NoiseFit, NoiseFitter};
 
 const DT: f64 = 0.01;
+const SAMPLES: u64 = 1 << 15;
 
 /// Fits of six channels of a stream.
-fn fits(fitter: &mut NoiseFitter, seed: u64, of: &Coefficients, samples: u64) -> Vec<NoiseFit> {
+fn fits(fitter: &mut NoiseFitter, seed: u64, of: &Coefficients) -> Vec<(NoiseFit, RampEstimate)> {
     let mut deviations = Deviations::new(DT);
-    stream(seed, of, DT, samples, |rate| deviations.push(rate));
+    let mut blocks = BlockMeans::new(&[SAMPLES]);
+    stream(seed, of, DT, SAMPLES, |rate| {
+        deviations.push(rate);
+        blocks.push(rate);
+    });
     deviations.end_stretch();
+    blocks.end_stretch();
     let all = deviations.variances();
-    let octaves: Vec<_> =
-        all.iter().filter(|v| v.samples.is_power_of_two() && v.hadamard.is_some()).collect();
-    assert_eq!(octaves.iter().map(|v| v.samples).collect::<Vec<_>>(), fitter.octaves());
-    (0..6)
-        .filter_map(|c| {
-            fitter.fit(&octaves.iter().map(|v| v.hadamard.unwrap()[c]).collect::<Vec<_>>())
-        })
-        .collect()
+    let octaves: Vec<_> = all.iter().filter(|v| fitter.octaves().contains(&v.samples)).collect();
+    assert_eq!(octaves.len(), fitter.octaves().len());
+    let of_channel = |c: usize| {
+        let variances: Vec<f64> = octaves.iter().filter_map(|v| Some(v.hadamard?[c])).collect();
+        let fit = fitter.fit(&variances)?;
+        let ramp = blocks.ramp(c, &fit, DT)?;
+        Some((fit, ramp))
+    };
+    (0..6).filter_map(of_channel).collect()
 }
 
-/// Counts by term: streams that show it, those whose interval or limit has the truth.
-fn counted(
-    name: &str,
-    of: &Coefficients,
-    (streams, samples): (u64, u64),
-) -> Vec<(&'static str, usize, usize, usize)> {
-    let mut fitter = NoiseFitter::new(DT, &[samples]);
+/// Counts of a term.
+#[derive(Debug)]
+struct Coverage {
+    term: &'static str,
+    is_there: bool,
+    shown: usize,
+    covered: usize,
+    of: usize,
+}
+
+/// Counts streams by term: those that show it, and those whose interval or limit has the truth.
+fn counted(of: &Coefficients, streams: u64) -> Vec<Coverage> {
+    let mut fitter = NoiseFitter::new(DT, &[SAMPLES]);
+    let mut all = Vec::new();
+    for seed in 0..streams.div_ceil(6) {
+        all.extend(fits(&mut fitter, 1000 + seed, of));
+    }
+    let count = |term: &'static str, truth: f64, found: Vec<(bool, [f64; 2])>| Coverage {
+        term,
+        is_there: truth > 0.0,
+        shown: found.iter().filter(|(shown, _)| *shown).count(),
+        covered: found.iter().filter(|(_, [low, high])| *low <= truth && truth <= *high).count(),
+        of: found.len(),
+    };
     let truths = [
         ("quantization", of.quantization),
         ("random_walk", of.random_walk),
@@ -36,63 +61,75 @@ fn counted(
         ("rate_random_walk", of.rate_random_walk),
         ("gauss_markov", of.gauss_markov.map_or(0.0, |(sigma, _)| sigma)),
     ];
-    let mut all: Vec<NoiseFit> = Vec::new();
-    for seed in 0..streams.div_ceil(6) {
-        all.extend(fits(&mut fitter, 1000 + seed, of, samples));
-    }
     let mut counts = Vec::new();
     for (term, truth) in truths {
-        let found: Vec<_> =
-            all.iter().filter_map(|fit| fit.terms.iter().find(|t| t.term.name() == term)).collect();
-        let shown = found.iter().filter(|t| t.value.is_some()).count();
-        let covered =
-            found.iter().filter(|t| t.interval[0] <= truth && truth <= t.interval[1]).count();
-        println!(
-            "{name} {term}: shown {shown} of {}, covered {covered} of {}",
-            all.len(),
-            found.len()
-        );
-        counts.push((term, shown, covered, found.len()));
+        let estimates =
+            all.iter().filter_map(|(fit, _)| fit.terms.iter().find(|t| t.term.name() == term));
+        counts.push(count(
+            term,
+            truth,
+            estimates.map(|t| (t.value.is_some(), t.interval)).collect(),
+        ));
     }
-    if let Some((_, time_s)) = of.gauss_markov {
-        let times: Vec<_> = all.iter().filter_map(|fit| fit.correlation_time).collect();
-        let covered =
-            times.iter().filter(|t| t.interval_s[0] <= time_s && time_s <= t.interval_s[1]).count();
-        println!("{name} correlation time: covered {covered} of {}", times.len());
-        counts.push(("correlation_time", times.len(), covered, times.len()));
-    }
-    let poor = all.iter().filter(|fit| fit.probability < 0.01).count();
-    println!("{name} misfits below 1 %: {poor} of {}", all.len());
+    let times = all.iter().filter_map(|(fit, _)| fit.correlation_time);
+    let time_s = of.gauss_markov.map_or(0.0, |(_, time_s)| time_s);
+    counts.push(count("correlation_time", time_s, times.map(|t| (true, t.interval_s)).collect()));
+    let ramps = all.iter().map(|(_, ramp)| (ramp.value.is_some(), ramp.interval));
+    counts.push(count("rate_ramp", of.ramp, ramps.collect()));
     counts
 }
 
 fn instruments() -> Vec<(&'static str, Coefficients)> {
-    let none = Coefficients::default();
+    let white = Coefficients { random_walk: 3e-5, ..Coefficients::default() };
+    let counts = Coefficients { quantization: 5e-6, ..white };
+    let walk = Coefficients { rate_random_walk: 3e-5, ..white };
     vec![
-        ("white", Coefficients { random_walk: 3e-5, ..none }),
-        ("white and counts", Coefficients { random_walk: 3e-5, quantization: 5e-6, ..none }),
-        ("white and walk", Coefficients { random_walk: 3e-5, rate_random_walk: 3e-5, ..none }),
-        ("white and flicker", Coefficients { random_walk: 3e-5, bias_instability: 4e-5, ..none }),
+        ("white noise", white),
+        ("with quantization", counts),
+        ("with a rate random walk", walk),
+        ("with bias instability", Coefficients { bias_instability: 4e-5, ..white }),
         (
-            "all",
-            Coefficients {
-                random_walk: 3e-5,
-                quantization: 5e-6,
-                bias_instability: 4e-5,
-                rate_random_walk: 3e-5,
-                ..none
-            },
+            "with quantization, bias instability and a rate random walk",
+            Coefficients { bias_instability: 8e-5, rate_random_walk: 3e-5, ..counts },
         ),
-        (
-            "white and Gauss-Markov",
-            Coefficients { random_walk: 3e-5, gauss_markov: Some((5e-5, 3.0)), ..none },
-        ),
+        ("with a Gauss-Markov rate", Coefficients { gauss_markov: Some((8e-5, 3.0)), ..white }),
+        ("with a ramp", Coefficients { ramp: 3e-7, ..white }),
+        ("with a rate random walk and a ramp", Coefficients { ramp: 4e-6, ..walk }),
     ]
 }
 
 #[test]
-fn intervals_cover_in_a_short_version() {
+fn intervals_cover() {
     for (name, of) in instruments() {
-        counted(name, &of, (std::env::var("STREAMS").map_or(60, |n| n.parse().unwrap()), 1 << 15));
+        for coverage in counted(&of, 60) {
+            let Coverage { is_there, shown, covered, of, .. } = coverage;
+            if is_there {
+                // Of 60 at 95 %, 51 and more in all but one of a thousand.
+                assert!(covered * 60 >= 51 * of && of >= 50, "{name}: {coverage:?}");
+            } else {
+                assert!(shown <= 5, "{name}: {coverage:?}");
+            }
+        }
     }
+}
+
+#[test]
+#[ignore = "six minutes: see docs/testing.md"]
+#[expect(clippy::print_stdout, reason = "its figures are those of docs/characterise.md")]
+fn intervals_cover_in_a_thousand_streams() {
+    let mut off = Vec::new();
+    for (name, of) in instruments() {
+        for coverage in counted(&of, 1000) {
+            let Coverage { term, is_there, shown, covered, of } = coverage;
+            if of == 0 {
+                continue;
+            }
+            let percent = 100.0 * covered as f64 / of as f64;
+            println!("{name} | {term} | shown {shown} of {of} | covered {percent:.1} %");
+            if is_there && !(93.0..=97.0).contains(&percent) {
+                off.push(format!("{name}: {term} {percent:.1} %"));
+            }
+        }
+    }
+    assert!(off.is_empty(), "{off:?}");
 }

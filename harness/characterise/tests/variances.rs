@@ -32,6 +32,8 @@ fn terms_have_the_variances_of_the_standard() {
         close(hadamard(RandomTerm::RandomWalk), 1.0 / tau, 1e-12);
         close(hadamard(RandomTerm::Quantization), 10.0 / 3.0 / (tau * tau), 1e-12);
         close(hadamard(RandomTerm::RateRandomWalk), tau / 6.0, 1e-12);
+        let flicker = (4.0 * 2f64.ln() - 1.5 * 3f64.ln()) / std::f64::consts::PI;
+        close(hadamard(RandomTerm::BiasInstability), flicker, 1e-9);
         // NIST SP 1065, table of bias functions: modified Allan variance against Allan's of long averages.
         if tau >= 1.0 {
             let ratio = |term| KERNEL.modified_variance(term, tau) / allan(term);
