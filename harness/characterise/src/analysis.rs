@@ -1,12 +1,12 @@
 //! Second pass over a recording: variances, spectrum and histogram of the stretches at rest, and the fits.
 
-use super::deviations::{CHANNELS, Channels, Deviations};
+use super::deviations::{CHANNELS, Deviations, RateChannels};
 use super::drift::{BlockMeans, RampEstimate};
 use super::error::CharacteriseError;
-use super::fit::{NoiseFit, NoiseFitter};
+use super::fit::{NoiseFitter, RandomTermsFit};
 use super::freedom::{VarianceKind, degrees_of_freedom, interval};
 use super::recording::RestingRecording;
-use super::spectrum::{SpectralLine, Spectrum};
+use super::spectrum::{SpectrumLine, WelchSpectrum};
 use super::survey::{RestStretch, RestSurvey};
 use serde::Serialize;
 
@@ -67,13 +67,13 @@ pub struct ChannelAnalysis {
     /// Deviations by averaging time.
     pub deviations: Vec<DeviationRow>,
     /// Noise terms; none where the stretches are too short for a fit.
-    pub noise: Option<NoiseFit>,
+    pub noise: Option<RandomTermsFit>,
     /// Steady change of the rate; none without a fit.
     pub ramp: Option<RampEstimate>,
     /// Spectral density by thirds of an octave.
     pub spectrum: Vec<SpectrumBand>,
     /// Lines.
-    pub lines: Vec<SpectralLine>,
+    pub lines: Vec<SpectrumLine>,
     /// Increments from sample to sample, evenly picked.
     #[serde(skip)]
     pub increments: Vec<f64>,
@@ -88,7 +88,7 @@ pub struct RestAnalysis {
     pub segments: u64,
     /// Width of a bin of the spectra, Hz.
     pub bin_hz: f64,
-    /// Channels: gyros x, y, z, accelerometers x, y, z.
+    /// RateChannels: gyros x, y, z, accelerometers x, y, z.
     pub channels: Vec<ChannelAnalysis>,
 }
 
@@ -96,13 +96,13 @@ pub struct RestAnalysis {
 pub(crate) struct RestTaker {
     period_s: f64,
     deviations: Deviations,
-    spectrum: Spectrum,
+    spectrum: WelchSpectrum,
     blocks: BlockMeans,
-    sums: Channels,
+    sums: RateChannels,
     count: u64,
     every: u64,
-    before: Option<Channels>,
-    increments: Vec<Channels>,
+    before: Option<RateChannels>,
+    increments: Vec<RateChannels>,
 }
 
 impl RestTaker {
@@ -112,7 +112,7 @@ impl RestTaker {
         Self {
             period_s,
             deviations: Deviations::new(period_s),
-            spectrum: Spectrum::new(period_s, longest),
+            spectrum: WelchSpectrum::new(period_s, longest),
             blocks: BlockMeans::new(lengths),
             sums: [0.0; CHANNELS],
             count: 0,
@@ -123,7 +123,7 @@ impl RestTaker {
         }
     }
 
-    pub(crate) fn push(&mut self, rates: &Channels) {
+    pub(crate) fn push(&mut self, rates: &RateChannels) {
         self.deviations.push(rates);
         self.spectrum.push(rates);
         self.blocks.push(rates);
@@ -167,7 +167,7 @@ impl RestTaker {
             .collect();
         let noise = fitter.fit(&octaves);
         let white = [0.0, 1.0, 0.0, 0.0, 0.0];
-        let squares = noise.as_ref().map_or(white, NoiseFit::squares);
+        let squares = noise.as_ref().map_or(white, RandomTermsFit::squares);
         let kernel = noise.as_ref().map_or_else(
             || crate::kernel::Kernel { period_s: self.period_s, correlation_time_s: 1.0 },
             |noise| noise.kernel(self.period_s),
@@ -203,7 +203,7 @@ impl RestTaker {
 }
 
 /// Means over thirds of an octave.
-fn bands(spectrum: &Spectrum, channel: usize) -> Vec<SpectrumBand> {
+fn bands(spectrum: &WelchSpectrum, channel: usize) -> Vec<SpectrumBand> {
     let density = spectrum.density(channel);
     let third = |bin: usize| (libm::log2(bin as f64) * THIRDS).round() as i64;
     let mut bands: Vec<(i64, f64, f64, f64)> = Vec::new();

@@ -16,10 +16,10 @@
 //! A sample costs the 12 averaging times of the lowest level and twice the 2 of an upper one on average,
 //! whatever the length of the record; a level has 25 kB.
 
-/// Channels: three gyros, three accelerometers.
+/// RateChannels: three gyros, three accelerometers.
 pub const CHANNELS: usize = 6;
 /// One value of each channel.
-pub type Channels = [f64; CHANNELS];
+pub type RateChannels = [f64; CHANNELS];
 
 /// Averaging times of the lowest level, in samples.
 const LOWEST: [usize; 12] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
@@ -35,19 +35,19 @@ const LEVELS_MAX: usize = 28;
 struct Squares {
     /// Averaging time in strides.
     strides: usize,
-    allan: Channels,
-    hadamard: Channels,
-    modified: Channels,
+    allan: RateChannels,
+    hadamard: RateChannels,
+    modified: RateChannels,
     counts: [u64; 3],
     /// Second difference of the sums of phases.
-    window: Channels,
+    window: RateChannels,
 }
 
 /// One level: every 2ˡth sample.
 #[derive(Clone, Debug)]
 struct Level {
-    phases: Vec<Channels>,
-    sums: Vec<Channels>,
+    phases: Vec<RateChannels>,
+    sums: Vec<RateChannels>,
     /// Points in this stretch: of phases, of sums.
     points: usize,
     blocks: usize,
@@ -75,7 +75,7 @@ impl Level {
 
     /// Takes the phase at the next start.
     #[inline]
-    fn phase(&mut self, phase: &Channels) {
+    fn phase(&mut self, phase: &RateChannels) {
         let at = self.points;
         self.phases[at % RING] = *phase;
         self.points = at + 1;
@@ -106,7 +106,7 @@ impl Level {
 
     /// Takes the sum of the phases from the last start to the next.
     #[inline]
-    fn sum(&mut self, sum: &Channels) {
+    fn sum(&mut self, sum: &RateChannels) {
         let at = self.blocks;
         self.sums[at % RING] = *sum;
         self.blocks = at + 1;
@@ -143,11 +143,11 @@ pub struct Variances {
     /// Samples from one start to the next.
     pub stride: u64,
     /// Allan variances, in the square of the rate's unit.
-    pub allan: Channels,
+    pub allan: RateChannels,
     /// Modified Allan variances; `None` where the record is too short for one.
-    pub modified: Option<Channels>,
+    pub modified: Option<RateChannels>,
     /// Hadamard variances; `None` where the record is too short for one.
-    pub hadamard: Option<Channels>,
+    pub hadamard: Option<RateChannels>,
 }
 
 /// Estimates the three variances.
@@ -155,8 +155,8 @@ pub struct Variances {
 pub struct Deviations {
     period_s: f64,
     levels: Vec<Level>,
-    phase: Channels,
-    offset: Channels,
+    phase: RateChannels,
+    offset: RateChannels,
     begun: bool,
     samples: u64,
     stretches: Vec<u64>,
@@ -182,7 +182,7 @@ impl Deviations {
     /// Takes the next sample of the stretch: a rate of each channel. The first one is taken off all of them, so that
     /// the integral stays small; it cancels in every difference.
     #[inline]
-    pub fn push(&mut self, rate: &Channels) {
+    pub fn push(&mut self, rate: &RateChannels) {
         if !self.begun {
             self.begun = true;
             self.offset = *rate;
@@ -251,7 +251,7 @@ impl Deviations {
                 }
                 let samples = squares.strides as u64 * stride;
                 let tau_s = samples as f64 * self.period_s;
-                let mean = |sums: &Channels, count: u64, divisor: f64| {
+                let mean = |sums: &RateChannels, count: u64, divisor: f64| {
                     (count > 0).then(|| sums.map(|sum| sum / (count as f64 * divisor)))
                 };
                 let [allan, hadamard, modified] = squares.counts;

@@ -4,8 +4,8 @@
 //! fitted terms ([`super::kernel`]). The best linear estimate of the ramp weighs them with the inverse of this matrix;
 //! its interval has Student's distribution with the degrees of freedom with which its variance is known.
 
-use super::deviations::Channels;
-use super::fit::NoiseFit;
+use super::deviations::RateChannels;
+use super::fit::RandomTermsFit;
 use super::kernel::{DifferenceOrder, Kernel, RandomTerm, TERMS};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -26,10 +26,10 @@ pub struct RampEstimate {
 #[derive(Clone, Debug)]
 pub struct BlockMeans {
     samples: u64,
-    present: Channels,
+    present: RateChannels,
     count: u64,
     /// Means of each stretch.
-    stretches: Vec<Vec<Channels>>,
+    stretches: Vec<Vec<RateChannels>>,
 }
 
 impl BlockMeans {
@@ -42,7 +42,7 @@ impl BlockMeans {
     }
 
     /// Takes the next sample of a stretch.
-    pub fn push(&mut self, rates: &Channels) {
+    pub fn push(&mut self, rates: &RateChannels) {
         for (sum, rate) in self.present.iter_mut().zip(rates) {
             *sum += rate;
         }
@@ -64,7 +64,12 @@ impl BlockMeans {
 
     /// Estimates the ramp of a channel; `None` with fewer than four differences.
     #[must_use]
-    pub fn ramp(&self, channel: usize, noise: &NoiseFit, period_s: f64) -> Option<RampEstimate> {
+    pub fn ramp(
+        &self,
+        channel: usize,
+        noise: &RandomTermsFit,
+        period_s: f64,
+    ) -> Option<RampEstimate> {
         let kernel = noise.kernel(period_s);
         let block_s = self.samples as f64 * period_s;
         let (mut weight, mut sum, mut parts, mut count) = (0.0, 0.0, [0.0; TERMS], 0);

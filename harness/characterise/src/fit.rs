@@ -77,7 +77,7 @@ pub struct TimeFit {
 
 /// Terms that describe a channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NoiseFit {
+pub struct RandomTermsFit {
     /// Random terms, in the order of [`RandomTerm::ALL`]. The Gauss-Markov term has no limit where it isn't shown: it
     /// would be one for each correlation time.
     pub terms: Vec<TermFit>,
@@ -95,7 +95,7 @@ pub struct NoiseFit {
     covariance: [[f64; TERMS]; TERMS],
 }
 
-impl NoiseFit {
+impl RandomTermsFit {
     /// Squared coefficients of the terms that are shown.
     #[must_use]
     pub fn squares(&self) -> SquaredCoefficients {
@@ -157,7 +157,7 @@ impl NoiseFitter {
 
     /// Fits the Hadamard variances at [`Self::octaves`]; `None` where too few of them are above zero.
     #[must_use]
-    pub fn fit(&mut self, hadamard: &[f64]) -> Option<NoiseFit> {
+    pub fn fit(&mut self, hadamard: &[f64]) -> Option<RandomTermsFit> {
         let tau_s: Vec<f64> =
             self.octaves.iter().map(|samples| *samples as f64 * self.period_s).collect();
         let span_s = self.stretches.iter().copied().max().unwrap_or(0) as f64 * self.period_s;
@@ -235,7 +235,7 @@ fn reduce(rows: &Rows, covariances: &Covariances, terms: &[usize], time_s: f64) 
 }
 
 /// Adds intervals and limits.
-fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> NoiseFit {
+fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> RandomTermsFit {
     let Chosen { free, model } = chosen;
     let gauss_markov = TERMS - 1;
     let wider = widened(rows, covariances, chosen);
@@ -258,7 +258,7 @@ fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> NoiseFit {
     let shows_time = free.contains(&gauss_markov) && model.squares[gauss_markov] > 0.0;
     let uncertainty = Uncertainty::of(rows, covariances, model, free);
     let (mean, variance) = uncertainty.deviance(rows, covariances, model);
-    NoiseFit {
+    RandomTermsFit {
         terms: (0..TERMS)
             .filter(|index| *index != gauss_markov || shows_time)
             .map(estimate)

@@ -9,8 +9,10 @@
 use super::kernel::{DifferenceOrder, Kernel, RandomTerm, TERMS};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Starts in an averaging time that are counted: more add nothing.
+/// Starts in an averaging time that are counted among variances: more add nothing but for quantization.
 const STARTS: u64 = 8;
+/// Starts in an averaging time that the estimator has at least.
+const STARTS_MADE: u64 = 48;
 /// Degrees of freedom from which χ² is taken as normal in the cube root (Wilson and Hilferty).
 const MANY: f64 = 2000.0;
 /// Averaging times beyond the span of a difference, until which correlations are counted.
@@ -21,9 +23,14 @@ const WIDE: u64 = 32;
 /// Squared coefficients of the terms.
 pub type SquaredCoefficients = [f64; TERMS];
 
-/// Starts of an averaging time: the stride between them, in samples.
+/// Samples from one start to the next, as counted.
 fn stride(samples: u64) -> u64 {
     (samples / STARTS).max(1)
+}
+
+/// Samples from one start to the next, as [`super::deviations`] makes them.
+fn stride_made(samples: u64) -> u64 {
+    if samples <= 64 { 1 } else { 1 << (samples / STARTS_MADE).max(1).ilog2() }
 }
 
 /// Kinds of variances.
@@ -60,7 +67,7 @@ pub fn degrees_of_freedom(
         };
         RandomTerm::ALL.iter().zip(squares).map(of).sum()
     };
-    let stride = stride(samples);
+    let stride = stride_made(samples);
     let starts = |length: u64| length.checked_sub(span).map_or(0, |rest| rest / stride + 1);
     let all: Vec<u64> = stretches.iter().map(|length| starts(*length)).collect();
     let zero = covariance(0);
@@ -208,5 +215,10 @@ fn of_pair(kernel: &Kernel, samples: [u64; 2], stretches: &[u64]) -> [f64; PRODU
         }
     }
     let factor = 2.0 / (m_short * m_long * scale[0] * scale[1]);
+    // Differences of quantization share a sample or nothing: all starts count, and dense sums have one lag of many.
+    let coarser = stride(short) as f64 / stride_made(short) as f64;
+    for term in 0..TERMS {
+        sums[pair(RandomTerm::Quantization as usize, term)] /= coarser;
+    }
     sums.map(|sum| sum * factor)
 }

@@ -1,6 +1,6 @@
 //! The recording: any source of samples that a scenario describes, read from its start as often as it is needed.
 
-use super::deviations::{CHANNELS, Channels};
+use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
 use octant_recorder::reader::Recording;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -38,7 +38,7 @@ pub struct RateSample {
     /// Stamp, s.
     pub time_s: f64,
     /// Rates, rad/s and m/s².
-    pub rates: Channels,
+    pub rates: RateChannels,
     /// False if samples are missing before it, or it is flagged as invalid or saturated.
     pub follows: bool,
     /// True if the sample is to be used.

@@ -8,7 +8,7 @@
 //! The transform is a radix-2 one of 60 lines: a segment is transformed once in its length, which is no hot path, and
 //! a crate for it would be the only reason for its packages.
 
-use super::deviations::{CHANNELS, Channels};
+use super::deviations::{CHANNELS, RateChannels};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::f64::consts::PI;
@@ -31,7 +31,7 @@ const LOWEST: usize = 8;
 
 /// Line in the spectrum of a channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpectralLine {
+pub struct SpectrumLine {
     /// Frequency, Hz; a line above half of the sample rate is seen folded.
     pub frequency_hz: f64,
     /// Resolution, Hz: the line is within it.
@@ -46,16 +46,16 @@ pub struct SpectralLine {
 
 /// Spectral density of all channels.
 #[derive(Clone, Debug)]
-pub struct Spectrum {
+pub struct WelchSpectrum {
     period_s: f64,
     length: usize,
-    segment: Vec<Channels>,
+    segment: Vec<RateChannels>,
     window: Vec<f64>,
-    sums: Vec<Channels>,
+    sums: Vec<RateChannels>,
     segments: u64,
 }
 
-impl Spectrum {
+impl WelchSpectrum {
     /// Creates the estimator; `longest` is the longest stretch, in samples.
     #[must_use]
     pub fn new(period_s: f64, longest: u64) -> Self {
@@ -73,7 +73,7 @@ impl Spectrum {
     }
 
     /// Takes the next sample of a stretch.
-    pub fn push(&mut self, rates: &Channels) {
+    pub fn push(&mut self, rates: &RateChannels) {
         self.segment.push(*rates);
         if self.segment.len() == self.length {
             self.add();
@@ -132,7 +132,7 @@ impl Spectrum {
 
     /// Finds lines.
     #[must_use]
-    pub fn lines(&self, channel: usize) -> Vec<SpectralLine> {
+    pub fn lines(&self, channel: usize) -> Vec<SpectrumLine> {
         let density = self.density(channel);
         let bins = density.len().saturating_sub(LOWEST + 1);
         if self.segments == 0 || bins < 4 * NEIGHBOURS {
@@ -143,7 +143,7 @@ impl Spectrum {
         let Ok(ratio) = FisherSnedecor::new(k, k * neighbours) else { return Vec::new() };
         let level: Vec<f64> = (0..density.len()).map(|bin| background(&density, bin, k)).collect();
         let chance = |bin: usize| bins as f64 * ratio.sf(density[bin] / level[bin]);
-        let mut lines: Vec<SpectralLine> = Vec::new();
+        let mut lines: Vec<SpectrumLine> = Vec::new();
         for bin in LOWEST..density.len() - 1 {
             let is_peak = density[bin] >= density[bin - 1] && density[bin] >= density[bin + 1];
             let chance = if is_peak { chance(bin) } else { 1.0 };
@@ -163,7 +163,7 @@ impl Spectrum {
         lines
     }
 
-    fn line(&self, density: &[f64], level: f64, (bin, chance): (usize, f64)) -> SpectralLine {
+    fn line(&self, density: &[f64], level: f64, (bin, chance): (usize, f64)) -> SpectrumLine {
         let above = |bin: usize| (density[bin] - level).max(0.0);
         let (left, middle, right) = (above(bin - 1), above(bin), above(bin + 1));
         // Power of the main lobe; its centre of gravity by amplitudes of a Hann window.
@@ -178,7 +178,7 @@ impl Spectrum {
         let ratio = side / libm::sqrt(middle).max(f64::MIN_POSITIVE);
         let shift = sign * ((2.0 * ratio - 1.0) / (1.0 + ratio)).clamp(0.0, 0.5);
         let frequency_hz = (bin as f64 + shift) * self.bin_hz();
-        SpectralLine {
+        SpectrumLine {
             frequency_hz,
             resolution_hz: self.bin_hz(),
             amplitude: libm::sqrt(2.0 * power),

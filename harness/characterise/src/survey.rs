@@ -8,7 +8,7 @@
 //! instrument changes by f × ω. Steps of f from second to second that follow f × ω with a correlation above
 //! [`SWAYS`] are a motion and no noise.
 
-use super::deviations::{CHANNELS, Channels};
+use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
 use super::recording::RestingRecording;
 use nalgebra::Vector3;
@@ -37,7 +37,7 @@ pub struct RestStretch {
     /// Stamp of its first sample, s.
     pub from_s: f64,
     /// Mean rates, rad/s and m/s².
-    pub mean: Channels,
+    pub mean: RateChannels,
 }
 
 /// Result of the first pass.
@@ -61,8 +61,8 @@ struct Second {
     first: u64,
     samples: u64,
     from_s: f64,
-    mean: Channels,
-    deviation: Channels,
+    mean: RateChannels,
+    deviation: RateChannels,
     /// False if it is the first one after a gap.
     follows: bool,
 }
@@ -72,15 +72,15 @@ struct Second {
 struct Sums {
     samples: u64,
     from_s: f64,
-    first: Channels,
-    sum: Channels,
-    squares: Channels,
+    first: RateChannels,
+    sum: RateChannels,
+    squares: RateChannels,
 }
 
 impl Sums {
     fn second(&self, first: u64, follows: bool) -> Second {
         let n = self.samples as f64;
-        let mean: Channels = core::array::from_fn(|c| self.sum[c] / n);
+        let mean: RateChannels = core::array::from_fn(|c| self.sum[c] / n);
         let deviation = core::array::from_fn(|c| {
             libm::sqrt((self.squares[c] / n - mean[c] * mean[c]).max(0.0))
         });
@@ -232,8 +232,9 @@ fn sway(runs: &[&[Second]]) -> Option<f64> {
     let (mut both, mut felt, mut turned, mut count) = (0.0, 0.0, 0.0, 0);
     for run in runs {
         let mean = rest(run)?.mean;
-        let triad =
-            |values: &Channels, at: usize| Vector3::new(values[at], values[at + 1], values[at + 2]);
+        let triad = |values: &RateChannels, at: usize| {
+            Vector3::new(values[at], values[at + 1], values[at + 2])
+        };
         let (omega, force) = (triad(&mean, 0), triad(&mean, 3));
         for pair in run.windows(2) {
             let rate = 0.5 * (triad(&pair[0].mean, 0) + triad(&pair[1].mean, 0)) - omega;

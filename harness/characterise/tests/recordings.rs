@@ -70,7 +70,7 @@ fn refusal(name: &str, rows: &[[f64; 7]]) -> String {
 
 const INSTRUMENT: &str = "[imu]\nrate = \"50 Hz\"\nangle_random_walk = \"0.01 deg/sqrt(h)\"\n\
     velocity_random_walk = \"80 ug/sqrt(Hz)\"\n[imu.extensions]\ngyro_rate_random_walk = \"2 deg/h/sqrt(h)\"\n\
-    gyro_quantization = \"0.5 arcsec\"\n";
+    gyro_quantization = \"0.05 arcsec\"\n";
 
 #[test]
 fn terms_of_the_plant_are_found_again_and_the_twin_matches() {
@@ -80,7 +80,7 @@ fn terms_of_the_plant_are_found_again_and_the_twin_matches() {
     let truth = |text: &str| octant_scenario::quantity_of(text).unwrap().si;
     let walk = truth("0.01 deg/sqrt(h)");
     let wander = truth("2 deg/h/sqrt(h)");
-    let quantization = truth("0.5 arcsec") / 12f64.sqrt();
+    let quantization = truth("0.05 arcsec") / 12f64.sqrt();
     let noise = truth("80 ug/sqrt(Hz)");
     let covered = |term, range: std::ops::Range<usize>, value: f64| {
         result.analysis.channels[range]

@@ -1,7 +1,7 @@
 //! Spectral densities, lines and their false alarms.
 
 use crate::synthetic::{Coefficients, stream};
-use octant_characterise::spectrum::{FALSE_ALARM, Spectrum};
+use octant_characterise::spectrum::{FALSE_ALARM, WelchSpectrum};
 use std::f64::consts::TAU;
 
 const DT: f64 = 0.005;
@@ -12,7 +12,7 @@ fn white() -> Coefficients {
 
 #[test]
 fn white_noise_has_its_density() {
-    let mut spectrum = Spectrum::new(DT, 1 << 17);
+    let mut spectrum = WelchSpectrum::new(DT, 1 << 17);
     stream(3, &white(), DT, 1 << 17, |rate| spectrum.push(rate));
     assert_eq!(spectrum.segments(), 8);
     for channel in 0..6 {
@@ -25,7 +25,7 @@ fn white_noise_has_its_density() {
 
 #[test]
 fn lines_have_their_frequency_and_amplitude() {
-    let mut spectrum = Spectrum::new(DT, 1 << 15);
+    let mut spectrum = WelchSpectrum::new(DT, 1 << 15);
     let mut sample = 0.0;
     let lines = [(50.0, 4e-4), (13.37, 6e-4), (80.0, 3e-4)];
     stream(4, &white(), DT, 1 << 15, |rate| {
@@ -54,7 +54,7 @@ fn lines_have_their_frequency_and_amplitude() {
 fn false_alarms_hold_on_white_noise() {
     let (mut alarms, mut channels) = (0, 0);
     for seed in 0..200 {
-        let mut spectrum = Spectrum::new(DT, 1 << 13);
+        let mut spectrum = WelchSpectrum::new(DT, 1 << 13);
         stream(100 + seed, &white(), DT, 1 << 13, |rate| spectrum.push(rate));
         for channel in 0..6 {
             alarms += usize::from(!spectrum.lines(channel).is_empty());

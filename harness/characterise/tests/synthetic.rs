@@ -1,6 +1,6 @@
 //! Streams of known noise from closed-form generators.
 
-use octant_characterise::deviations::{CHANNELS, Channels};
+use octant_characterise::deviations::{CHANNELS, RateChannels};
 use octant_random::stream::Triad;
 
 /// Coefficients of the terms of a stream, in SI units.
@@ -23,12 +23,12 @@ impl Normals {
         Self(["a", "b"].map(|half| Triad::new(seed, &format!("{name}.{half}"))))
     }
 
-    fn at(&self, sample: u64) -> Channels {
+    fn at(&self, sample: u64) -> RateChannels {
         let (a, b) = (self.0[0].at(sample), self.0[1].at(sample));
         [a[0], a[1], a[2], b[0], b[1], b[2]]
     }
 
-    fn initial(&self) -> Channels {
+    fn initial(&self) -> RateChannels {
         let (a, b) = (self.0[0].initial(), self.0[1].initial());
         [a[0], a[1], a[2], b[0], b[1], b[2]]
     }
@@ -36,7 +36,7 @@ impl Normals {
 
 /// A Gauss-Markov rate, averaged exactly over each sample: state and integral are drawn together.
 struct Process {
-    state: Channels,
+    state: RateChannels,
     decay: f64,
     /// Mean of the integral given the state; factor of the two normal numbers.
     gain: f64,
@@ -71,7 +71,7 @@ impl Process {
         Self { state, decay, gain, factors: [first, second, third], normals }
     }
 
-    fn integral(&mut self, sample: u64) -> Channels {
+    fn integral(&mut self, sample: u64) -> RateChannels {
         let [a, b] = [self.normals[0].at(sample), self.normals[1].at(sample)];
         let mut integral = [0.0; CHANNELS];
         for c in 0..CHANNELS {
@@ -89,7 +89,7 @@ pub(crate) fn stream(
     of: &Coefficients,
     dt: f64,
     samples: u64,
-    mut take: impl FnMut(&Channels),
+    mut take: impl FnMut(&RateChannels),
 ) {
     let white = Normals::new(seed, "white");
     let counts = Normals::new(seed, "counts");
