@@ -1,7 +1,7 @@
 //! Steady change of the rate, by generalized least squares on means over equal blocks.
 //!
 //! Differences of neighbouring block means are second differences of the phase, whose covariances follow from the
-//! fitted terms ([`super::kernel`]). The best linear estimate of the ramp weighs them with the inverse of this matrix;
+//! fitted terms ([`super::kernel`]), with those that may be there too. The best linear estimate of the ramp weighs them with the inverse of this matrix;
 //! its interval has Student's distribution with the degrees of freedom with which its variance is known.
 
 use super::deviations::RateChannels;
@@ -70,7 +70,7 @@ impl BlockMeans {
         noise: &RandomTermsFit,
         period_s: f64,
     ) -> Option<RampEstimate> {
-        let kernel = noise.kernel(period_s);
+        let (squares, kernel) = noise.wide(period_s);
         let block_s = self.samples as f64 * period_s;
         let (mut weight, mut sum, mut parts, mut count) = (0.0, 0.0, [0.0; TERMS], 0);
         for means in &self.stretches {
@@ -81,7 +81,7 @@ impl BlockMeans {
             count += n;
             let covariance =
                 |lag: usize, squares: &[f64; TERMS]| covariance(&kernel, squares, block_s, lag);
-            let matrix = toeplitz(n, |lag| covariance(lag, &noise.squares()));
+            let matrix = toeplitz(n, |lag| covariance(lag, &squares));
             // x = C⁻¹ 1, so that the ramp is x·d / (x·1).
             let x = cholesky_solve(matrix, vec![1.0; n])?;
             let d = means.windows(2).map(|pair| (pair[1][channel] - pair[0][channel]) / block_s);
@@ -90,7 +90,7 @@ impl BlockMeans {
             for (term, part) in parts.iter_mut().enumerate() {
                 let mut one = [0.0; TERMS];
                 one[term] = 1.0;
-                if noise.squares()[term] > 0.0 {
+                if squares[term] > 0.0 {
                     let lags: Vec<f64> = (0..n).map(|lag| covariance(lag, &one)).collect();
                     for i in 0..n {
                         for j in 0..n {

@@ -92,6 +92,8 @@ pub struct RandomTermsFit {
     #[serde(skip)]
     kernel_time_s: f64,
     #[serde(skip)]
+    wide: (SquaredCoefficients, f64),
+    #[serde(skip)]
     covariance: [[f64; TERMS]; TERMS],
 }
 
@@ -108,7 +110,13 @@ impl RandomTermsFit {
         Kernel { period_s, correlation_time_s: self.kernel_time_s }
     }
 
-    /// Covariance of two squared coefficients.
+    /// Squared coefficients of the model with the terms that may be there too, and covariances of the phase under it.
+    #[must_use]
+    pub fn wide(&self, period_s: f64) -> (SquaredCoefficients, Kernel) {
+        (self.wide.0, Kernel { period_s, correlation_time_s: self.wide.1 })
+    }
+
+    /// Covariance of two squared coefficients of [`Self::wide`].
     #[must_use]
     pub fn covariance(&self) -> &[[f64; TERMS]; TERMS] {
         &self.covariance
@@ -271,7 +279,8 @@ fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> RandomTerm
         probability: exceeded(model.deviance, mean, variance),
         squares: model.squares,
         kernel_time_s: model.time_s,
-        covariance: uncertainty.covariance(),
+        wide: (wider.model.squares, wider.model.time_s),
+        covariance: Uncertainty::of(rows, covariances, &wider.model, &wider.free).covariance(),
     }
 }
 

@@ -55,7 +55,6 @@ pub fn instrument_file(analysis: &RestAnalysis, period_ns: u64, name: &str) -> I
     );
     let _ = writeln!(text, "schema = 1\ntitle = \"noise of {title}\"\n\n[imu]");
     let _ = writeln!(text, "rate = \"{} Hz\"", 1e9 / period_ns as f64);
-    let quantity = |dimension: UnitDimension, value: f64| rounded(dimension, value);
     let walk =
         [triad(gyros, RandomTerm::RandomWalk), triad(accelerometers, RandomTerm::RandomWalk)];
     let _ = writeln!(
@@ -71,50 +70,11 @@ pub fn instrument_file(analysis: &RestAnalysis, period_ns: u64, name: &str) -> I
     let _ = writeln!(text, "\n[imu.extensions]");
     let span_s =
         analysis.stretches.iter().copied().max().unwrap_or(0) as f64 * period_ns as f64 * 1e-9;
-    for (triad_name, channels, units) in [
-        ("gyro", gyros, [UnitDimension::SMALL_ANGLE, UnitDimension::GYRO_BIAS]),
-        ("accel", accelerometers, [UnitDimension::VELOCITY, UnitDimension::ACCEL_BIAS]),
-    ] {
-        // A count's rounding is even within half of it: Q = count / √12.
-        let count = libm::sqrt(12.0) * triad(channels, RandomTerm::Quantization);
-        if count > 0.0 {
-            let _ = writeln!(text, "{triad_name}_quantization = \"{}\"", quantity(units[0], count));
-        }
-        let flicker = triad(channels, RandomTerm::BiasInstability);
-        if flicker > 0.0 {
-            let _ = writeln!(
-                text,
-                "{triad_name}_bias_instability = \"{}\"",
-                quantity(units[1], flicker)
-            );
-        }
-        let wander = triad(channels, RandomTerm::RateRandomWalk);
-        let markov = correlation_time_s(channels);
-        if triad_name == "gyro" && wander > 0.0 {
-            let _ = writeln!(
-                text,
-                "gyro_rate_random_walk = \"{}\"",
-                quantity(UnitDimension::RATE_RANDOM_WALK, wander)
-            );
-        }
-        // The plant has no random walk of the accelerometers' bias: it is the beginning of a slow Gauss-Markov process.
-        let slow_s = 10.0 * span_s;
-        let slow = (triad_name == "accel" && wander > 0.0)
-            .then(|| (wander * libm::sqrt(slow_s / 2.0), slow_s));
-        let process = markov.map(|time_s| (triad(channels, RandomTerm::GaussMarkov), time_s));
-        if slow.is_some() && process.is_some() {
-            left_out.push(
-                "the rate random walk of the accelerometers: the plant has one Gauss-Markov process beside it".to_owned(),
-            );
-        }
-        if let Some((sigma, time_s)) = process.or(slow) {
-            let _ = writeln!(
-                text,
-                "{triad_name}_gauss_markov = {{ sigma = \"{}\", correlation_time = \"{} s\" }}",
-                quantity(units[1], sigma),
-                octant_base::number::plain(time_s, 4)
-            );
-        }
+    extensions(&mut text, ("gyro", gyros), span_s);
+    if extensions(&mut text, ("accel", accelerometers), span_s) {
+        left_out.push(
+            "the rate random walk of the accelerometers: the plant has one Gauss-Markov process beside it".to_owned(),
+        );
     }
     let lines: usize = analysis.channels.iter().map(|channel| channel.lines.len()).sum();
     if lines > 0 {
@@ -128,8 +88,50 @@ pub fn instrument_file(analysis: &RestAnalysis, period_ns: u64, name: &str) -> I
     InstrumentFile { text, left_out }
 }
 
+/// Writes the extensions of a triad; true where its rate random walk has no place.
+fn extensions(
+    text: &mut String,
+    (name, channels): (&str, &[ChannelAnalysis]),
+    span_s: f64,
+) -> bool {
+    let is_gyro = name == "gyro";
+    let units = match is_gyro {
+        true => [UnitDimension::SMALL_ANGLE, UnitDimension::GYRO_BIAS],
+        false => [UnitDimension::VELOCITY, UnitDimension::ACCEL_BIAS],
+    };
+    let mut key = |key: &str, value: &str| {
+        let _ = writeln!(text, "{name}_{key} = {value}");
+    };
+    // A count's rounding is even within half of it: Q = count / √12.
+    let count = libm::sqrt(12.0) * triad(channels, RandomTerm::Quantization);
+    if count > 0.0 {
+        key("quantization", &format!("\"{}\"", quantity(units[0], count)));
+    }
+    let flicker = triad(channels, RandomTerm::BiasInstability);
+    if flicker > 0.0 {
+        key("bias_instability", &format!("\"{}\"", quantity(units[1], flicker)));
+    }
+    let wander = triad(channels, RandomTerm::RateRandomWalk);
+    if is_gyro && wander > 0.0 {
+        key(
+            "rate_random_walk",
+            &format!("\"{}\"", quantity(UnitDimension::RATE_RANDOM_WALK, wander)),
+        );
+    }
+    // The plant has no random walk of the accelerometers' bias: it is the beginning of a slow Gauss-Markov process.
+    let slow_s = 10.0 * span_s;
+    let slow = (!is_gyro && wander > 0.0).then(|| (wander * libm::sqrt(slow_s / 2.0), slow_s));
+    let process = correlation_time_s(channels)
+        .map(|time_s| (triad(channels, RandomTerm::GaussMarkov), time_s));
+    if let Some((sigma, time_s)) = process.or(slow) {
+        let (sigma, time) = (quantity(units[1], sigma), octant_base::number::plain(time_s, 4));
+        key("gauss_markov", &format!("{{ sigma = \"{sigma}\", correlation_time = \"{time} s\" }}"));
+    }
+    slow.is_some() && process.is_some()
+}
+
 /// Writes a quantity with five digits.
-fn rounded(dimension: UnitDimension, value: f64) -> String {
+fn quantity(dimension: UnitDimension, value: f64) -> String {
     let text = dimension.write(value);
     match text.split_once(' ') {
         Some((number, unit)) => {

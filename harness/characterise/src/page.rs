@@ -258,7 +258,7 @@ fn twin(result: &Characterisation) -> Markup {
             the worst for all together; Kolmogorov and Smirnov's of the increments. A scenario has one value for three axes: axes that differ \
             from each other differ from the twin." }
         table {
-            thead { tr { th { "Channel" } th { "Allan deviations" } th.n { "Within intervals" } th.n { "Worst ratio" } th { "WelchSpectrum" }
+            thead { tr { th { "Channel" } th { "Allan deviations" } th.n { "Within intervals" } th.n { "Worst ratio" } th { "Spectrum" }
                 th.n { "Worst ratio" } th { "Increments" } th.n { "Distance" } } }
             tbody { @for c in &twin.channels { tr {
                 td { (c.name) }

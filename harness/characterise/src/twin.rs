@@ -4,6 +4,7 @@
 use super::analysis::{ChannelAnalysis, RestAnalysis, RestTaker};
 use super::deviations::CHANNELS;
 use super::error::CharacteriseError;
+use super::kernel::RandomTerm;
 use octant_sample::GimbalCommand;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_scenario::Scenario;
@@ -166,7 +167,9 @@ fn compare_channel(recording: &ChannelAnalysis, twin: &ChannelAnalysis) -> Chann
             spectrum.add([b.density * b.density, a.density * a.density], [b.freedom, a.freedom]);
         }
     }
-    let distance = distance(&recording.increments, &twin.increments);
+    let count_rate = count_rate(recording);
+    let distance =
+        distance(&spread(&recording.increments, count_rate), &spread(&twin.increments, count_rate));
     let count = |channel: &ChannelAnalysis| channel.increments.len() as f64;
     let (n, m) = (count(recording), count(twin));
     ChannelMatch {
@@ -180,6 +183,22 @@ fn compare_channel(recording: &ChannelAnalysis, twin: &ChannelAnalysis) -> Chann
         increments_distance: distance,
         increments_probability: kolmogorov(distance * libm::sqrt(n * m / (n + m))),
     }
+}
+
+/// Step of the increments of a channel whose counts are seen: that of a rate by one count.
+fn count_rate(recording: &ChannelAnalysis) -> f64 {
+    let fit = recording.noise.as_ref().and_then(|noise| noise.term(RandomTerm::Quantization));
+    let count = libm::sqrt(12.0) * fit.and_then(|fit| fit.value).unwrap_or(0.0);
+    let period_s = recording.deviations.first().map_or(1.0, |row| row.tau_s);
+    count / period_s
+}
+
+/// Spreads values evenly over a step: where they are whole numbers of counts, two sizes of a count that differ by a
+/// percent have no value in common.
+fn spread(values: &[f64], step: f64) -> Vec<f64> {
+    // Fractional parts of multiples of the golden ratio are even.
+    let place = |k: usize| (k as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
+    values.iter().enumerate().map(|(k, value)| value + step * place(k)).collect()
 }
 
 /// Largest distance of two empirical distributions.

@@ -95,11 +95,15 @@ fn degrees_of_freedom_are_those_of_greenhall_and_riley() {
             _ => VarianceKind::Modified,
         };
         let (samples, count) = (row[2].as_u64().unwrap(), row[3].as_u64().unwrap());
+        // Theirs is of a phase that is averaged over a sample, which matters where a sample is all there is.
+        if samples < 32 {
+            continue;
+        }
         let mut squares = [0.0; 5];
         squares[term as usize] = 1.0;
         let found = degrees_of_freedom(&kernel, kind, samples, (&[count], &squares));
         let expected = row[4].as_f64().unwrap();
-        // They take a table from hundred strides on, and count eight starts in an averaging time here.
+        // From hundred strides on they take a table.
         let off = found / expected - 1.0;
         assert!(off.abs() < 0.03, "{row}: found {found}");
     }
