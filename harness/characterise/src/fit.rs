@@ -19,8 +19,8 @@
 //! follows from the covariances among the variances of the model ([`super::freedom`]), as in the generalized method of
 //! wavelet moments (Guerrier et al., JASA 108, 2013). An interval of 95 % has D − D_min ≤ 3.84 a, with a at its ends.
 //!
-//! A term that left, but lowers D by more than a, may be there all the same: intervals of the others are those of the
-//! model with it.
+//! A term that left, but lowers D by more than a, may be there all the same: the intervals of the others span those of the
+//! models with and without it.
 //!
 //! A term is in the model if D rises by more than 6.63 a without it (99 % of χ²); the least needed leaves first. A
 //! term outside gets an upper limit of 95 %. The Gauss-Markov term enters last, if it lowers D by more than 13.8 a
@@ -251,8 +251,9 @@ fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> RandomTerm
         let shown = free.contains(&index) && model.squares[index] > 0.0;
         let interval = match (shown, index == gauss_markov) {
             (true, _) => {
-                let [low, high] = profile(rows, covariances, &wider, Parameter::Square(index));
-                [low.min(model.squares[index]), high.max(model.squares[index])]
+                let both = [chosen, &wider]
+                    .map(|model| profile(rows, covariances, model, Parameter::Square(index)));
+                [both[0][0].min(both[1][0]), both[0][1].max(both[1][1])]
             }
             (false, true) => [0.0, f64::NAN],
             (false, false) => [0.0, limit(rows, covariances, chosen, index)],

@@ -130,15 +130,9 @@ fn extensions(
     slow.is_some() && process.is_some()
 }
 
-/// Writes a quantity with five digits.
+/// Writes a quantity with five digits, in the unit of its dimension.
 fn quantity(dimension: UnitDimension, value: f64) -> String {
-    let text = dimension.write(value);
-    match text.split_once(' ') {
-        Some((number, unit)) => {
-            let number = number.parse::<f64>().unwrap_or(0.0);
-            let short: f64 = format!("{number:.4e}").parse().unwrap_or(number);
-            format!("{short} {unit}")
-        }
-        None => text,
-    }
+    let unit = dimension.unit;
+    let size = octant_scenario::quantity_of(&format!("1 {unit}")).map_or(1.0, |one| one.si);
+    format!("{} {unit}", octant_base::number::plain(value / size, 5))
 }

@@ -86,7 +86,7 @@ impl RestingRecording {
         let mut recording = Self { name: name.clone(), scenario: unsplit(scenario)? };
         recording.refuse_others()?;
         let found_s = recording.probe().map_err(|error| match error {
-            CharacteriseError::Source(error) if of_table => fail(format!(
+            CharacteriseError::Source(error) if of_table && path.exists() => fail(format!(
                 "{error}; without --scenario, which names its columns, a table has to be the samples of octant export"
             )),
             other => other,

@@ -113,7 +113,7 @@ pub fn of(result: &Characterisation) -> String {
                 out,
                 "  {}: the terms don't describe it (probability {})",
                 channel.name,
-                significant(noise.probability, 2)
+                significant(noise.probability.max(1e-12), 2)
             );
         }
     }
