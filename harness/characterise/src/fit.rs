@@ -23,7 +23,7 @@
 //! models with and without it.
 //!
 //! A term is in the model if D rises by more than 6.63 a without it (99 % of χ²); the least needed leaves first. A
-//! term outside gets an upper limit of 95 %. The Gauss-Markov term enters last, if it lowers D by more than 13.8 a
+//! term outside gets the upper end of its interval of 95 % as a limit. The Gauss-Markov term enters last, if it lowers D by more than 13.8 a
 //! (99.9 % for its two parameters), since some correlation time fits some part of any record.
 
 mod scoring;
@@ -43,9 +43,8 @@ pub const LEAVES: f64 = 6.634_896_601_021_214;
 pub const WIDENS: f64 = 1.0;
 /// Fall of the deviance, as χ², above which the Gauss-Markov term enters.
 pub const ENTERS: f64 = 13.815_510_557_964_274;
-/// 95th percentile of χ² with one degree of freedom, two-sided and one-sided.
+/// 95th percentile of χ² with one degree of freedom.
 const TWO_SIDED: f64 = 3.841_458_820_694_124;
-const ONE_SIDED: f64 = 2.705_543_454_095_404;
 /// Degrees of freedom below which a variance is left out.
 const FREEDOM_MIN: f64 = 2.0;
 /// Rounds in which degrees of freedom and terms find each other.
@@ -62,7 +61,7 @@ pub struct TermFit {
     pub term: RandomTerm,
     /// Best value; `None`: the record doesn't show it.
     pub value: Option<f64>,
-    /// Interval of 95 %; without a value from 0 to an upper limit of 95 %.
+    /// Interval of 95 %; without a value from 0 to the upper end of the interval.
     pub interval: [f64; 2],
 }
 
@@ -349,7 +348,7 @@ fn profile(
     [end(value, 0.5, &outside), end(value, 2.0, &outside)]
 }
 
-/// Upper limit of 95 % of the squared coefficient of a term that isn't shown.
+/// Upper end of the interval of 95 % of the squared coefficient of a term that isn't shown.
 fn limit(rows: &Rows, covariances: &Covariances, chosen: &Chosen, index: usize) -> f64 {
     let mut all = chosen.free.clone();
     all.push(index);
@@ -361,7 +360,7 @@ fn limit(rows: &Rows, covariances: &Covariances, chosen: &Chosen, index: usize) 
             return true;
         };
         let a = Uncertainty::of(rows, covariances, &found, &all).factor(index);
-        !(found.deviance - best.deviance <= ONE_SIDED * a)
+        !(found.deviance - best.deviance <= TWO_SIDED * a)
     };
     let least = rows.least(index);
     end(best.squares[index].max(least), 2.0, &outside)

@@ -59,8 +59,8 @@ fn triads(result: &Characterisation) -> impl Iterator<Item = (&'static str, &[Ch
 
 fn terms(result: &Characterisation) -> Markup {
     html! {
-        p.hint { "Coefficients of IEEE Std 952 with their intervals of 95 %. A term that the recording doesn't show has an \
-            upper limit of 95 %. A term is shown if the deviance of the fit rises by more than 6.63 without it, the Gauss-Markov \
+        p.hint { "Coefficients of IEEE Std 952 with their intervals of 95 %. A term that the recording doesn't show has the \
+            upper end of its interval as a limit. A term is shown if the deviance of the fit rises by more than 6.63 without it, the Gauss-Markov \
             term if it lowers it by more than 13.8." }
         @for (triad, channels) in triads(result) {
             @let is_gyro = triad == "Gyro";

@@ -119,7 +119,7 @@ fn intervals_cover() {
 }
 
 #[test]
-#[ignore = "six minutes: see docs/testing.md"]
+#[ignore = "ten minutes and more: see docs/testing.md"]
 #[expect(clippy::print_stdout, reason = "its figures are those of docs/characterise.md")]
 fn intervals_cover_in_a_thousand_streams() {
     let mut off = Vec::new();
@@ -131,7 +131,9 @@ fn intervals_cover_in_a_thousand_streams() {
             }
             let percent = 100.0 * covered as f64 / of as f64;
             println!("{name} | {term} | shown {shown} of {of} | covered {percent:.1} %");
-            if is_there && !(93.0..=97.0).contains(&percent) {
+            // A term at the edge of what a record shows is chosen by the data that give its interval.
+            let low = if shown * 100 >= of * 99 { 93.0 } else { 90.0 };
+            if is_there && !(low..=97.0).contains(&percent) {
                 off.push(format!("{name}: {term} {percent:.1} %"));
             }
         }
