@@ -120,7 +120,6 @@ fn intervals_cover() {
 
 #[test]
 #[ignore = "ten minutes and more: see docs/testing.md"]
-#[expect(clippy::print_stdout, reason = "its figures are those of docs/characterise.md")]
 fn intervals_cover_in_a_thousand_streams() {
     let mut off = Vec::new();
     for (name, of) in instruments() {

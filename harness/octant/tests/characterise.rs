@@ -26,10 +26,7 @@ fn a_run_at_rest_is_characterised_and_its_instrument_runs() {
     // Files stay as they are without --force.
     let (_, said) = call(&[&["characterise", "rest"][..], &files].concat(), 2);
     assert!(said.contains("imu.toml: it exists"), "{said}");
-    call(
-        &["run", "imu.toml", "--set", "procedure.calibration.duration=10 min", "--out", "twin"],
-        0,
-    );
+    call(&["run", "imu.toml", "--set", "procedure.calibration.duration=1 h", "--out", "twin"], 0);
     let (out, _) = call(&["characterise", "rest/recording.mcap", "--no-twin", "--json"], 0);
     let json: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!((&json["schema"], &json["twin"]), (&1.into(), &serde_json::Value::Null));
