@@ -5,13 +5,13 @@
 //! `E[Dx(s) Dx(0)] = Σ cₖ g(s + kτ)` with the generalized covariance g(t) of the term; a polynomial of second degree
 //! in g cancels (Matheron 1973; NIST SP 1065, 5.4.1 with Greenhall and Riley, PTTI 2003, for powers of the frequency):
 //!
-//! | term | coefficient | g(t) of a coefficient 1 |
+//! | term | coefficient | g(t) of a coefficient 1, t ≥ 0 |
 //! |---|---|---|
 //! | quantization | Q | 1 at t = 0, else 0 |
-//! | random walk | N | −|t| / 2 |
-//! | bias instability | B | t² ln|t| / 2π |
-//! | rate random walk | K | |t|³ / 12 |
-//! | Gauss-Markov | σ, T | −T² (|t|/T − 1 + e^(−|t|/T)) |
+//! | random walk | N | −t / 2 |
+//! | bias instability | B | t² ln t / 2π |
+//! | rate random walk | K | t³ / 12 |
+//! | Gauss-Markov | σ, T | −T² (t/T − 1 + e^(−t/T)) |
 //!
 //! The coefficients are those of IEEE Std 952-1997, annex C: AVAR = 3Q²/τ², N²/τ, (2 ln 2/π) B², K²τ/3.
 
