@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
-    campaign, compare, completions, design, diff, doctor, export, faults, fmu, new, nightly,
-    observe, progress, rejudge, replay, report, requirements, run, score, selftest, serve,
+    campaign, characterise, compare, completions, design, diff, doctor, export, faults, fmu, new,
+    nightly, observe, progress, rejudge, replay, report, requirements, run, score, selftest, serve,
     turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
@@ -54,6 +54,8 @@ enum Command {
     Observe(observe::Arguments),
     /// Design the calibration sequence with the least drift, and tell the bound of all sequences.
     Design(design::Arguments),
+    /// Characterise an instrument from a recording at rest: noise terms, lines, and a scenario with its twin.
+    Characterise(characterise::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
     /// Check that a folder of evidence is unchanged, bit for bit.
@@ -180,6 +182,7 @@ pub(crate) fn status() -> u8 {
         Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Design(arguments) => design::command(&arguments),
+        Command::Characterise(arguments) => characterise::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),
         Command::Rejudge(arguments) => rejudge::command(&arguments),

@@ -6,6 +6,7 @@
 mod arguments;
 mod campaign;
 pub mod case_progress;
+mod characterise;
 mod commands;
 mod compare;
 mod completions;

@@ -21,6 +21,7 @@ mod campaign_selection;
 mod can_source;
 mod case_progress;
 mod chain;
+mod characterise;
 mod compare_refused;
 mod completions;
 mod covariance_golden;

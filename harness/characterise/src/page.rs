@@ -1,0 +1,284 @@
+//! The HTML page: one file without network access.
+
+use super::analysis::ChannelAnalysis;
+use super::fit::variance_of;
+use super::kernel::{DifferenceOrder, RandomTerm};
+use super::result::Characterisation;
+use super::text::{estimate, title, unit};
+use maud::{Markup, html};
+use octant_base::number::{plain, significant};
+use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
+use octant_report::page::{PageSection, page, sections};
+
+/// Renders the page; `command` is the one that makes it again.
+#[must_use]
+pub fn render(result: &Characterisation, command: &str) -> String {
+    let all = [
+        PageSection::new("terms", "Noise terms", terms(result)),
+        PageSection::new("allan", "Deviations", deviations(result)),
+        PageSection::new("spectrum", "Spectral density", spectra(result)),
+        PageSection::new("lines", "Spectral lines", lines(result)),
+        PageSection::new("earth", "Earth's rate", earth(result)),
+        PageSection::new(
+            "temperature",
+            "Temperature",
+            html! { p { "Temperature dependence is " (result.temperature) "." } },
+        ),
+        PageSection::new("twin", "Simulated twin", twin(result)),
+        PageSection::new("imu", "Instrument of a scenario", instrument(result)),
+        PageSection::new(
+            "provenance",
+            "Provenance",
+            html! {
+                table { tbody { tr { td { "octant" } td.mono { (result.octant) } } } }
+                p.hint { "The same page again:" }
+                code.rerun { (command) }
+            },
+        ),
+    ];
+    let body = html! {
+        header {
+            div.eyebrow { "Instrument at rest" }
+            h1 { (result.recording) }
+            p.lead { (plain(result.duration_s, 6)) " s at " (plain(result.rate_hz, 6)) " Hz, "
+                (plain(result.rest_s, 6)) " s at rest in "
+                (octant_base::number::counted(result.analysis.stretches.len() as u64, "stretch", "stretches")) "."
+                @if result.gaps > 0 { " Gaps: " (result.gaps) "." }
+                @if result.invalid > 0 { " Invalid or saturated samples: " (result.invalid) "." }
+                @if let Some(cut) = &result.cut_short { " Cut short: " (cut) "." }
+            }
+        }
+        (sections(&all))
+    };
+    page(&format!("{}: instrument at rest", result.recording), &body)
+}
+
+fn triads(result: &Characterisation) -> impl Iterator<Item = (&'static str, &[ChannelAnalysis])> {
+    ["Gyro", "Accelerometer"].into_iter().zip(result.analysis.channels.chunks(3))
+}
+
+fn terms(result: &Characterisation) -> Markup {
+    html! {
+        p.hint { "Coefficients of IEEE Std 952 with their intervals of 95 %. A term that the recording doesn't show has the \
+            upper end of its interval as a limit. A term is shown if the deviance of the fit rises by more than 6.63 without it, the Gauss-Markov \
+            term if it lowers it by more than 13.8." }
+        @for (triad, channels) in triads(result) {
+            @let is_gyro = triad == "Gyro";
+            table {
+                thead { tr { th { (triad) } @for axis in ["x", "y", "z"] { th.n { (axis) } } } }
+                tbody {
+                    @for term in RandomTerm::ALL {
+                        @let (name, size) = unit(Some(term), is_gyro);
+                        tr {
+                            td { (title(term)) " " span.soft { (name) } }
+                            @for channel in channels { td.n {
+                                @match channel.noise.as_ref().map(|noise| noise.term(term)) {
+                                    None => "not told",
+                                    Some(None) => "not seen",
+                                    Some(Some(t)) => (estimate(t.value, t.interval, size)),
+                                }
+                            } }
+                        }
+                    }
+                    tr {
+                        td { "correlation time " span.soft { "s" } }
+                        @for channel in channels { td.n {
+                            @match channel.noise.as_ref().and_then(|noise| noise.correlation_time) {
+                                None => "–",
+                                Some(t) => (estimate(Some(t.value_s), t.interval_s, 1.0)),
+                            }
+                        } }
+                    }
+                    @let (name, size) = unit(None, is_gyro);
+                    tr {
+                        td { "rate ramp R " span.soft { (name) } }
+                        @for channel in channels { td.n {
+                            @match channel.ramp { None => "not told", Some(r) => (estimate(r.value, r.interval, size)) }
+                        } }
+                    }
+                    tr {
+                        td { "probability of a worse fit" }
+                        @for channel in channels { td.n {
+                            @match &channel.noise { None => "–", Some(noise) => (significant(noise.probability, 2)) }
+                        } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn small(title: &str, x_label: &str, y_label: &str) -> Chart {
+    let mut chart = Chart::new(title, x_label, y_label);
+    (chart.width, chart.height) = (360.0, 230.0);
+    (chart.hours, chart.decades, chart.logarithmic, chart.legend) = (false, true, true, false);
+    chart
+}
+
+fn line(label: &str, role: ChartRole, points: Vec<[f64; 2]>) -> ChartLine {
+    ChartLine { label: label.to_owned(), role, points }
+}
+
+fn deviations(result: &Characterisation) -> Markup {
+    html! {
+        p.hint { "Overlapping Allan deviation with its interval of 95 %. Dotted: sum of the fitted terms. Grey: the simulated twin. \
+            Modified Allan and Hadamard deviations are in the JSON." }
+        @for (triad, channels) in triads(result) {
+            div.multiples { @for channel in channels {
+                @let title = format!("{triad} {}, {}", &channel.name[channel.name.len() - 1..], channel.unit);
+                (deviation_chart(&title, channel, result).render())
+            } }
+        }
+    }
+}
+
+fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisation) -> Chart {
+    let mut chart = small(title, "averaging time, s", title);
+    chart.dots = true;
+    let rows = || {
+        channel
+            .deviations
+            .iter()
+            .filter(|row| row.allan.deviation > 0.0 && row.allan.freedom >= 1.0)
+    };
+    chart.bands.push(Band {
+        label: "interval of 95 %".to_owned(),
+        role: ChartRole::Primary,
+        points: rows()
+            .map(|row| [libm::log10(row.tau_s), row.allan.interval[0], row.allan.interval[1]])
+            .collect(),
+    });
+    let of_twin = result
+        .twin
+        .iter()
+        .flat_map(|twin| &twin.analysis.channels)
+        .find(|twin| twin.name == channel.name);
+    if let Some(twin) = of_twin {
+        let points = twin
+            .deviations
+            .iter()
+            .map(|row| [libm::log10(row.tau_s), row.allan.deviation])
+            .collect();
+        chart.lines.push(line("simulated twin", ChartRole::Reference, points));
+    }
+    if let Some(noise) = &channel.noise {
+        let (kernel, squares) = (noise.kernel(1.0 / result.rate_hz), noise.squares());
+        let fitted =
+            |tau_s: f64| libm::sqrt(variance_of(&kernel, &squares, DifferenceOrder::Second, tau_s));
+        let points = rows().map(|row| [libm::log10(row.tau_s), fitted(row.tau_s)]).collect();
+        chart.lines.push(line("sum of the terms", ChartRole::Second, points));
+    }
+    let points = rows().map(|row| [libm::log10(row.tau_s), row.allan.deviation]).collect();
+    chart.lines.push(line("Allan deviation", ChartRole::Primary, points));
+    chart
+}
+
+fn spectra(result: &Characterisation) -> Markup {
+    html! {
+        @if result.analysis.segments == 0 { p { "Not told: no stretch at rest has a whole segment." } }
+        @else { p.hint { "Square root of the one-sided density, means over thirds of an octave, "
+            (result.analysis.segments) " segments of " (plain(1.0 / result.analysis.bin_hz, 4)) " s. Grey: the simulated twin." } }
+        @for (triad, channels) in triads(result) {
+            div.multiples { @for channel in channels {
+                @let title = format!("{triad} {}, {}/√Hz", &channel.name[channel.name.len() - 1..], channel.unit);
+                (spectrum_chart(&title, channel, result).render())
+            } }
+        }
+    }
+}
+
+fn spectrum_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisation) -> Chart {
+    let mut chart = small(title, "frequency, Hz", title);
+    let points = |channel: &ChannelAnalysis| {
+        channel.spectrum.iter().map(|band| [libm::log10(band.frequency_hz), band.density]).collect()
+    };
+    let of_twin = result
+        .twin
+        .iter()
+        .flat_map(|twin| &twin.analysis.channels)
+        .find(|twin| twin.name == channel.name);
+    if let Some(twin) = of_twin {
+        chart.lines.push(line("simulated twin", ChartRole::Reference, points(twin)));
+    }
+    chart.lines.push(line("spectral density", ChartRole::Primary, points(channel)));
+    chart
+}
+
+fn lines(result: &Characterisation) -> Markup {
+    let found: Vec<_> = result
+        .analysis
+        .channels
+        .iter()
+        .flat_map(|channel| channel.lines.iter().map(move |line| (channel, line)))
+        .collect();
+    html! {
+        @if found.is_empty() && result.analysis.segments > 0 { p { "None, at a probability of a false line of 1 % a channel." } }
+        @if !found.is_empty() {
+            p.hint { "White noise alone has a line with a probability of 1 % a channel. Amplitudes are those in the samples. A line above \
+                half of the sample rate is seen folded." }
+            table {
+                thead { tr { th { "Channel" } th.n { "Frequency, Hz" } th.n { "Resolution, Hz" } th.n { "Amplitude" } th { "Unit" }
+                    th.n { "False alarm" } th { "Mains" } } }
+                tbody { @for (channel, line) in found { tr {
+                    td { (channel.name) }
+                    td.n { (plain(line.frequency_hz, 6)) }
+                    td.n { (significant(line.resolution_hz, 2)) }
+                    td.n { (significant(line.amplitude, 3)) }
+                    td { (channel.unit) }
+                    td.n { (significant(line.false_alarm, 2)) }
+                    td { (line.mains.as_deref().unwrap_or("–")) }
+                } } }
+            }
+        }
+    }
+}
+
+fn earth(result: &Characterisation) -> Markup {
+    let check = &result.earth_rate;
+    let deg = |rad: f64| format!("{:.3}", rad.to_degrees());
+    html! {
+        p { (check.attitudes) @if check.attitudes == 1 { " attitude." } @else { " attitudes." }
+            @if let Some(reason) = &check.reason { " Latitude not told: " (reason) "." } }
+        @if let (Some(latitude), Some([low, high])) = (check.latitude_rad, check.latitude_interval_rad) {
+            p { "Latitude from Earth's rate along up: " (deg(latitude)) "°, interval of 95 % from " (deg(low)) "° to " (deg(high)) "°." }
+            @if let Some([cosine, sigma]) = check.cosine {
+                p { "Rate across up: " (significant(cosine, 4)) " ± " (significant(1.96 * sigma, 2)) " of Earth's, expected "
+                    (significant(libm::cos(latitude), 4)) " at this latitude." }
+            }
+        }
+    }
+}
+
+fn twin(result: &Characterisation) -> Markup {
+    let Some(twin) = &result.twin else { return html! { p { "Not simulated." } } };
+    let said = |probability: f64| if probability >= twin.level { "agrees" } else { "differs" };
+    html! {
+        p.hint { "The plant with the instrument below, seed " (twin.seed) ", over stretches of the same lengths. Each comparison has a level of "
+            (plain(100.0 * twin.level, 2)) " % a channel: F tests of the Allan deviations at octaves and of the densities in thirds of an octave, \
+            the worst for all together; Kolmogorov and Smirnov's of the increments. A scenario has one value for three axes: axes that differ \
+            from each other differ from the twin." }
+        table {
+            thead { tr { th { "Channel" } th { "Allan deviations" } th.n { "Within intervals" } th.n { "Worst ratio" } th { "Spectrum" }
+                th.n { "Worst ratio" } th { "Increments" } th.n { "Distance" } } }
+            tbody { @for c in &twin.channels { tr {
+                td { (c.name) }
+                td { (said(c.allan_probability)) }
+                td.n { (c.allan_within) " of " (c.allan_points) }
+                td.n { (significant(c.allan_ratio, 3)) }
+                td { (said(c.spectrum_probability)) }
+                td.n { (significant(c.spectrum_ratio, 3)) }
+                td { (said(c.increments_probability)) }
+                td.n { (significant(c.increments_distance, 2)) }
+            } } }
+        }
+    }
+}
+
+fn instrument(result: &Characterisation) -> Markup {
+    html! {
+        @if !result.left_out.is_empty() {
+            p { "Not in it: " (result.left_out.join("; ")) "." }
+        }
+        pre { (result.imu) }
+    }
+}

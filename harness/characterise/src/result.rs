@@ -1,0 +1,91 @@
+//! The result: everything that is told of a recording.
+
+use super::analysis::{RestAnalysis, analyse};
+use super::earth_rate::{EarthRateCheck, check};
+use super::error::CharacteriseError;
+use super::instrument::instrument_file;
+use super::recording::RestingRecording;
+use super::survey::survey;
+use super::twin::{InstrumentTwin, compare, simulate};
+use serde::Serialize;
+
+/// Version of the layout of the JSON.
+pub const SCHEMA: u32 = 1;
+
+/// Characterisation of a recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct Characterisation {
+    /// Version of the layout.
+    pub schema: u32,
+    /// Version of the program.
+    pub octant: &'static str,
+    /// Recording.
+    pub recording: String,
+    /// Sample rate, Hz.
+    pub rate_hz: f64,
+    /// Length of the recording, s.
+    pub duration_s: f64,
+    /// Time at rest, s.
+    pub rest_s: f64,
+    /// Gaps.
+    pub gaps: u64,
+    /// Samples that are flagged invalid or saturated.
+    pub invalid: u64,
+    /// How the recording was cut short.
+    pub cut_short: Option<String>,
+    /// Attitudes and Earth's rate.
+    pub earth_rate: EarthRateCheck,
+    /// Temperature dependence: the sources of samples have no temperature.
+    pub temperature: &'static str,
+    /// Deviations, terms, spectra.
+    pub analysis: RestAnalysis,
+    /// The scenario with the instrument, TOML.
+    pub imu: String,
+    /// What the scenario can't hold.
+    pub left_out: Vec<String>,
+    /// The simulated twin; none where it wasn't asked for.
+    pub twin: Option<InstrumentTwin>,
+}
+
+/// Characterises a recording; with a seed it simulates the twin.
+///
+/// # Errors
+/// If the recording can't be read, moves, is too short, or has a channel that is stuck.
+pub fn characterise(
+    recording: &RestingRecording,
+    seed: Option<u64>,
+) -> Result<Characterisation, CharacteriseError> {
+    let period_s = recording.period_s();
+    let survey = survey(recording)?;
+    let analysis = analyse(recording, &survey)?;
+    let scenario = recording.scenario();
+    let file = std::path::Path::new(recording.name());
+    let name =
+        file.file_name().map_or_else(|| recording.name().into(), |name| name.to_string_lossy());
+    let imu = instrument_file(&analysis, scenario.sample_period_ns, &name);
+    let twin = match seed {
+        Some(seed) => {
+            let twin = simulate(&imu.text, seed, &analysis.stretches)?;
+            Some(compare(&analysis, twin, seed))
+        }
+        None => None,
+    };
+    let rest: u64 = analysis.stretches.iter().sum();
+    Ok(Characterisation {
+        schema: SCHEMA,
+        octant: env!("CARGO_PKG_VERSION"),
+        recording: recording.name().to_owned(),
+        rate_hz: 1.0 / period_s,
+        duration_s: survey.samples as f64 * period_s,
+        rest_s: rest as f64 * period_s,
+        gaps: survey.gaps,
+        invalid: survey.invalid,
+        cut_short: survey.cut_short,
+        earth_rate: check(&survey.stretches, &analysis, period_s),
+        temperature: "not told: a source of samples has no temperature",
+        analysis,
+        imu: imu.text,
+        left_out: imu.left_out,
+        twin,
+    })
+}

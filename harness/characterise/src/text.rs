@@ -1,0 +1,238 @@
+//! The summary on the terminal.
+
+use super::analysis::ChannelAnalysis;
+use super::kernel::RandomTerm;
+use super::result::Characterisation;
+use octant_base::number::{counted, plain, significant};
+use octant_scenario::UnitDimension;
+use std::fmt::Write as _;
+
+/// Unit in which a term of a triad is shown, and its size in SI units.
+#[must_use]
+pub fn unit(term: Option<RandomTerm>, is_gyro: bool) -> (&'static str, f64) {
+    let dimension = match (term, is_gyro) {
+        (Some(RandomTerm::Quantization), true) => UnitDimension::SMALL_ANGLE,
+        (Some(RandomTerm::Quantization), false) => UnitDimension::VELOCITY,
+        (Some(RandomTerm::RandomWalk), true) => UnitDimension::ANGLE_RANDOM_WALK,
+        (Some(RandomTerm::RandomWalk), false) => UnitDimension::VELOCITY_RANDOM_WALK,
+        (Some(RandomTerm::RateRandomWalk), true) => UnitDimension::RATE_RANDOM_WALK,
+        (Some(RandomTerm::RateRandomWalk), false) => UnitDimension::ACCEL_RANDOM_WALK,
+        (Some(RandomTerm::BiasInstability | RandomTerm::GaussMarkov), true) => {
+            UnitDimension::GYRO_BIAS
+        }
+        (Some(RandomTerm::BiasInstability | RandomTerm::GaussMarkov), false) => {
+            UnitDimension::ACCEL_BIAS
+        }
+        (None, true) => return ("deg/h/h", octant_earth::units::DEG_PER_HOUR / 3600.0),
+        (None, false) => return ("ug/h", octant_earth::units::MICRO_G / 3600.0),
+    };
+    let one = octant_scenario::quantity_of(&format!("1 {}", dimension.unit));
+    (dimension.unit, one.map_or(1.0, |quantity| quantity.si))
+}
+
+/// Title of a term.
+#[must_use]
+pub const fn title(term: RandomTerm) -> &'static str {
+    match term {
+        RandomTerm::Quantization => "quantization Q",
+        RandomTerm::RandomWalk => "random walk N",
+        RandomTerm::BiasInstability => "bias instability B",
+        RandomTerm::RateRandomWalk => "rate random walk K",
+        RandomTerm::GaussMarkov => "Gauss-Markov σ",
+    }
+}
+
+/// A value with its interval, or a limit.
+#[must_use]
+pub fn estimate(value: Option<f64>, interval: [f64; 2], size: f64) -> String {
+    let digits = |value: f64| significant(value / size, 3);
+    match value {
+        Some(value) => {
+            format!("{} [{}, {}]", digits(value), digits(interval[0]), digits(interval[1]))
+        }
+        None => format!("below {}", digits(interval[1])),
+    }
+}
+
+/// Formats the result as text.
+#[must_use]
+pub fn of(result: &Characterisation) -> String {
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "{}: {} s at {} Hz, {} s at rest in {}",
+        result.recording,
+        plain(result.duration_s, 6),
+        plain(result.rate_hz, 6),
+        plain(result.rest_s, 6),
+        counted(result.analysis.stretches.len() as u64, "stretch", "stretches")
+    );
+    if result.gaps > 0 || result.invalid > 0 {
+        let _ = writeln!(
+            out,
+            "  left out: {}, {}",
+            counted(result.gaps, "gap", "gaps"),
+            counted(result.invalid, "invalid or saturated sample", "invalid or saturated samples")
+        );
+    }
+    if let Some(cut) = &result.cut_short {
+        let _ = writeln!(out, "  cut short: {cut}");
+    }
+    let _ = writeln!(out, "noise terms, [interval of 95 %]");
+    for (triad, channels) in
+        ["gyro", "accelerometer"].iter().zip(result.analysis.channels.chunks(3))
+    {
+        for term in RandomTerm::ALL {
+            let (name, size) = unit(Some(term), *triad == "gyro");
+            let cell = |channel: &ChannelAnalysis| match &channel.noise {
+                None => "not told".to_owned(),
+                Some(noise) => noise
+                    .term(term)
+                    .map_or_else(|| "not seen".to_owned(), |t| estimate(t.value, t.interval, size)),
+            };
+            row(&mut out, &format!("{triad} {}, {name}", title(term)), channels.iter().map(cell));
+        }
+        let time = |channel: &ChannelAnalysis| {
+            let time = channel.noise.as_ref().and_then(|noise| noise.correlation_time);
+            time.map_or_else(|| "–".to_owned(), |t| estimate(Some(t.value_s), t.interval_s, 1.0))
+        };
+        if channels.iter().any(|c| c.noise.as_ref().is_some_and(|n| n.correlation_time.is_some())) {
+            row(&mut out, &format!("{triad} correlation time, s"), channels.iter().map(time));
+        }
+        let (name, size) = unit(None, *triad == "gyro");
+        let ramp = |channel: &ChannelAnalysis| {
+            channel
+                .ramp
+                .map_or_else(|| "not told".to_owned(), |r| estimate(r.value, r.interval, size))
+        };
+        row(&mut out, &format!("{triad} rate ramp R, {name}"), channels.iter().map(ramp));
+    }
+    for channel in &result.analysis.channels {
+        if let Some(noise) = channel.noise.as_ref().filter(|noise| noise.probability < 0.01) {
+            let _ = writeln!(
+                out,
+                "  {}: the terms don't describe it (probability {})",
+                channel.name,
+                significant(noise.probability.max(1e-12), 2)
+            );
+        }
+    }
+    lines(&mut out, result);
+    earth(&mut out, result);
+    let _ = writeln!(out, "temperature: {}", result.temperature);
+    twin(&mut out, result);
+    out
+}
+
+fn row(out: &mut String, name: &str, cells: impl Iterator<Item = String>) {
+    let cells: Vec<String> = cells.map(|cell| format!("{cell:<28}")).collect();
+    let _ = writeln!(out, "  {name:44} {}", cells.join(" ").trim_end());
+}
+
+fn lines(out: &mut String, result: &Characterisation) {
+    let _ = writeln!(
+        out,
+        "spectral lines, false alarms below {} % a channel",
+        plain(100.0 * super::spectrum::FALSE_ALARM, 2)
+    );
+    if result.analysis.segments == 0 {
+        let _ = writeln!(out, "  not told: no stretch has a whole segment");
+        return;
+    }
+    let mut none = true;
+    for channel in &result.analysis.channels {
+        for line in &channel.lines {
+            none = false;
+            let mains =
+                line.mains.as_ref().map_or_else(String::new, |name| format!(", mains {name}"));
+            let _ = writeln!(
+                out,
+                "  {} {} ± {} Hz, amplitude {} {}{mains}",
+                channel.name,
+                plain(line.frequency_hz, 6),
+                significant(line.resolution_hz, 2),
+                significant(line.amplitude, 3),
+                channel.unit
+            );
+        }
+    }
+    if none {
+        let _ = writeln!(out, "  none");
+    }
+}
+
+fn earth(out: &mut String, result: &Characterisation) {
+    let check = &result.earth_rate;
+    match (check.latitude_rad, check.latitude_interval_rad, &check.reason) {
+        (Some(latitude), Some([low, high]), _) => {
+            let deg = |rad: f64| format!("{:.3}", rad.to_degrees());
+            let _ = writeln!(
+                out,
+                "latitude from {} attitudes: {} [{}, {}] deg",
+                check.attitudes,
+                deg(latitude),
+                deg(low),
+                deg(high)
+            );
+            if let Some([cosine, sigma]) = check.cosine {
+                let _ = writeln!(
+                    out,
+                    "  rate across the vertical {} ± {} of Earth's, expected {}",
+                    significant(cosine, 4),
+                    significant(1.96 * sigma, 2),
+                    significant(libm::cos(latitude), 4)
+                );
+            }
+            let headings: Vec<String> = check
+                .headings_rad
+                .iter()
+                .take(8)
+                .map(|heading| {
+                    heading.map_or_else(
+                        || "–".to_owned(),
+                        |[heading, sigma]| {
+                            format!(
+                                "{:.2} ± {:.2}",
+                                heading.to_degrees(),
+                                1.96 * sigma.to_degrees()
+                            )
+                        },
+                    )
+                })
+                .collect();
+            if !headings.is_empty() {
+                let _ = writeln!(out, "  headings of body x, deg: {}", headings.join(", "));
+            }
+        }
+        (_, _, Some(reason)) => {
+            let _ = writeln!(out, "latitude: not told, {reason}");
+        }
+        _ => {}
+    }
+}
+
+fn twin(out: &mut String, result: &Characterisation) {
+    for words in &result.left_out {
+        let _ = writeln!(out, "not in the scenario: {words}");
+    }
+    let Some(twin) = &result.twin else { return };
+    let _ = writeln!(
+        out,
+        "simulated twin, seed {}: each comparison at a level of {} %",
+        twin.seed,
+        plain(100.0 * twin.level, 2)
+    );
+    for channel in &twin.channels {
+        let said = |probability: f64| if probability >= twin.level { "agrees" } else { "differs" };
+        let _ = writeln!(
+            out,
+            "  {:16} Allan deviations {} ({} of {} within), spectrum {}, increments {}",
+            channel.name,
+            said(channel.allan_probability),
+            channel.allan_within,
+            channel.allan_points,
+            said(channel.spectrum_probability),
+            said(channel.increments_probability)
+        );
+    }
+}
