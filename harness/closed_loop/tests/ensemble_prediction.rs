@@ -432,7 +432,7 @@ fn many_runs_of_table_1() {
         "[procedure.calibration]\npositions = \"eight\"\n{TABLE_1_CALIBRATION}\
          [procedure.navigation]\nduration = \"72 h\"\n"
     );
-    assert_ensemble(&scenario_at(TABLE_1_RATE, &text), draws(200, 100), 1..=72);
+    assert_ensemble(&scenario_at(TABLE_1_RATE, &text), draws(200, 60), 1..=72);
 }
 
 #[test]
