@@ -19,6 +19,12 @@ impl Rollover {
         Self { mask: u64::MAX >> unused, last: None }
     }
 
+    /// Value that the counter was continued to last.
+    #[must_use]
+    pub(crate) const fn last(&self) -> Option<u64> {
+        self.last
+    }
+
     /// Value of the continued counter.
     #[inline]
     pub fn continued(&mut self, counter: u64) -> u64 {

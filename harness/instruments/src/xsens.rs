@@ -7,7 +7,8 @@
 //!
 //! The decoder uses `DeltaQ` and `DeltaV`, else `RateOfTurn` and `Acceleration`, else those with `HR`;
 //! packet counter, `SampleTimeFine` (0.1 ms), status word and temperature. `DeltaQ` becomes its
-//! rotation vector. The interval isn't sent.
+//! rotation vector. The interval isn't sent. The packet counter counts every frame; readings are
+//! numbered without the frames that hold none, such as those with satellite data alone.
 //!
 //! The checksum is one byte, so that one damaged frame in 256 passes it. So the packets have to fill
 //! the frame exactly, and each must have the length of its kind: only damage inside a number can go
@@ -66,17 +67,34 @@ pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
 #[derive(Clone, Copy, Debug)]
 pub struct Xsens {
     counter: Rollover,
+    /// Frames without a reading that advanced the counter.
+    others: u64,
     fine: Rollover,
 }
 
 impl Default for Xsens {
     fn default() -> Self {
-        Self { counter: Rollover::new(16), fine: Rollover::new(32) }
+        Self { counter: Rollover::new(16), others: 0, fine: Rollover::new(32) }
     }
 }
 
 /// Finds readings in a stream of bytes.
 pub type XsensDecoder = crate::framing::FrameDecoder<Xsens>;
+
+impl Xsens {
+    /// Number of a frame among those with a reading. The unit counts every frame that it sends, so one
+    /// with satellite data alone would look like a lost reading.
+    fn sequence(&mut self, counter: u16, is_inertial: bool) -> u64 {
+        let before = self.counter.last();
+        let now = self.counter.continued(counter.into());
+        if !is_inertial && before.is_some_and(|before| now > before) {
+            self.others += 1;
+        }
+        // A unit that was switched on anew counts from a value below the frames left out so far.
+        self.others = self.others.min(now);
+        now - self.others
+    }
+}
 
 /// Format of a packet's numbers.
 #[derive(Clone, Copy)]
@@ -169,10 +187,11 @@ impl Framing for Xsens {
             temperature_c: found.temperature_c,
             ..Reading::NOTHING
         };
-        if !reading.is_inertial() {
+        let is_inertial = reading.is_inertial();
+        reading.sequence = found.counter.map(|counter| self.sequence(counter, is_inertial));
+        if !is_inertial {
             return Ok(None);
         }
-        reading.sequence = found.counter.map(|counter| self.counter.continued(counter.into()));
         reading.stamp = found.fine.map(|fine| Stamp {
             ns: self.fine.continued(fine.into()).saturating_mul(FINE_NS),
             clock: StampClock::Startup,

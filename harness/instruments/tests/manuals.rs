@@ -217,3 +217,72 @@ fn sbg_frame_after_the_table() {
     assert_eq!(velocity.value, [1.0, 0.0, -10_283_008.0 / 1_048_576.0]);
     assert_eq!(rotation.value, [1.0, -1.0 / 67_108_864.0, 0.0]);
 }
+
+/// A frame of an MTi with packet counter and another packet.
+fn xsens_frame(counter: u16, packet: &[u8]) -> Vec<u8> {
+    let mut frame = unhex("FA FF 36");
+    frame.push((5 + packet.len()) as u8);
+    frame.extend([0x10, 0x20, 2]);
+    frame.extend(counter.to_be_bytes());
+    frame.extend(packet);
+    let sum = frame[1..].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+    frame.push(sum.wrapping_neg());
+    frame
+}
+
+/// Rate and acceleration, as in the recorded frame above.
+fn xsens_means() -> Vec<u8> {
+    unhex(
+        "40 20 0C BE DC 9A FA 3F 54 9F 37 41 1C BB 70 80 20 0C BB AA 5C 80 3B 8C 55 01 BB 81 33 00",
+    )
+}
+
+/// `GnssPvtData`, 94 bytes by the maker's protocol document.
+fn xsens_satellites() -> Vec<u8> {
+    let mut packet = unhex("70 10 5E");
+    packet.resize(3 + 94, 0x11);
+    packet
+}
+
+/// Numbers of the readings of a unit that sends these frames, and how many were missing and behind.
+fn xsens_numbers(frames: impl IntoIterator<Item = (u16, bool)>) -> (Vec<u64>, u64, u64) {
+    let mut decoder = AnyDecoder::new(Protocol::Xsens);
+    let mut bytes = Vec::new();
+    for (counter, satellites) in frames {
+        let packet = if satellites { xsens_satellites() } else { xsens_means() };
+        bytes.extend(xsens_frame(counter, &packet));
+    }
+    let found = readings(&events(&mut decoder, &bytes));
+    let counters = decoder.counters();
+    assert_eq!(counters.bytes_framed, bytes.len() as u64);
+    let numbers = found.iter().map(|reading| reading.sequence.unwrap()).collect();
+    (numbers, counters.missing, counters.behind)
+}
+
+/// The counter counts frames with satellite data too: every fifth one here, across the counter's end.
+#[test]
+fn xsens_readings_are_numbered_without_frames_of_satellite_data() {
+    let frames = (65_500..65_600u64).map(|count| (count as u16, count % 5 == 3));
+    let numbers = xsens_numbers(frames);
+    assert_eq!(numbers, ((65_500..65_580).collect(), 0, 0));
+    // A satellite frame may repeat the counter of the reading that it belongs to.
+    let frames = [(7, false), (7, true), (8, false), (8, true), (9, false)];
+    assert_eq!(xsens_numbers(frames), (vec![7, 8, 9], 0, 0));
+}
+
+#[test]
+fn xsens_lost_frames_are_gaps_beside_satellite_data_too() {
+    // Of 10 to 19, satellites in 12 and 16: 14 is lost, then 17 to 18.
+    let sent = [10, 11, 12, 13, 15, 16, 19].map(|count| (count, count == 12 || count == 16));
+    assert_eq!(xsens_numbers(sent), (vec![10, 11, 12, 14, 17], 3, 0));
+    // Two lost before a satellite frame are two, not three.
+    assert_eq!(xsens_numbers([(1, false), (4, true), (5, false)]), (vec![1, 4], 2, 0));
+}
+
+#[test]
+fn xsens_unit_switched_on_anew_goes_back() {
+    let mut frames: Vec<_> = (0..60).map(|count| (count, count % 2 == 1)).collect();
+    frames.extend((0..6).map(|count| (count, false)));
+    let expected = (0..30).chain(0..6).collect();
+    assert_eq!(xsens_numbers(frames), (expected, 0, 1));
+}
