@@ -64,6 +64,8 @@ pub struct Wire {
     bus: Option<Bus>,
     /// Time since which the controller is off the bus, or of the last attempt to restart it.
     off: Option<Instant>,
+    /// Reason why the last intact message could not be read.
+    unreadable: Option<Unreadable>,
 }
 
 #[derive(Debug)]
@@ -129,6 +131,7 @@ impl Wire {
             counts: TrafficCounts::default(),
             bus: None,
             off: None,
+            unreadable: None,
         }
     }
 
@@ -228,7 +231,8 @@ impl Wire {
                     return Ok(Some(incoming));
                 }
                 // A babbling line must not keep the caller beyond its time.
-                Next::Lost => {
+                Next::Lost(unreadable) => {
+                    self.unreadable = unreadable.or(self.unreadable);
                     lost += 1;
                     if lost % 64 == 0 && until.is_some_and(|until| Instant::now() >= until) {
                         return Ok(None);
@@ -278,6 +282,12 @@ impl Wire {
             self.off = Some(Instant::now());
         }
         Ok(())
+    }
+
+    /// Reason why the last intact message that could not be read could not.
+    #[must_use]
+    pub fn last_unreadable(&self) -> Option<Unreadable> {
+        self.unreadable
     }
 
     /// True while the controller is off the bus.
@@ -375,8 +385,8 @@ impl Wire {
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 enum Next {
     Incoming(Incoming),
-    /// Bytes or a frame that are no message; more may follow.
-    Lost,
+    /// Bytes or a frame that are no message, with the reason where they are intact; more may follow.
+    Lost(Option<Unreadable>),
     Trouble(BusTrouble),
     Nothing,
 }
@@ -410,7 +420,11 @@ impl ByteMedium {
                 cause: serial::FrameDefect::Unreadable(Unreadable::NewerVersion { found }),
                 ..
             })) => Next::Incoming(Incoming::Newer(found)),
-            Some(serial::DecodeEvent::Lost(_)) | None => Next::Lost,
+            Some(serial::DecodeEvent::Lost(serial::SkippedBytes {
+                cause: serial::FrameDefect::Unreadable(reason),
+                ..
+            })) => Next::Lost(Some(reason)),
+            Some(serial::DecodeEvent::Lost(_)) | None => Next::Lost(None),
         })
     }
 }
@@ -464,7 +478,11 @@ impl FrameMedium {
                 cause: can::DropCause::Unreadable(Unreadable::NewerVersion { found }),
                 ..
             })) => Next::Incoming(Incoming::Newer(found)),
-            Some(can::ReassemblyEvent::Lost(_)) | None => Next::Lost,
+            Some(can::ReassemblyEvent::Lost(can::DroppedMessage {
+                cause: can::DropCause::Unreadable(reason),
+                ..
+            })) => Next::Lost(Some(reason)),
+            Some(can::ReassemblyEvent::Lost(_)) | None => Next::Lost(None),
         })
     }
 }

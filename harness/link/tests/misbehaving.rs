@@ -246,6 +246,63 @@ fn one_that_started_anew() {
 }
 
 #[test]
+fn one_hello_after_a_restart_is_enough() {
+    let mut said = false;
+    let peer = device(move |sample| match sample.step.number() {
+        1 => vec![Say::Message(output(sample.step, 1))],
+        // Switched on again: one hello, and no session.
+        _ if !std::mem::replace(&mut said, true) => vec![Say::Message(hello(0))],
+        _ => Vec::new(),
+    });
+    let error = steps(&mut open_impatient(&peer), 2).unwrap_err();
+    assert!(matches!(error, SessionError::StartedAnew { .. }), "{error}");
+}
+
+/// The frame of a bye whose text is no UTF-8, on the line.
+fn bye_in_no_utf8(sequence: u8) -> Vec<u8> {
+    let mut frame = vec![13, sequence, 0];
+    frame.extend([0; 8]);
+    frame.extend([7, 0, 0, 0]);
+    frame.extend([0xC3; 2]);
+    frame.extend([0; 38]);
+    let crc = frame.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+            (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg())
+        })
+    });
+    frame.extend((!crc).to_le_bytes());
+    // Blocks up to each zero, of which there is one behind the frame; none is longer than 254 here.
+    let stuffed = frame.split(|byte| *byte == 0).flat_map(|block| {
+        std::iter::once(block.len() as u8 + 1).chain(block.iter().copied()).collect::<Vec<u8>>()
+    });
+    std::iter::once(0).chain(stuffed).chain([0]).collect()
+}
+
+#[test]
+fn what_came_in_place_of_an_answer_is_named() {
+    let mut sequence = 0;
+    let peer = device(move |_| {
+        // Every other frame is left out.
+        sequence += 2;
+        vec![Say::Bytes(bye_in_no_utf8(sequence))]
+    });
+    let mut harness = open_impatient(&peer);
+    let begun = Instant::now();
+    loop {
+        let error = steps(&mut harness, 1).unwrap_err().to_string();
+        assert!(error.contains("no output to step"), "{error}");
+        // On a busy host, less of the traffic may arrive in this time, or none.
+        if error.contains(
+            "intact messages could not be read, the last: a message bye has a text that is no text",
+        ) && error.contains("frames or segments never arrived")
+        {
+            break;
+        }
+        assert!(begun.elapsed() < LONG, "{error}");
+    }
+}
+
+#[test]
 fn an_old_hello_that_comes_again_is_no_new_start() {
     let mut last = None;
     let peer = device(move |sample| {

@@ -1,6 +1,7 @@
 //! Reasons why a session can't begin or continue.
 
 use crate::port::PortError;
+use octant_wire::Unreadable;
 use octant_wire::message::{Bye, Reason, SessionRefusal};
 use std::fmt;
 use std::time::Duration;
@@ -110,6 +111,10 @@ pub struct HeardTraffic {
     pub lost: u64,
     /// Damaged frames or messages.
     pub damaged: u64,
+    /// Frames (CAN: segments) that never arrived.
+    pub missing: u64,
+    /// Number of intact messages that could not be read, and the reason for the last one.
+    pub unreadable: Option<(u64, Unreadable)>,
     /// Messages that the port did not take.
     pub not_sent: u64,
     /// The CAN controller is off the bus.
@@ -120,8 +125,11 @@ pub struct HeardTraffic {
 
 impl fmt::Display for HeardTraffic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { messages, lost, damaged, not_sent, off_bus, bye } = *self;
+        let Self { messages, lost, damaged, missing, unreadable, not_sent, off_bus, bye } = *self;
         match (messages, lost + damaged) {
+            (0, 0) if missing > 0 || unreadable.is_some() => {
+                f.write_str("no message was received")?;
+            }
             (0, 0) => f.write_str("nothing at all was received")?,
             (0, _) => write!(
                 f,
@@ -133,6 +141,16 @@ impl fmt::Display for HeardTraffic {
                 f,
                 "{messages} other messages were received, and {lost} bytes or frames that are none"
             )?,
+        }
+        match unreadable {
+            Some((1, reason)) => write!(f, "; one intact message could not be read: {reason}")?,
+            Some((count, reason)) => {
+                write!(f, "; {count} intact messages could not be read, the last: {reason}")?;
+            }
+            None => {}
+        }
+        if missing > 0 {
+            write!(f, "; {missing} frames or segments never arrived")?;
         }
         if not_sent > 0 {
             write!(f, "; {not_sent} messages were not taken by the port")?;

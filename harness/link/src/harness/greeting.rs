@@ -29,6 +29,12 @@ pub(super) fn heard(wire: &Wire, before: &TrafficCounts, bye: Option<Reason>) ->
         messages: now.received - before.received,
         lost: now.lost - before.lost,
         damaged: now.damaged - before.damaged,
+        missing: now.missing - before.missing,
+        unreadable: (now.unreadable > before.unreadable)
+            .then(|| {
+                wire.last_unreadable().map(|reason| (now.unreadable - before.unreadable, reason))
+            })
+            .flatten(),
         not_sent: now.not_sent - before.not_sent,
         off_bus: wire.is_off_bus(),
         bye,

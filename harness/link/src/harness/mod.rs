@@ -413,6 +413,10 @@ impl Harness {
             }
             let waited = begun.elapsed();
             if waited >= answer {
+                // One is enough where no answer came.
+                if anew > 0 {
+                    return Err(self.started_anew());
+                }
                 return Err(self.no_answer(&before, step, what, waited, asked));
             }
             if asked_at.elapsed() < intervals.now() {
