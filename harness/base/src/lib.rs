@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`names`] | the known name that is nearest to one that isn't known |
 //! | [`display`] | units in which errors are shown |
+//! | [`encoding`] | text of files whose encoding isn't said |
 //! | [`number`] | numbers as people read them |
 //! | [`decimal`] | times as decimal text |
 //! | [`control`] | progress of a run, and the request to end it |
@@ -22,6 +23,7 @@ pub mod code;
 pub mod control;
 pub mod decimal;
 pub mod display;
+pub mod encoding;
 pub mod hash;
 pub mod interrupt;
 pub mod names;

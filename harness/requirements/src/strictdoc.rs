@@ -53,7 +53,9 @@ pub fn results(
     requirements: &Requirements,
     title: &str,
 ) -> Result<String, ExportError> {
-    let mut out = format!("[DOCUMENT]\nTITLE: {title}\n\n[GRAMMAR]\nELEMENTS:\n");
+    // Ids of requirements can have characters that are markup elsewhere.
+    let mut out =
+        format!("[DOCUMENT]\nTITLE: {title}\nOPTIONS:\n  MARKUP: Text\n\n[GRAMMAR]\nELEMENTS:\n");
     out.push_str("- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n");
     out.push_str("  - TITLE: STATEMENT\n    TYPE: String\n    REQUIRED: True\n- TAG: TEST_RESULT\n  FIELDS:\n");
     for (field, required) in [

@@ -187,6 +187,46 @@ fn unordered(mut requirements: Requirements) -> Requirements {
     requirements
 }
 
+/// Names the markup of a document that names none, as StrictDoc's format does.
+fn marked(mut requirements: Requirements) -> Requirements {
+    let document = &mut requirements.document;
+    if !document.iter().any(|(key, _)| key == "OPTIONS.MARKUP") {
+        let at = document.iter().position(|(key, _)| key.starts_with("METADATA."));
+        let option = ("OPTIONS.MARKUP".to_owned(), "Text".to_owned());
+        document.insert(at.unwrap_or(document.len()), option);
+    }
+    requirements
+}
+
+/// A measure and names that reStructuredText would take for markup are escaped in a document of it,
+/// and left alone in one of plain text.
+#[test]
+fn the_escapes_of_a_document_follow_its_markup() {
+    let check = Check {
+        measure: "|calibration.gyro_x_|".to_owned(),
+        comparison: Comparison::AtMost,
+        limit: Limit::Number(1.0),
+        ensemble: None,
+    };
+    let one = Requirement::new("A-1", "The |drift| is *small*.", Verification::Test(check));
+    let mut all = Requirements {
+        title: "x".to_owned(),
+        document: Vec::new(),
+        definitions: Vec::new(),
+        requirements: vec![one],
+    };
+    let plain = sdoc::write(&all).unwrap();
+    assert!(plain.contains("OPTIONS:\n  MARKUP: Text\n"), "{plain}");
+    assert!(plain.contains("\nMEASURE: |calibration.gyro_x_|\n"), "{plain}");
+    all.document.push(("OPTIONS.MARKUP".to_owned(), "RST".to_owned()));
+    let rst = sdoc::write(&all).unwrap();
+    assert!(rst.contains("\nSTATEMENT: The |drift| is *small*.\n"), "{rst}");
+    assert!(rst.contains("\nMEASURE: \\|calibration.gyro_x\\_\\|\n"), "{rst}");
+    // StrictDoc's default is said when a document without the option is read.
+    let unsaid = sdoc::read(&rst.replace("OPTIONS:\n  MARKUP: RST\n", ""), "x.sdoc").unwrap();
+    assert_eq!(unsaid.requirements, all);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -204,7 +244,35 @@ proptest! {
         prop_assert_eq!(&back.notes, &[]);
         // StrictDoc knows text and choices, but no numbers and dates.
         let choice = |d: &Definition| d.kind.options().is_some();
-        prop_assert_eq!(sorted(back.requirements, choice), sorted(all, choice), "{}", text);
+        let sent = sorted(marked(all), choice);
+        prop_assert_eq!(sorted(back.requirements, choice), sent, "{}", text);
+    }
+
+    #[test]
+    fn texts_and_measures_full_of_markup_come_back_from_sdoc(
+        mut all in requirements(),
+        texts in vec("[a-z|*`_\\\\<>:.\\[\\]{}#~^$&-]{1,12}", 12),
+        rst in any::<bool>(),
+    ) {
+        if rst {
+            all.document.retain(|(key, _)| key != "OPTIONS.MARKUP");
+            let at = all.document.iter().position(|(key, _)| key.starts_with("METADATA"));
+            let markup = ("OPTIONS.MARKUP".to_owned(), "RST".to_owned());
+            all.document.insert(at.unwrap_or(all.document.len()), markup);
+        }
+        for (requirement, two) in all.requirements.iter_mut().zip(texts.chunks(2)) {
+            requirement.text = format!("a {} b", two[0]);
+            match &mut requirement.verification {
+                Verification::Test(check) => check.measure = format!("|{}|", two[1]),
+                Verification::Tests(tests) => tests.push(two[1].clone()),
+                _ => {}
+            }
+        }
+        let text = sdoc::write(&all).unwrap();
+        let back = sdoc::read(&text, "test.sdoc").map_err(|e| format!("{e}\n{text}")).unwrap();
+        let choice = |d: &Definition| d.kind.options().is_some();
+        let sent = sorted(marked(all), choice);
+        prop_assert_eq!(sorted(back.requirements, choice), sent, "{}", text);
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Encodings of XML files: those that FMUs are met in, and all of the web's with the feature
 //! `encodings`.
 
+use octant_base::encoding::windows_1252;
+
 /// Encoding of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
@@ -23,13 +25,6 @@ pub(super) const EXPECTED: &str = if cfg!(feature = "encodings") {
 } else {
     "UTF-8 (read are UTF-16, ISO-8859-1 and Windows-1252 too; the feature `encodings` of the build brings others)"
 };
-
-/// Characters of the bytes 0x80 to 0x9f in Windows-1252; the five that it leaves out are control
-/// characters, as the WHATWG has them.
-const HIGH: [char; 32] = [
-    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
-    '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
-];
 
 impl Encoding {
     /// Encoding that a byte order mark says, and the mark's length.
@@ -107,31 +102,9 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Option<String> {
     char::decode_utf16(units.iter().map(|two| unit(*two))).collect::<Result<_, _>>().ok()
 }
 
-/// Decodes Windows-1252, in which every byte is valid.
-pub(super) fn windows_1252(bytes: &[u8]) -> String {
-    let one = |byte: &u8| match byte {
-        0x80..=0x9f => HIGH[usize::from(byte - 0x80)],
-        other => char::from(*other),
-    };
-    bytes.iter().map(one).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_byte_of_windows_1252_is_a_character_of_its_own() {
-        let all: Vec<u8> = (0..=255).collect();
-        let text = windows_1252(&all);
-        let mut characters: Vec<char> = text.chars().collect();
-        // Unicode's mapping table of Windows-1252: 0x80 is U+20AC, 0x99 U+2122, 0x9f U+0178.
-        assert_eq!((characters[0x80], characters[0x99]), ('\u{20ac}', '\u{2122}'));
-        assert_eq!((characters[0x9f], characters[0xb0]), ('\u{178}', '°'));
-        characters.sort_unstable();
-        characters.dedup();
-        assert_eq!(characters.len(), 256);
-    }
 
     #[cfg(feature = "encodings")]
     #[test]

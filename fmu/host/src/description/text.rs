@@ -1,7 +1,8 @@
 //! Conversion of an XML file in any encoding to text.
 
 use super::DescriptionError;
-use super::encoding::{EXPECTED, Encoding, windows_1252};
+use super::encoding::{EXPECTED, Encoding};
+use octant_base::encoding::windows_1252;
 
 /// Decodes the text of an XML file, without a byte order mark; also returns the deviations that
 /// were tolerated.

@@ -4,8 +4,11 @@
 //! limit and the rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS and
 //! CLAUSE, declared in the document's grammar. Every other field is an attribute, and is written
 //! unchanged.
+//!
+//! Texts are plain unless the document names another markup (`OPTIONS.MARKUP`).
 
 mod grammar;
+mod markup;
 mod read;
 mod write;
 

@@ -1,6 +1,7 @@
 //! Reading of StrictDoc's documents.
 
 use super::grammar::{Field, kind};
+use super::markup;
 use super::{HEAD, OPTIONS, REQUIREMENT};
 use crate::document::{control, normal};
 use crate::error::{Imported, Note, RequirementsError, RequirementsProblem};
@@ -164,6 +165,13 @@ impl<'a> Parser<'a> {
             return self.wrong("the document has no TITLE");
         };
         self.found.title = title;
+        let document = &mut self.found.document;
+        if !document.iter().any(|(key, _)| key == markup::OPTION) {
+            // Said, so that a document that is written from this one means the same.
+            let at = document.iter().position(|(key, _)| key.starts_with("METADATA."));
+            let option = (markup::OPTION.to_owned(), markup::DEFAULT.to_owned());
+            document.insert(at.unwrap_or(document.len()), option);
+        }
         Ok(())
     }
 
@@ -379,6 +387,11 @@ impl<'a> Parser<'a> {
         let Some(text) = statement.or_else(|| title.as_ref().map(Written::copy)) else {
             return Err((line, format!("{} has neither STATEMENT nor TITLE", uid.value)));
         };
+        if markup::is_rst(&self.found.document) {
+            for written in fields.iter_mut().filter(|written| markup::made(&written.name)) {
+                written.value = markup::plain(&written.value);
+            }
+        }
         let verification = match check(&fields) {
             Ok(Some((verification, used))) => {
                 fields.retain(|f| !used.contains(&f.name.as_str()));

@@ -1,6 +1,7 @@
 //! Writing of StrictDoc's documents.
 
 use super::grammar::field_of;
+use super::markup;
 use super::{HEAD, OPTIONS, REQUIREMENT, legal_field, legal_kind, legal_uid};
 use crate::error::ExportError;
 use crate::fields::{ALL, OF_FORMATS, own_fields};
@@ -8,7 +9,8 @@ use crate::requirement::{AttributeKind, Requirement, Requirements};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// Writes requirements as an `.sdoc`; [`super::read()`] gives back the same ones.
+/// Writes requirements as an `.sdoc`; [`super::read()`] gives back the same ones. A document that names
+/// no markup is written, and comes back, as one of plain text.
 ///
 /// # Errors
 /// If StrictDoc can't hold a part of a requirement: an id or type that it refuses, a line `<<<` in a
@@ -26,6 +28,7 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
         }
     }
     let columns = columns(requirements);
+    let rst = markup::is_rst(&requirements.document);
     grammar(&mut out, requirements, &columns);
     let mut open: Vec<&str> = Vec::new();
     for requirement in &requirements.requirements {
@@ -44,7 +47,7 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
             _ = write!(out, "\n[[SECTION]]\nTITLE: {title}\n");
             open.push(title);
         }
-        node(&mut out, requirement, &columns).map_err(wrong)?;
+        node(&mut out, requirement, &columns, rst).map_err(wrong)?;
     }
     for _ in open {
         out.push_str("\n[[/SECTION]]\n");
@@ -74,13 +77,15 @@ fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
     }
     let options: Vec<_> = OPTIONS
         .iter()
-        .filter_map(|key| entry(&format!("OPTIONS.{key}")).map(|value| (*key, value)))
+        .filter_map(|key| {
+            let name = format!("OPTIONS.{key}");
+            let default = || (name == markup::OPTION).then(|| markup::PLAIN.to_owned());
+            entry(&name).or_else(default).map(|value| (*key, value))
+        })
         .collect();
-    if !options.is_empty() {
-        out.push_str("OPTIONS:\n");
-        for (key, value) in options {
-            line(out, "  ", key, &value);
-        }
+    out.push_str("OPTIONS:\n");
+    for (key, value) in options {
+        line(out, "  ", key, &value);
     }
     // Fields unknown to StrictDoc become metadata, which every document may have.
     let known = |key: &str| {
@@ -214,6 +219,7 @@ fn node(
     out: &mut String,
     requirement: &Requirement,
     columns: &[(&str, String, AttributeKind)],
+    rst: bool,
 ) -> Result<(), String> {
     if !legal_uid(&requirement.id) {
         return Err(format!(
@@ -229,6 +235,9 @@ fn node(
     own.extend(requirement.title.iter().map(|text| ("TITLE", text.clone())));
     own.push(("STATEMENT", requirement.text.clone()));
     own.extend(own_fields(requirement));
+    for (_, value) in own.iter_mut().filter(|(field, _)| rst && markup::made(field)) {
+        *value = markup::escaped(value);
+    }
     let of = |field: &str| own.iter().find(|(name, _)| *name == field);
     // Fields are written in the order of the grammar: StrictDoc accepts no other.
     let before = OF_FORMATS.into_iter().chain(ALL);

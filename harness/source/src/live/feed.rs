@@ -3,10 +3,11 @@
 use super::bus::Bus;
 use crate::SourceError;
 use octant_base::number::counted;
-use octant_instruments::{AnyDecoder, FramingEvent, Reading};
+use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::EndRole;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -23,6 +24,8 @@ pub(super) enum Feed {
 pub(super) struct Line {
     port: Box<dyn Bytes>,
     decoder: AnyDecoder,
+    /// Why the first intact frame that can't be read can't.
+    unread: Option<ReadingDefect>,
     buffer: [u8; 4096],
     /// Range of the buffer that is not decoded yet.
     rest: std::ops::Range<usize>,
@@ -54,6 +57,7 @@ impl Feed {
         Ok(Self::Line(Box::new(Line {
             port,
             decoder: AnyDecoder::new(protocol),
+            unread: None,
             buffer: [0; 4096],
             rest: 0..0,
             came: Instant::now(),
@@ -101,13 +105,23 @@ impl Feed {
         match self {
             Self::Line(line) => {
                 let counters = line.decoder.counters();
-                format!(
+                let mut said = format!(
                     "received so far: {}, {}, {} of protocol {protocol}, {} with a wrong checksum",
                     counted(counters.bytes, "byte", "bytes"),
                     counted(counters.readings, "reading", "readings"),
                     counted(counters.other, "other frame", "other frames"),
                     counted(counters.checksum, "frame", "frames"),
-                )
+                );
+                if let Some(cause) = line.unread {
+                    let frames = counted(counters.unknown, "frame", "frames");
+                    _ = write!(said, ", {frames} that can't be read, the first: {cause}");
+                }
+                // Beside readings, lost bytes are damage of the line, which the checksums tell.
+                if counters.readings == 0 && counters.bytes_lost > 0 {
+                    let bytes = counted(counters.bytes_lost, "byte", "bytes");
+                    _ = write!(said, "; {bytes} belong to no frame of this protocol");
+                }
+                said
             }
             Self::Bus(bus) => bus.said(),
         }
@@ -125,7 +139,10 @@ impl Line {
                 if event.is_none() && self.port.datagrams() { self.decoder.end() } else { event };
             match event {
                 Some(FramingEvent::Reading(reading)) => return Some((reading, self.came)),
-                Some(_) => {}
+                Some(FramingEvent::Lost(lost)) if lost.cause.is_intact() => {
+                    self.unread.get_or_insert(lost.cause);
+                }
+                Some(FramingEvent::Lost(_)) => {}
                 None => return None,
             }
         }

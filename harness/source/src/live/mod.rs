@@ -215,7 +215,7 @@ impl Source for LiveSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_instruments::{AnyEncoder, Axes, Protocol, Reading};
+    use octant_instruments::{AnyEncoder, Axes, Protocol, Reading, Stamp, StampClock, novatel};
     use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
     use std::net::UdpSocket;
 
@@ -285,6 +285,30 @@ mod tests {
             error,
             "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 165 bytes, 3 \
              readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum"
+        );
+    }
+
+    #[test]
+    fn bytes_without_a_reading_are_told_with_their_cause() {
+        let (mut source, socket) = source(Protocol::NovAtel, 1000);
+        // A KVH 1750, whose scale isn't in the maker's table.
+        let scale = novatel::scale_of(58).unwrap();
+        let mut encoder = novatel::NovatelEncoder::new(33, scale);
+        let stamp = Some(Stamp { ns: 5_000_000, clock: StampClock::Gps });
+        let reading = Reading { stamp, ..Reading::of_sample(&sample(1)) };
+        for _ in 0..3 {
+            socket.send(encoder.encode(&reading).unwrap()).unwrap();
+        }
+        // The start of a log with the long header.
+        socket.send(b"\xaa\x44\x12\x1c").unwrap();
+        let mut epoch = Epoch::default();
+        let error = source.next(&GimbalCommand::default(), &mut epoch).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 172 bytes, 0 \
+             readings, 0 other frames of protocol novatel, 0 frames with a wrong checksum, 3 frames that \
+             can't be read, the first: the frame is intact, but its IMU type 33 isn't known; 4 bytes \
+             belong to no frame of this protocol"
         );
     }
 }
