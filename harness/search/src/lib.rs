@@ -1,8 +1,8 @@
 //! Search for the faults that do most harm unnoticed, over kinds, sizes, times, channels and pairs.
 //!
 //! A search has a [space](space::SearchSpace), derived from the catalogue or read from a file, and a
-//! [bench](bench::SearchBench), the scenario without faults and its run. Each [candidate](candidate) is run on the
-//! instrument and the noise of that run, so that every difference is its effect. The [guide](guide) chooses
+//! [bench](bench::SearchBench), the scenario without faults and its run. Each [candidate] is run on the
+//! instrument and the noise of that run, so that every difference is its effect. The [guide] chooses
 //! candidates by the results before; [`latin`](latin::latin) draws them all at once, for comparison. The
 //! worst fault is made [smaller](minimal::minimal) in the end.
 //!
