@@ -100,6 +100,13 @@ for line in lines:
             sample[f"{what}_{axis}"] for what in ("delta_theta", "delta_velocity") for axis in "xyz"
         ] + [sample["azimuth"], sample["roll"]]
 recording = base64.b64decode("".join(line[10:] for line in said if line.startswith("recording ")))
+check("the instrument's run left a recording", len(recording) > 0, told)
+if not recording:
+    # The console has what the run and canplayer said.
+    console = (work / "console").read_text(errors="replace").splitlines()
+    after = max((at for at, line in enumerate(console) if line.startswith("RIG run ")), default=0)
+    print("\n".join(line for line in console[after:] if not line.startswith("RIG ")))
+    sys.exit(1)
 reader = make_reader(io.BytesIO(recording), decoder_factories=[DecoderFactory()])
 recorded = [decoded for *_, decoded in reader.iter_decoded_messages(topics=["/imu"])]
 # The run numbers samples from the first that arrived, whatever was lost before it: they are found by what they hold, in
