@@ -128,7 +128,7 @@ impl RandomTermsFit {
     }
 }
 
-/// What fits of records of the same length share.
+/// Parts of a fit that depend on the length of the record alone.
 #[derive(Debug)]
 pub struct NoiseFitter {
     period_s: f64,

@@ -22,7 +22,7 @@ use octant_search::page::render;
 use octant_search::search::{SearchPlan, SearchStrategy, is_run, search};
 use octant_search::space::SearchSpace;
 use octant_search::space_file;
-use octant_search::trial::{FaultTrial, TrialResult};
+use octant_search::trial::{FaultTrial, TrialEffect, TrialResult};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -270,11 +270,13 @@ fn conclude(
 
 /// A fail where something harmful went unnoticed; a pass needs runs whose faults acted.
 fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
-    let acted = trials.iter().filter_map(FaultTrial::effect).any(|effect| effect.fired);
+    let acted = trials.iter().filter_map(FaultTrial::effect).any(TrialEffect::is_judged);
     let broken = trials.iter().any(|trial| matches!(trial.result, TrialResult::Broken(_)));
     match found.missed {
         0 if !acted => {
-            note!("octant: no fault altered anything: the search shows nothing");
+            note!(
+                "octant: no fault altered anything whose harm could be judged: the search shows nothing"
+            );
             Verdict::Inconclusive
         }
         0 if broken => Verdict::Inconclusive,

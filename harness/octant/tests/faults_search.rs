@@ -4,15 +4,7 @@ use crate::common::program::program;
 use std::path::Path;
 use std::process::Output;
 
-const SHORT: &str = "schema = 1
-title = \"short\"
-seed = 1
-[imu]
-rate = \"20 Hz\"
-[procedure.calibration]
-positions = \"eight\"
-duration = \"24 min\"
-";
+const SHORT: &str = include_str!("../../../fixtures/search/short.toml");
 
 fn search(folder: &Path, arguments: &[&str]) -> Output {
     program(&["faults", "search"]).args(arguments).current_dir(folder).output().unwrap()
@@ -91,7 +83,14 @@ fn a_search_that_finds_nothing_passes_and_one_that_shows_nothing_does_not() {
     // Less than a count: no sample is altered.
     let none = space("{ from = \"1e-12 deg/h\", to = \"1e-11 deg/h\" }");
     assert_eq!(none.status.code(), Some(3), "{}", words(&none));
-    assert!(words(&none).contains("no fault altered anything"), "{}", words(&none));
+    assert!(words(&none).contains("no fault altered anything whose harm"), "{}", words(&none));
+    // A bias that stays is rightly estimated, and nothing navigates: no harm can be told.
+    let stays = "schema = 1\n[[faults]]\nkind = \"bias-step\"\nchannels = \"accelerometer x\"\n\
+                 amplitude = { from = \"1 ug\", to = \"2 ug\" }\nonset = \"0 s\"\n";
+    std::fs::write(folder.path().join("space.toml"), stays).unwrap();
+    let stays = search(folder.path(), &["short.toml", "--space", "space.toml", "--runs", "16"]);
+    assert_eq!(stays.status.code(), Some(3), "{}", words(&stays));
+    assert!(words(&stays).contains("not judged"), "{}", words(&stays));
 }
 
 #[test]

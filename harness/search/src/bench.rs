@@ -90,11 +90,8 @@ impl SearchBench {
         })
     }
 
-    /// Reason why the scenario can't have the faults of a candidate.
-    ///
-    /// # Errors
-    /// With that reason.
-    pub fn check(&self, space: &SearchSpace, candidate: &FaultCandidate) -> Result<(), String> {
+    /// The reason why the scenario can't have the faults of a candidate, if there is one.
+    fn check(&self, space: &SearchSpace, candidate: &FaultCandidate) -> Result<(), String> {
         self.scenario_of(&self.text_of(space, candidate, &[])).map(|_| ())
     }
 

@@ -35,6 +35,8 @@ pub struct SearchFound {
     pub refused: usize,
     /// Runs in which a fault altered nothing.
     pub not_fired: usize,
+    /// Runs whose fault changed the instrument for good unnoticed, without a navigation that would show the harm.
+    pub not_judged: usize,
     /// Runs in which it was noticed.
     pub noticed: usize,
     /// Runs that were harmful and unnoticed.
@@ -87,7 +89,7 @@ pub struct KindFound {
     pub kinds: String,
     /// Runs.
     pub runs: usize,
-    /// Of these noticed.
+    /// Runs in which a fault was noticed.
     pub noticed: usize,
     /// Largest harm of those that went unnoticed.
     pub worst_harm: Option<f64>,
@@ -120,6 +122,7 @@ impl SearchFound {
             runs: 0,
             refused: 0,
             not_fired: 0,
+            not_judged: 0,
             noticed: 0,
             missed: 0,
             first_missed: None,
@@ -179,6 +182,10 @@ impl SearchFound {
             kind.noticed += 1;
             return;
         }
+        if !effect.is_judged() {
+            self.not_judged += 1;
+            return;
+        }
         let harm = effect.harm();
         if harm >= 1.0 {
             self.missed += 1;
@@ -209,6 +216,12 @@ impl SearchFound {
             self.not_fired,
             self.missed
         );
+        if self.not_judged > 0 {
+            out += &format!(
+                "  {} unnoticed and not judged: the instrument changed for good, and there is no navigation\n",
+                self.not_judged
+            );
+        }
         for kind in self.kinds.iter().filter(|kind| kind.worst_harm.is_some_and(|harm| harm >= 1.0))
         {
             let harm = kind.worst_harm.map_or_else(String::new, |harm| significant(harm, 3));

@@ -1,7 +1,8 @@
 //! The journal of a search: what it is of, and every result, so that an interrupted search goes on.
 //!
-//! Lines of JSON. The first names the search, each further one is a trial. A line without an end was
-//! interrupted, and is cut off.
+//! Each line is a checksum and JSON. The first names the search, each further one is a trial. A checksum is the
+//! beginning of the BLAKE3 of the one before and of the JSON, so that no line can be edited or left out. A line without
+//! an end was interrupted, and is cut off.
 
 use crate::error::FaultSearchError;
 use crate::trial::FaultTrial;
@@ -43,6 +44,19 @@ pub struct SearchJournal {
     /// Trials that it had when it was opened and that were not taken yet, first last.
     known: Vec<FaultTrial>,
     line: usize,
+    /// Checksum of the last line.
+    chained: String,
+}
+
+/// Characters of a checksum.
+const CHECKSUM: usize = 32;
+
+/// Checksum of a line after another one.
+fn chain(before: &str, json: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(before.as_bytes());
+    hasher.update(json.as_bytes());
+    hasher.finalize().to_hex().chars().take(CHECKSUM).collect()
 }
 
 impl SearchJournal {
@@ -64,12 +78,19 @@ impl SearchJournal {
             |line, problem| FaultSearchError::OtherSearch { path: path.to_owned(), line, problem };
         let whole = std::str::from_utf8(&text[..end])
             .map_err(|_| other(1, "found bytes that are not UTF-8".to_owned()))?;
-        let mut known = Vec::new();
+        let (mut known, mut chained) = (Vec::new(), String::new());
         for (index, line) in whole.lines().enumerate() {
+            let (checksum, json) = line.split_once(' ').unwrap_or(("", line));
             if index == 0 {
-                refuse_other(identity, line).map_err(|problem| other(1, problem))?;
-            } else {
-                let trial = serde_json::from_str(line)
+                refuse_other(identity, json).map_err(|problem| other(1, problem))?;
+            }
+            chained = chain(&chained, json);
+            if checksum != chained {
+                let problem = "the checksum doesn't fit: a line was changed or left out".to_owned();
+                return Err(other(index + 1, problem));
+            }
+            if index > 0 {
+                let trial = serde_json::from_str(json)
                     .map_err(|error| other(index + 1, format!("expected a trial: {error}")))?;
                 known.push(trial);
             }
@@ -77,7 +98,7 @@ impl SearchJournal {
         known.reverse();
         file.set_len(end as u64).map_err(failed("cut"))?;
         file.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
-        let mut journal = Self { path: path.to_owned(), file, known, line: 1 };
+        let mut journal = Self { path: path.to_owned(), file, known, line: 1, chained };
         if end == 0 {
             journal.append(&[identity])?;
         }
@@ -120,8 +141,10 @@ impl SearchJournal {
         let failed =
             |source| FaultSearchError::Journal { action: "cut", path: self.path.clone(), source };
         let text = std::fs::read(&self.path).map_err(failed)?;
-        let kept = text.split_inclusive(|byte| *byte == b'\n').take(lines).map(<[u8]>::len);
-        let kept = kept.sum::<usize>() as u64;
+        let lines: Vec<&[u8]> = text.split_inclusive(|byte| *byte == b'\n').take(lines).collect();
+        let kept = lines.iter().map(|line| line.len()).sum::<usize>() as u64;
+        let checksum = lines.last().and_then(|line| line.get(..CHECKSUM)).unwrap_or_default();
+        self.chained = String::from_utf8_lossy(checksum).into_owned();
         self.file.set_len(kept).map_err(failed)?;
         self.file.seek(SeekFrom::Start(kept)).map_err(failed)?;
         Ok(())
@@ -141,8 +164,9 @@ impl SearchJournal {
             |source| FaultSearchError::Journal { action: "write", path: self.path.clone(), source };
         let mut text = String::new();
         for value in values {
-            text += &serde_json::to_string(value).map_err(|error| failed(error.into()))?;
-            text.push('\n');
+            let json = serde_json::to_string(value).map_err(|error| failed(error.into()))?;
+            self.chained = chain(&self.chained, &json);
+            text += &format!("{} {json}\n", self.chained);
         }
         self.file.write_all(text.as_bytes()).map_err(failed)?;
         self.file.sync_data().map_err(failed)

@@ -16,15 +16,7 @@ use octant_scenario::Scenario;
 use std::path::Path;
 
 /// 24 minutes at 20 Hz.
-const SHORT: &str = "schema = 1
-title = \"short\"
-seed = 1
-[imu]
-rate = \"20 Hz\"
-[procedure.calibration]
-positions = \"eight\"
-duration = \"24 min\"
-";
+const SHORT: &str = include_str!("../../../fixtures/search/short.toml");
 const TIMES: RunTimes = RunTimes { sample_s: 0.05, length_s: 1440.0 };
 
 fn scenario(changes: &[&str]) -> Scenario {
@@ -88,11 +80,19 @@ fn a_journal_of_another_search_is_refused() {
     let told = tried(&bias, &SearchPlan { seed: 2, ..plan(16) }).unwrap_err();
     assert!(told.contains("found search_seed 1, expected 2"), "{told}");
     let text = std::fs::read_to_string(&journal).unwrap();
-    // A result that was edited belongs to its candidate still; a candidate that was edited is no longer this search's.
-    let edited = text.replacen("\"places\":[0.", "\"places\":[0.9", 1);
-    std::fs::write(&journal, edited).unwrap();
-    let told = tried(&bias, &plan(16)).unwrap_err();
-    assert!(told.contains("line 2: found another candidate"), "{told}");
+    // Neither a result nor a candidate can be edited, and no line be left out.
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let edits = [
+        text.replacen("\"places\":[0.", "\"places\":[0.9", 1),
+        text.replacen("\"noticed_by\":null", "\"noticed_by\":\"gap\"", 1),
+        [&lines[..2], &lines[3..]].concat().concat(),
+    ];
+    for edited in edits {
+        assert_ne!(edited, text);
+        std::fs::write(&journal, edited).unwrap();
+        let told = tried(&bias, &plan(16)).unwrap_err();
+        assert!(told.contains("was changed or left out"), "{told}");
+    }
     std::fs::write(&journal, text.replace("{\"schema\":1", "{\"schema\":2")).unwrap();
     let told = tried(&bias, &plan(16)).unwrap_err();
     assert!(told.contains("newer version"), "{told}");

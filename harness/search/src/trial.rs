@@ -58,7 +58,10 @@ impl TrialEffect {
         let found = between(scenario, run, twin)?;
         let refused = run.calibration.as_ref().and_then(|c| c.refused.clone());
         let report = found.faults.iter().find_map(|fault| fault.noticed_by.clone());
-        let noticed_by = report.or_else(|| refused.map(|why| format!("refused: {why}")));
+        let absent =
+            || run.calibration.is_none().then(|| "no calibration was published".to_owned());
+        let noticed_by =
+            report.or_else(|| refused.map(|why| format!("refused: {why}"))).or_else(absent);
         let shifts = |found: &Counterfactual| {
             found
                 .parameters
@@ -96,6 +99,13 @@ impl TrialEffect {
             },
         );
         shift.max(drift)
+    }
+
+    /// True if every fault acted, and its harm can be told: a change of the instrument that stays shows in the
+    /// position alone.
+    #[must_use]
+    pub fn is_judged(&self) -> bool {
+        self.fired && !(self.instrument_changed && self.radial_nmi.is_none())
     }
 
     /// True if every fault acted and none was noticed.
