@@ -331,6 +331,16 @@ proptest! {
 fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
     let instrument = "[source]\nuri = \"udp:7000\"\n[source.live]\nprotocol = \"vectornav\"\n";
     let navigation = "[procedure.navigation]\nduration = \"10 s\"\n";
+    let counts = "gyro_count = \"1e-4 arcsec\"\naccel_count = \"1e-6 m/s\"\n";
+    let (_, path, message) = problem(&format!("schema = 1\n{navigation}{instrument}{counts}"));
+    assert_eq!(path, "source.live.gyro_count");
+    assert_says(&message, &["\"vectornav\" has a scale of its own", "\"novatel\""]);
+    let receiver = instrument.replace("vectornav", "novatel");
+    assert!(problems_with(&format!("schema = 1\n{navigation}{receiver}{counts}"), &[]).is_empty());
+    let half = "accel_count = \"1e-6 m/s\"\n";
+    let (_, path, message) = problem(&format!("schema = 1\n{navigation}{receiver}{half}"));
+    assert_eq!(path, "source.live.accel_count");
+    assert_says(&message, &["source.live.gyro_count is missing"]);
     let clock = "[realtime]\npace = \"clock\"\n";
     let fine = format!("schema = 1\n{navigation}{instrument}");
     assert!(problems_with(&fine, &[]).is_empty());

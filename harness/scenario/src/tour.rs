@@ -69,6 +69,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("source.text.gimbal.azimuth", "8"),
     ("source.text.gimbal.roll", "9"),
     ("source.live.protocol", r#""vectornav""#),
+    ("source.live.gyro_count", r#""0.000390625 arcsec""#),
+    ("source.live.accel_count", r#""1.5e-6 m/s""#),
     ("source.live.database", r#""unit.dbc""#),
     ("source.live.mapping", r#""unit.toml""#),
     ("source.mcap.topic", r#""/imu""#),

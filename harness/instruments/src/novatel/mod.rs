@@ -40,6 +40,9 @@ const RAWIMUSX_BYTES: usize = 40;
 const ERROR: u8 = 1 << 0;
 const ENCRYPTED: u8 = 1 << 1;
 
+/// Name of the field that tells the kind of unit, in defects.
+pub const IMU_TYPE: &str = "IMU type";
+
 /// Duration of a week, ns.
 const WEEK_NS: u64 = 604_800_000_000_000;
 
@@ -133,7 +136,7 @@ impl NovAtel {
         let scale = self
             .scale
             .or_else(|| scale_of(raw.kind))
-            .ok_or(ReadingDefect::Unknown { field: "IMU type", found: raw.kind.into() })?;
+            .ok_or(ReadingDefect::Unknown { field: IMU_TYPE, found: raw.kind.into() })?;
         if !(0.0..=604_800.0).contains(&raw.seconds) {
             return Err(ReadingDefect::Unknown {
                 field: "second of the week",

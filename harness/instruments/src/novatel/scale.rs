@@ -2,7 +2,8 @@
 //!
 //! Values from the table "Raw IMU Scale Factors" of the receiver's documentation (OEM7, log
 //! `RAWIMUSX`), in the units given there. Units whose entry is ambiguous (KVH 1750 and KVH COTS: 0.1 /
-//! (3600 · 256) of an unnamed unit) are left out: their scale must be given.
+//! (3600 · 256) of an unnamed unit) are left out: their scale has to be
+//! given ([`super::NovAtel::scale`]).
 
 use core::f64::consts::PI;
 

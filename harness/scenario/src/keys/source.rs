@@ -1,9 +1,11 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
 use super::columns::{column, time_unit};
-use super::definition::Kind;
+use super::definition::{Bounds, Kind};
 use super::fmu::SourceFmuKeys;
-use super::table::{At, Of, boolean, choice, integer, keys, numbers, table, text, time, within};
+use super::table::{
+    At, Of, boolean, choice, integer, keys, numbers, si, table, text, time, within,
+};
 use super::trajectory::{ReferenceTrajectoryKeys, SolutionKeys};
 use crate::quantity::UnitDimension;
 use crate::recorded::{Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TimeUnit};
@@ -130,6 +132,10 @@ keys! {
             "Which signals of the database are which channels, a TOML file. Relative to the scenario.";
         axes: At<String> = text(), "x y z",
             "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+        gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),
+            "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
+        accel_count: At<Option<f64>> = si(&[UnitDimension::VELOCITY], Bounds::Positive), absent("by the kind of unit"),
+            "Velocity of one accelerometer count, likewise.";
         silence: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "5 s",
             "How long a reading is waited for; then the instrument is gone.";
     }

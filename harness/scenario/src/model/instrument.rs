@@ -1,6 +1,7 @@
 //! A real instrument on a port.
 
 use super::file_name::FileName;
+use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
 
@@ -11,6 +12,8 @@ pub struct Instrument {
     pub uri: Uri,
     /// Protocol or messages of the instrument.
     pub speaks: Speaks,
+    /// Size of one count, where the scenario gives it in place of the protocol's table.
+    pub count: Option<CountScale>,
     /// Mounting.
     pub axes: Axes,
     /// Longest wait for a reading, s.

@@ -1,8 +1,9 @@
 //! Reads a real instrument on a port from `source.uri` and `[source.live]`.
 
 use crate::error::Problem;
-use crate::keys::{At, SourceKeys};
+use crate::keys::{At, SourceKeys, SourceLiveKeys};
 use crate::model::{FileName, Instrument, Messages, Speaks};
+use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
 
@@ -33,7 +34,29 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
             live.protocol.problem(format!("found {name:?}, which no codec reads"))
         })?)
     };
+    let count = count_scale(live, &speaks)?;
     let axes = Axes::parse(&live.axes)
         .map_err(|error| live.axes.problem(format!("it says no mounting: {error}")))?;
-    Ok(Instrument { uri, speaks, axes, silence_s: live.silence })
+    Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence })
+}
+
+/// Reads the size of a count, which no protocol but NovAtel's leaves to the kind of unit.
+fn count_scale(live: &SourceLiveKeys, speaks: &Speaks) -> Result<Option<CountScale>, Problem> {
+    let (gyro, accel) = (&live.gyro_count, &live.accel_count);
+    let (given, missing) = match (**gyro, **accel) {
+        (None, None) => return Ok(None),
+        (Some(rotation_rad), Some(velocity_mps)) if *speaks == Speaks::Bytes(Protocol::NovAtel) => {
+            return Ok(Some(CountScale { rotation_rad, velocity_mps }));
+        }
+        (Some(_), Some(_)) => {
+            let message = format!(
+                "protocol {:?} has a scale of its own, expected none: only \"novatel\" has counts of the unit",
+                speaks.name()
+            );
+            return Err(gyro.problem(message));
+        }
+        (Some(_), None) => (gyro, "accel_count"),
+        (None, Some(_)) => (accel, "gyro_count"),
+    };
+    Err(given.problem(format!("source.live.{missing} is missing, expected both or none")))
 }

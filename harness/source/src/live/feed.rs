@@ -3,7 +3,8 @@
 use super::bus::Bus;
 use crate::SourceError;
 use octant_base::number::counted;
-use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingDefect};
+use octant_instruments::novatel::{self, NovAtel, NovatelDecoder};
+use octant_instruments::{AnyDecoder, FramingEvent, Protocol, Reading, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::EndRole;
@@ -44,6 +45,12 @@ impl Feed {
                 return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
         };
+        let decoder = match (protocol, instrument.count) {
+            (Protocol::NovAtel, scale) => {
+                AnyDecoder::NovAtel(NovatelDecoder::new(NovAtel { scale }))
+            }
+            (protocol, _) => AnyDecoder::new(protocol),
+        };
         // The port waits for a sender, as a device does.
         let port = match port::open(uri, EndRole::Device) {
             Ok(Port::Bytes(port)) => port,
@@ -56,7 +63,7 @@ impl Feed {
         };
         Ok(Self::Line(Box::new(Line {
             port,
-            decoder: AnyDecoder::new(protocol),
+            decoder,
             unread: None,
             buffer: [0; 4096],
             rest: 0..0,
@@ -115,6 +122,10 @@ impl Feed {
                 if let Some(cause) = line.unread {
                     let frames = counted(counters.unknown, "frame", "frames");
                     _ = write!(said, ", {frames} that can't be read, the first: {cause}");
+                    if matches!(cause, ReadingDefect::Unknown { field: novatel::IMU_TYPE, .. }) {
+                        let keys = "source.live.gyro_count and accel_count";
+                        _ = write!(said, " (with {keys} it is read)");
+                    }
                 }
                 // Beside readings, lost bytes are damage of the line, which the checksums tell.
                 if counters.readings == 0 && counters.bytes_lost > 0 {

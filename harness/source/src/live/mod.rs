@@ -215,7 +215,8 @@ impl Source for LiveSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_instruments::{AnyEncoder, Axes, Protocol, Reading, Stamp, StampClock, novatel};
+    use octant_instruments::{AnyEncoder, Axes, MeasuredTriad, Protocol, Reading, ReadingKind};
+    use octant_instruments::{Stamp, StampClock, novatel};
     use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
     use std::net::UdpSocket;
 
@@ -234,9 +235,17 @@ mod tests {
     }
 
     fn source(protocol: Protocol, samples: u64) -> (LiveSource, UdpSocket) {
+        source_with(protocol, None, samples)
+    }
+
+    fn source_with(
+        protocol: Protocol,
+        count: Option<novatel::CountScale>,
+        samples: u64,
+    ) -> (LiveSource, UdpSocket) {
         let uri = "udp:127.0.0.1:0".parse().unwrap();
         let speaks = Speaks::Bytes(protocol);
-        let instrument = Instrument { uri, speaks, axes: Axes::SAME, silence_s: 0.3 };
+        let instrument = Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3 };
         let source =
             LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
         let address = source.reached_at();
@@ -307,8 +316,36 @@ mod tests {
             error,
             "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 172 bytes, 0 \
              readings, 0 other frames of protocol novatel, 0 frames with a wrong checksum, 3 frames that \
-             can't be read, the first: the frame is intact, but its IMU type 33 isn't known; 4 bytes \
-             belong to no frame of this protocol"
+             can't be read, the first: the frame is intact, but its IMU type 33 isn't known (with \
+             source.live.gyro_count and accel_count it is read); 4 bytes belong to no frame of this \
+             protocol"
         );
+    }
+
+    #[test]
+    fn counts_of_a_unit_that_is_in_no_table_have_the_given_size() {
+        // A tenth of an arcsecond in 8 more bits; 0.05 m/s in 15 bits.
+        let rotation_rad = 0.1 / 256.0 / 3600.0 * std::f64::consts::PI / 180.0;
+        let scale = novatel::CountScale { rotation_rad, velocity_mps: 0.05 / 32768.0 };
+        let (mut source, socket) = source_with(Protocol::NovAtel, Some(scale), 1);
+        // Kind 33 of the log, counts z, -y, x; the CRC is the encoder's.
+        let mut encoder = novatel::NovatelEncoder::new(33, scale);
+        let stamp = Some(Stamp { ns: 5_000_000, clock: StampClock::Gps });
+        let triad = |counts, lsb| Some(MeasuredTriad::counts(ReadingKind::Increment, counts, lsb));
+        let reading = Reading {
+            rotation: triad([4000, -5, 6], scale.rotation_rad),
+            velocity: triad([7, 8, -32_000], scale.velocity_mps),
+            stamp,
+            ..Reading::NOTHING
+        };
+        socket.send(encoder.encode(&reading).unwrap()).unwrap();
+        let mut epoch = Epoch::default();
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        // 4000 tenths of 256ths of an arcsecond are 7.5752e-6 rad, in counts of 2^-36 rad; 32 000 of
+        // 32 768 parts of 0.05 m/s in counts of 2^-30 m/s.
+        let turned = (7.575_213_8e-6 * 2f64.powi(36)).round() as i32;
+        assert!((epoch.sample.delta_theta[0] - turned).abs() <= 1, "{:?}", epoch.sample);
+        let fell = (-0.048_828_125 * 2f64.powi(30)).round() as i32;
+        assert!((epoch.sample.delta_velocity[2] - fell).abs() <= 1, "{:?}", epoch.sample);
     }
 }
