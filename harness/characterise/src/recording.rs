@@ -131,7 +131,7 @@ impl RestingRecording {
 
     fn refuse_others(&self) -> Result<(), CharacteriseError> {
         let found = match &self.scenario.source {
-            SourceSpec::Replay { .. } | SourceSpec::Text(_) => return Ok(()),
+            SourceSpec::Replay { .. } | SourceSpec::Text(_) | SourceSpec::Log(_) => return Ok(()),
             SourceSpec::Plant => "the plant, which is simulated",
             SourceSpec::Solution(_) => "a solution, which has no samples",
             SourceSpec::Live(_) => "an instrument on a port: record it with octant run first",
@@ -139,7 +139,9 @@ impl RestingRecording {
         };
         Err(CharacteriseError::Recording {
             name: self.name.clone(),
-            reason: format!("its source.uri is {found}, expected replay:FILE or text:FILE"),
+            reason: format!(
+                "its source.uri is {found}, expected replay:FILE, text:FILE or log:FILE"
+            ),
         })
     }
 

@@ -4,6 +4,7 @@ use crate::Reading;
 use crate::encoding::CannotCarry;
 use crate::facts::ProtocolFacts;
 use crate::framing::{FramingEvent, ReadingCounters};
+use crate::novatel::{CountScale, NovAtel, NovatelDecoder};
 
 /// Makes everything that there is once for each protocol: `Variant: module, Decoder, Encoder`. A module has
 /// `FACTS` and the two types.
@@ -107,6 +108,18 @@ protocols! {
     NovAtel: novatel, NovatelDecoder, NovatelEncoder;
     Sbg: sbg, SbgDecoder, SbgEncoder;
     Octant: own, OwnDecoder, OwnEncoder;
+}
+
+impl AnyDecoder {
+    /// Makes a decoder that has received nothing, for a unit whose counts have a given size. Only NovAtel's
+    /// protocol leaves it to the kind of unit; the others don't need it.
+    #[must_use]
+    pub fn scaled(protocol: Protocol, scale: Option<CountScale>) -> Self {
+        match protocol {
+            Protocol::NovAtel => Self::NovAtel(NovatelDecoder::new(NovAtel { scale })),
+            other => Self::new(other),
+        }
+    }
 }
 
 impl Protocol {

@@ -120,6 +120,56 @@ fn novatel_example_of_the_documentation() {
     assert!(readings(&events(&mut decoder, &other)).is_empty());
 }
 
+/// ASCII example of the receiver's documentation (OEM7, log RAWIMUX), with the long header, and the same log as
+/// a binary one, of which the header is written by hand from its table.
+#[test]
+fn novatel_logs_with_the_long_header() {
+    let line =
+        b"#RAWIMUXA,USB1,0,64.5,FINESTEERING,2209,491740.110,02000020,0dc5,16809;04,41,2209,\
+        491740.109817,ea57fe00,329394068,-2396829,4481425,321199,257329,-936077*cf9c035d\r\n";
+    let reading = only(Protocol::NovAtel, line);
+    let ns = 2209 * 604_800_000_000_000 + 491_740_109_817_000;
+    assert_eq!(reading.stamp, Some(Stamp { ns, clock: StampClock::Gps }));
+    assert_eq!(reading.status_word, Some(0xea57_fe00));
+    let rotation = reading.rotation.unwrap().value;
+    let scale = scale_of(41).unwrap();
+    assert_eq!(rotation, [-936_077.0, -257_329.0, 321_199.0].map(|c| c * scale.rotation_rad));
+
+    // Header length 28, message 1461, port USB1, 40 bytes of data, week and milliseconds.
+    let mut long = unhex(
+        "AA 44 12 1C B5 05 00 A0 28 00 00 00 81 B4 A1 08 0E 6A 4F 1D 20 00 00 02 C5 0D A9 41",
+    );
+    let mut data = vec![4, 41];
+    data.extend(2209_u16.to_le_bytes());
+    data.extend(491_740.109_817_f64.to_le_bytes());
+    data.extend(0xea57_fe00_u32.to_le_bytes());
+    for count in [329_394_068_i32, -2_396_829, 4_481_425, 321_199, 257_329, -936_077] {
+        data.extend(count.to_le_bytes());
+    }
+    long.extend(&data);
+    let crc = octant_instruments::checksum::novatel(&long);
+    long.extend(crc.to_le_bytes());
+    assert_eq!(only(Protocol::NovAtel, &long), reading);
+
+    // A log of 72 bytes that is none of the unit's passes, and one too long for the decoder costs its own bytes
+    // alone.
+    let other = |bytes: u16| {
+        let mut log = unhex(
+            "AA 44 12 1C 2A 00 00 A0 00 00 00 00 81 B4 A1 08 0E 6A 4F 1D 20 00 00 02 C5 0D A9 41",
+        );
+        log[8..10].copy_from_slice(&bytes.to_le_bytes());
+        log.extend(vec![7; usize::from(bytes)]);
+        let crc = octant_instruments::checksum::novatel(&log);
+        log.extend(crc.to_le_bytes());
+        log
+    };
+    let stream = [other(72), long.clone(), other(2000), long].concat();
+    let mut decoder = AnyDecoder::new(Protocol::NovAtel);
+    assert_eq!(readings(&events(&mut decoder, &stream)).len(), 2);
+    let counters = decoder.counters();
+    assert_eq!((counters.other, counters.bytes_lost), (1, 2032));
+}
+
 /// Recording of an MTi at 400 Hz with increments, published with a third-party decoder together with
 /// the values that the maker's software shows.
 #[test]

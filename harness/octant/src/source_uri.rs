@@ -9,7 +9,7 @@ use crate::failure::Failure;
 /// If the current folder can't be found.
 pub fn from_here(uri: &str) -> Result<String, Failure> {
     match uri.split_once(':') {
-        Some((kind @ ("replay" | "text" | "fmu" | "solution"), file))
+        Some((kind @ ("replay" | "text" | "log" | "fmu" | "solution"), file))
             if !file.is_empty() && !file.starts_with("${") =>
         {
             let file = std::path::absolute(file)

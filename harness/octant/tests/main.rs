@@ -67,6 +67,7 @@ mod innovations;
 #[cfg(unix)]
 mod least_squares_end;
 mod live;
+mod log_source;
 mod master;
 mod measures;
 mod messages;

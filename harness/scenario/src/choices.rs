@@ -22,6 +22,18 @@ pub(crate) const PROTOCOLS: [(&str, &str); Protocol::ALL.len() + 1] = {
     choices
 };
 
+/// The protocols on a line of bytes alone.
+pub(crate) const LINES: [(&str, &str); Protocol::ALL.len()] = {
+    let mut choices = [("", ""); Protocol::ALL.len()];
+    let mut at = 0;
+    while at < Protocol::ALL.len() {
+        let facts = Protocol::ALL[at].facts();
+        choices[at] = (facts.name, facts.doc);
+        at += 1;
+    }
+    choices
+};
+
 /// Places where the core runs: here, in an FMU, on a device at a port.
 pub(crate) const ENDPOINTS: [(&str, &str); 2 + devices()] = {
     let here = ("in-process", "in Octant itself");

@@ -257,6 +257,9 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
     if is("source.text.time_column", NO_TIME) {
         add("source.text", &["time_unit"], "without effect with time_column = \"none\"");
     }
+    if !uri.starts_with("log:") {
+        add("source", &["log"], "without effect: source.uri is not log:FILE");
+    }
     if !uri.starts_with("replay:") {
         add("source", &["mcap"], "without effect: source.uri is not replay:FILE");
     }

@@ -40,10 +40,10 @@ pub use grades::{FLICKER, GRADES, GradeSheet};
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
-    EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made,
-    Mapped, Messages, Method, MotionComponent, MotionSpec, NumberedStops, ParameterDistribution,
-    Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting, ShipSpectrum,
-    SourceSpec, Speaks, UnknownFault,
+    EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog, InterfaceChoice,
+    Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpec, NumberedStops,
+    ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting,
+    ShipSpectrum, SourceSpec, Speaks, UnknownFault,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;

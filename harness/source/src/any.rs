@@ -5,7 +5,8 @@ use super::fmu::motion::MovedPlant;
 use super::known::KnownReference;
 use super::measured::MeasuredReference;
 use super::{
-    Epoch, LiveSource, PlantSource, Replay, SolutionSource, Source, SourceError, TextSource,
+    Epoch, LiveSource, LogSource, PlantSource, Replay, SolutionSource, Source, SourceError,
+    TextSource,
 };
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
@@ -30,6 +31,7 @@ enum Kind {
     Fmu(Box<FmuSource>),
     Replay(Box<Replay>),
     Text(Box<TextSource>),
+    Log(Box<LogSource>),
     Live(Box<LiveSource>),
     Solution(Box<SolutionSource>),
 }
@@ -45,7 +47,7 @@ macro_rules! of {
 }
 
 of!(PlantSource => Plant, MovedPlant => Moved, FmuSource => Fmu, Replay => Replay,
-    TextSource => Text, LiveSource => Live, SolutionSource => Solution);
+    TextSource => Text, LogSource => Log, LiveSource => Live, SolutionSource => Solution);
 
 macro_rules! each {
     ($any:expr, $source:ident => $call:expr) => {
@@ -55,6 +57,7 @@ macro_rules! each {
             Kind::Fmu($source) => $call,
             Kind::Replay($source) => $call,
             Kind::Text($source) => $call,
+            Kind::Log($source) => $call,
             Kind::Live($source) => $call,
             Kind::Solution($source) => $call,
         }

@@ -38,6 +38,7 @@ pub fn configurations(
         SourceKind::Fmu(fmu) => crate::fmu::truth_at_start(scenario, fmu, &plant)?,
         SourceKind::Replay { .. }
         | SourceKind::Text(_)
+        | SourceKind::Log(_)
         | SourceKind::Live(_)
         | SourceKind::Solution(_) => None,
     };

@@ -5,7 +5,7 @@ use super::known::KnownReference;
 use super::measured::{MeasuredReference, ReferenceRows};
 use super::reference_mcap::ReferenceMcap;
 use super::reference_text::ReferenceText;
-use super::{AnySource, LiveSource, Replay, SolutionSource, SourceError, TextSource};
+use super::{AnySource, LiveSource, LogSource, Replay, SolutionSource, SourceError, TextSource};
 use octant_plant::config::PlantConfig;
 use octant_scenario::recorded::{TextFiles, TextMapping};
 use octant_scenario::reference::{ReferencePlace, ReferenceSpec};
@@ -84,6 +84,9 @@ fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySou
             };
             let mapping = TextMapping { files, ..mapping.clone() };
             Ok(Some(TextSource::open(&mapping)?.into()))
+        }
+        scenario::SourceSpec::Log(log) => {
+            Ok(Some(LogSource::open(&path(&log.file)?, log, scenario.sample_period_ns)?.into()))
         }
         scenario::SourceSpec::Solution(spec) => {
             Ok(Some(SolutionSource::open(scenario, spec)?.into()))

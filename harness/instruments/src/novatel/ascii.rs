@@ -5,17 +5,23 @@ use crate::checksum;
 use crate::framing::{Extent, ReadingDefect};
 use core::fmt::{self, Write};
 
-/// First byte of a line with the short header.
-pub(super) const BEGIN: u8 = b'%';
+/// First byte of a line with the short header, and the name of the log.
+const SHORT: (u8, &str) = (b'%', "RAWIMUSXA");
+/// First byte of a line with the long header, and the name of the log.
+const LONG: (u8, &str) = (b'#', "RAWIMUXA");
 /// Separator before the CRC.
 const MARK: u8 = b'*';
 const CRC_DIGITS: usize = 8;
 /// CRC digits and end of the line, bytes.
 const TAIL_BYTES: usize = CRC_DIGITS + END.len();
 const END: &str = "\r\n";
-const NAME: &str = "RAWIMUSXA";
 
-/// Length from `%` to the end of the line: printable characters, the separator, eight digits, CR and
+/// Returns whether a line can begin with a byte.
+pub(super) fn begins(byte: u8) -> bool {
+    byte == SHORT.0 || byte == LONG.0
+}
+
+/// Length from the first byte to the end of the line: printable characters, the separator, eight digits, CR and
 /// LF.
 pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
     let printable = |byte: &u8| (0x20..0x7F).contains(byte);
@@ -34,7 +40,10 @@ pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
 /// Reads the log from a line.
 pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
     let text = core::str::from_utf8(frame).map_err(|_| ReadingDefect::Malformed)?;
-    let text = text.strip_prefix(char::from(BEGIN)).ok_or(ReadingDefect::Malformed)?;
+    let headed = [SHORT, LONG]
+        .into_iter()
+        .find_map(|(begin, name)| Some((text.strip_prefix(char::from(begin))?, name)));
+    let (text, name) = headed.ok_or(ReadingDefect::Malformed)?;
     let text = text.strip_suffix(END).ok_or(ReadingDefect::Malformed)?;
     let (text, digits) = text.split_once('*').ok_or(ReadingDefect::Malformed)?;
     // A sign must be refused here, because the number parser accepts it.
@@ -47,8 +56,11 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
         return Err(ReadingDefect::Checksum { found, computed });
     }
     let Some((head, data)) = text.split_once(';') else { return Ok(None) };
-    if head.split(',').next() != Some(NAME) {
-        return Ok(None);
+    match head.split(',').next() {
+        Some(found) if found == name => {}
+        // The checksum doesn't cover the first byte: a damaged one makes the other form's begin of it.
+        Some(found) if found == SHORT.1 || found == LONG.1 => return Err(ReadingDefect::Malformed),
+        _ => return Ok(None),
     }
     let fields = &mut data.split(',');
     macro_rules! next {
@@ -85,7 +97,11 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
 /// If `to` has no room.
 pub fn write_line(raw: &RawImu, to: &mut impl Write) -> fmt::Result {
     let RawImu { info, kind, week, seconds, status, velocity, rotation } = raw;
-    write!(to, "%{NAME},{week},{seconds:.3};{info:02x},{kind},{week},{seconds:.9},{status:08x}")?;
+    let (begin, name) = (char::from(SHORT.0), SHORT.1);
+    write!(
+        to,
+        "{begin}{name},{week},{seconds:.3};{info:02x},{kind},{week},{seconds:.9},{status:08x}"
+    )?;
     for count in velocity.iter().chain(rotation) {
         write!(to, ",{count}")?;
     }

@@ -1,14 +1,15 @@
-//! NovAtel SPAN: the log `RAWIMUSX`, binary and ASCII.
+//! NovAtel SPAN: the logs `RAWIMUSX` and `RAWIMUX`, binary and ASCII.
 //!
-//! The binary form has the short header: `0xAA 0x44 0x13`, length of the data, message, week and
-//! milliseconds of GPS time; then the data and a CRC-32, all little-endian. The ASCII form is a line
-//! from `%` to `*`, with the same CRC as eight hexadecimal digits, and ends with CR and LF. Both have
-//! the kind of unit that is connected, and raw increments as integers, whose scale depends on that kind
+//! The binary form of `RAWIMUSX` has the short header: `0xAA 0x44 0x13`, length of the data, message, week and
+//! milliseconds of GPS time; that of `RAWIMUX` the long one: `0xAA 0x44 0x12`, length of the header, message,
+//! and the length of the data among others. Then come the data and a CRC-32, all little-endian. The ASCII form
+//! is a line from `%`, or `#` with the long header, to `*`, with the same CRC as eight hexadecimal digits, and
+//! ends with CR and LF. All have the kind of unit that is connected, and raw increments as integers, whose scale depends on that kind
 //! ([`scale_of`]): z, −y, x of velocity and of rotation, in the axes of the unit. Stamps are GPS week
 //! and seconds. Readings have neither number nor interval.
 //!
-//! Other logs with the short header pass as frames without a reading. Logs with the long header (`0xAA
-//! 0x44 0x12`) are not decoded: their bytes count as lost.
+//! Other logs pass as frames without a reading, up to the length of the longest log with the short header. The
+//! bytes of longer ones count as lost.
 
 mod ascii;
 mod raw;
@@ -28,12 +29,19 @@ use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 
 const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
+const SYNC_LONG: [u8; 3] = [0xAA, 0x44, 0x12];
 /// Size of sync, length, message, week and milliseconds.
 const HEADER_BYTES: usize = 12;
+/// Size of the long header; later versions may append to it.
+const LONG_HEADER_BYTES: usize = 28;
+/// Bytes of the long header up to the length of the data.
+const LONG_LENGTH_BYTES: usize = 10;
 const CRC_BYTES: usize = 4;
 /// Most bytes of a frame: the length of the data has one byte, and lines are shorter.
 const MAX_BYTES: usize = HEADER_BYTES + 255 + CRC_BYTES;
+const RAWIMUX: u16 = 1461;
 const RAWIMUSX: u16 = 1462;
+/// Size of the data of both.
 const RAWIMUSX_BYTES: usize = 40;
 
 // Bits of the IMU info.
@@ -49,9 +57,16 @@ const WEEK_NS: u64 = 604_800_000_000_000;
 /// Facts of the protocol: the counts are 2⁻³³ rad and 2⁻²⁹ m/s.
 pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
     name: "novatel",
-    doc: "NovAtel's RAWIMUSX, binary or ASCII",
+    doc: "NovAtel's RAWIMUSX or RAWIMUX, binary or ASCII",
     resolution: [1.2e-10, 1.9e-9],
-    false_starts: &[&[0xAA], &[0xAA, 0x44, 0x13, 0xFF], b"%", b"%RAWIMUSXA,"],
+    false_starts: &[
+        &[0xAA],
+        &[0xAA, 0x44, 0x13, 0xFF],
+        &[0xAA, 0x44, 0x12, 28, 0, 0, 0, 0, 100, 0],
+        b"%",
+        b"%RAWIMUSXA,",
+        b"#RAWIMUXA,",
+    ],
 };
 
 /// NovAtel's protocol.
@@ -70,30 +85,50 @@ impl Framing for NovAtel {
 
     #[inline]
     fn begins(byte: u8) -> bool {
-        byte == SYNC[0] || byte == ascii::BEGIN
+        byte == SYNC[0] || ascii::begins(byte)
     }
 
     #[inline]
     fn extent(bytes: &[u8]) -> Extent {
-        if bytes.first() == Some(&ascii::BEGIN) {
+        let Some(first) = bytes.first() else { return Extent::Open(4) };
+        if ascii::begins(*first) {
             return ascii::extent(bytes, MAX_BYTES);
         }
-        if bytes.iter().zip(SYNC).any(|(byte, sync)| *byte != sync) {
-            return Extent::None;
-        }
+        let is_start = |sync: [u8; 3]| bytes.iter().zip(sync).all(|(byte, sync)| *byte == sync);
         match bytes.get(3) {
-            None => Extent::Open(4 - bytes.len()),
-            Some(length) => Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES),
+            Some(length) if is_start(SYNC) => {
+                Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES)
+            }
+            Some(header) if is_start(SYNC_LONG) => long_extent(bytes, usize::from(*header)),
+            None if is_start(SYNC) || is_start(SYNC_LONG) => Extent::Open(4 - bytes.len()),
+            _ => Extent::None,
         }
     }
 
     #[inline]
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
         let raw =
-            if frame.first() == Some(&ascii::BEGIN) { ascii::read(frame)? } else { binary(frame)? };
+            if frame.first() == Some(&SYNC[0]) { binary(frame)? } else { ascii::read(frame)? };
         match raw {
             Some(raw) => self.reading(&raw).map(Some),
             None => Ok(None),
+        }
+    }
+}
+
+/// Extent of a frame with a long header of this length.
+fn long_extent(bytes: &[u8], header: usize) -> Extent {
+    if header < LONG_HEADER_BYTES {
+        return Extent::None;
+    }
+    match bytes.get(LONG_LENGTH_BYTES - 2..LONG_LENGTH_BYTES) {
+        None => Extent::Open(LONG_LENGTH_BYTES - bytes.len()),
+        Some(length) => {
+            let data = usize::from(u16::from_le_bytes([length[0], length[1]]));
+            match header + data + CRC_BYTES {
+                total if total <= MAX_BYTES => Extent::Bytes(total),
+                _ => Extent::None,
+            }
         }
     }
 }
@@ -105,13 +140,17 @@ fn binary(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
     if found != computed {
         return Err(ReadingDefect::Checksum { found, computed });
     }
-    let data = bare.get(HEADER_BYTES..).ok_or(ReadingDefect::Malformed)?;
-    if u16::from_le_bytes([bare[4], bare[5]]) != RAWIMUSX {
+    let (header, log) = match bare {
+        [_, _, sync, header, ..] if *sync == SYNC_LONG[2] => (usize::from(*header), RAWIMUX),
+        _ => (HEADER_BYTES, RAWIMUSX),
+    };
+    let data = bare.get(header..).ok_or(ReadingDefect::Malformed)?;
+    if bare.get(4..6) != Some(&log.to_le_bytes()) {
         return Ok(None);
     }
     if data.len() != RAWIMUSX_BYTES {
         let found = data.len() as u32;
-        return Err(ReadingDefect::Unknown { field: "length of RAWIMUSX", found });
+        return Err(ReadingDefect::Unknown { field: "length of the log", found });
     }
     let data = &mut Reader::new(data);
     Ok(Some(RawImu {

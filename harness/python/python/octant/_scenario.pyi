@@ -1394,14 +1394,21 @@ class SourceFmu(Section):
 
 class SourceLive(Section):
     """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol, database,
-    mapping, axes, silence. Default: serial, udp, can and slcan: the defaults of its keys."""
+    mapping, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the defaults of its
+    keys."""
 
+    accel_count: str
+    """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
+    unit."""
     axes: str
     """Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z. Takes a text in
     quotes. Default: "x y z"."""
     database: str
     """The maker's CAN database, a DBC file. Relative to the scenario. Takes a text in quotes. Left out: needed
     by protocol = "dbc"."""
+    gyro_count: str
+    """Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table
+    lacks; with accel_count. Takes an angle such as "40 arcsec". Left out: by the kind of unit."""
     mapping: str
     """Which signals of the database are which channels, a TOML file. Relative to the scenario. Takes a text in
     quotes. Left out: needed by protocol = "dbc"."""
@@ -1411,6 +1418,22 @@ class SourceLive(Section):
     silence: str
     """How long a reading is waited for; then the instrument is gone. Takes a time such as "12 h". Default: "5
     s"."""
+
+class SourceLog(Section):
+    """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
+    protocol, axes, gyro_count, accel_count. Default: needed by log:FILE."""
+
+    accel_count: str
+    """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
+    unit."""
+    axes: str
+    """Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z. Takes a text in
+    quotes. Default: "x y z"."""
+    gyro_count: str
+    """Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table
+    lacks; with accel_count. Takes an angle such as "40 arcsec". Left out: by the kind of unit."""
+    protocol: Literal["vectornav", "xsens", "novatel", "sbg", "octant"]
+    """What the instrument spoke. Takes one of "vectornav", "xsens", "novatel", "sbg", "octant"."""
 
 class SourceMcapAccelerometer(Section):
     """Fields of the accelerometers. Takes a table with x, y, z, unit, quantity, scale, offset, axes."""
@@ -1767,7 +1790,7 @@ class SourceTrajectory(Section):
 
 class Source(Section):
     """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-    live."""
+    live, log."""
 
     @property
     def fmu(self) -> SourceFmu:
@@ -1778,9 +1801,16 @@ class Source(Section):
     @property
     def live(self) -> SourceLive:
         """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol,
-        database, mapping, axes, silence. Default: serial, udp, can and slcan: the defaults of its keys."""
+        database, mapping, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the
+        defaults of its keys."""
     @live.setter
     def live(self, value: SourceLive | Mapping[str, Any]) -> None: ...
+    @property
+    def log(self) -> SourceLog:
+        """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
+        protocol, axes, gyro_count, accel_count. Default: needed by log:FILE."""
+    @log.setter
+    def log(self, value: SourceLog | Mapping[str, Any]) -> None: ...
     @property
     def mcap(self) -> SourceMcap:
         """Which channels and fields of another program's MCAP file are read. Takes a table with topic,
@@ -1820,8 +1850,8 @@ class Source(Section):
     def trajectory(self, value: SourceTrajectory | Mapping[str, Any]) -> None: ...
     uri: str
     """Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.
-    Takes one of "plant", "replay", "text", "solution", "fmu", "serial", "udp", "can", "slcan". Default:
-    "plant"."""
+    Takes one of "plant", "replay", "text", "solution", "log", "fmu", "serial", "udp", "can", "slcan".
+    Default: "plant"."""
 
 class TurntableDrive(Section):
     """A real table that the core's set points turn, under a real instrument. It can hurt people: read
@@ -1970,7 +2000,7 @@ class Scenario(Section):
     @property
     def source(self) -> Source:
         """Where the samples come from. Takes a table with uri, text, mcap, fmu, reference, solution, trajectory,
-        live."""
+        live, log."""
     @source.setter
     def source(self, value: Source | Mapping[str, Any]) -> None: ...
     title: str

@@ -18,6 +18,7 @@ keys! {
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
             ("solution", "no samples: an instrument's own solution, which is scored: solution:FILE"),
+            ("log", "the bytes that an instrument sent, as a file: log:FILE"),
             (
                 "fmu",
                 "an FMU: Octant's plant, another instrument, or the ship under the plant: fmu:FILE",
@@ -53,6 +54,9 @@ keys! {
             = table::<SourceLiveKeys>(),
             derived("serial, udp, can and slcan: the defaults of its keys"),
             "What the instrument of source.uri speaks, and how it is mounted.";
+        log: At<Option<SourceLogKeys>>
+            = table::<SourceLogKeys>(), derived("needed by log:FILE"),
+            "What the instrument spoke whose bytes source.uri names, and how it was mounted.";
     }
 }
 
@@ -138,6 +142,20 @@ keys! {
             "Velocity of one accelerometer count, likewise.";
         silence: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "5 s",
             "How long a reading is waited for; then the instrument is gone.";
+    }
+}
+
+keys! {
+    /// `[source.log]`.
+    pub(crate) struct SourceLogKeys {
+        protocol: At<String> = Of::<String>::kind(Kind::Choice(&crate::choices::LINES)), required,
+            "What the instrument spoke.";
+        axes: At<String> = text(), "x y z",
+            "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+        gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),
+            "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
+        accel_count: At<Option<f64>> = si(&[UnitDimension::VELOCITY], Bounds::Positive), absent("by the kind of unit"),
+            "Velocity of one accelerometer count, likewise.";
     }
 }
 

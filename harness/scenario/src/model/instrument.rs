@@ -20,6 +20,19 @@ pub struct Instrument {
     pub silence_s: f64,
 }
 
+/// The bytes that an instrument sent, as a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstrumentLog {
+    /// The file, as written.
+    pub file: FileName,
+    /// Protocol of the instrument.
+    pub protocol: Protocol,
+    /// Size of one count, where the scenario gives it in place of the protocol's table.
+    pub count: Option<CountScale>,
+    /// Mounting.
+    pub axes: Axes,
+}
+
 /// Encoding of an instrument's readings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Speaks {

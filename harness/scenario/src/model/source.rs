@@ -2,7 +2,7 @@
 
 use super::file_name::FileName;
 use super::fmu::Fmu;
-use super::instrument::Instrument;
+use super::instrument::{Instrument, InstrumentLog};
 use crate::recorded::{McapMapping, TextMapping};
 use crate::trajectory::SolutionSpec;
 
@@ -20,6 +20,8 @@ pub enum SourceSpec {
     },
     /// Text files of a real instrument. File names in it are as written: see [`FileName`].
     Text(TextMapping),
+    /// The bytes that an instrument sent, as a file.
+    Log(InstrumentLog),
     /// An FMU: Octant's plant, another instrument, or the ship below Octant's plant.
     Fmu(Box<Fmu>),
     /// A real instrument on a port.
@@ -32,7 +34,7 @@ impl SourceSpec {
     /// True for a recording, whose samples don't follow gimbal commands.
     #[must_use]
     pub fn is_recorded(&self) -> bool {
-        matches!(self, Self::Replay { .. } | Self::Text(_) | Self::Solution(_))
+        matches!(self, Self::Replay { .. } | Self::Text(_) | Self::Log(_) | Self::Solution(_))
     }
 
     /// True if this program's plant makes the samples; an FMU may move its case.
@@ -54,7 +56,11 @@ impl SourceSpec {
             Self::Plant | Self::Fmu(_) => true,
             // An octant recording that contains truth comes from a simulation.
             Self::Replay { mapping: None, .. } => has_truth,
-            Self::Replay { .. } | Self::Text(_) | Self::Live(_) | Self::Solution(_) => false,
+            Self::Replay { .. }
+            | Self::Text(_)
+            | Self::Log(_)
+            | Self::Live(_)
+            | Self::Solution(_) => false,
         }
     }
 
@@ -95,7 +101,7 @@ impl SourceSpec {
     #[must_use]
     pub fn recordings(&self) -> Vec<FileName> {
         match self {
-            Self::Replay { file, .. } => vec![file.clone()],
+            Self::Replay { file, .. } | Self::Log(InstrumentLog { file, .. }) => vec![file.clone()],
             Self::Text(mapping) => {
                 mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
             }
@@ -112,7 +118,7 @@ impl SourceSpec {
             Self::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
             Self::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
             Self::Fmu(_) => Some("source.fmu.map has no truth"),
-            Self::Replay { .. } | Self::Text(_) => Some("the source is a recording"),
+            Self::Replay { .. } | Self::Text(_) | Self::Log(_) => Some("the source is a recording"),
             Self::Live(_) => Some("the source is a real instrument"),
         }
     }
@@ -124,6 +130,9 @@ impl SourceSpec {
             Self::Plant => None,
             Self::Replay { .. } | Self::Text(_) => {
                 Some(("source", "recorded samples, no truth".to_owned()))
+            }
+            Self::Log(InstrumentLog { protocol, .. }) => {
+                Some(("source", format!("recorded bytes of {}, no truth", protocol.name())))
             }
             Self::Solution(spec) => {
                 let files = [&spec.solution, &spec.reference].map(|file| file.file.short());

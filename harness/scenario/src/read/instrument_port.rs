@@ -1,8 +1,9 @@
-//! Reads a real instrument on a port from `source.uri` and `[source.live]`.
+//! Reads a real instrument on a port from `source.uri` and `[source.live]`, and what one sent from
+//! `[source.log]`.
 
 use crate::error::Problem;
-use crate::keys::{At, SourceKeys, SourceLiveKeys};
-use crate::model::{FileName, Instrument, Messages, Speaks};
+use crate::keys::{At, SourceKeys};
+use crate::model::{FileName, Instrument, InstrumentLog, Messages, Speaks};
 use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
@@ -34,15 +35,38 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
             live.protocol.problem(format!("found {name:?}, which no codec reads"))
         })?)
     };
-    let count = count_scale(live, &speaks)?;
-    let axes = Axes::parse(&live.axes)
-        .map_err(|error| live.axes.problem(format!("it says no mounting: {error}")))?;
+    let count = count_scale("live", [&live.gyro_count, &live.accel_count], &speaks)?;
+    let axes = mounting(&live.axes)?;
     Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence })
 }
 
-/// Reads the size of a count, which no protocol but NovAtel's leaves to the kind of unit.
-fn count_scale(live: &SourceLiveKeys, speaks: &Speaks) -> Result<Option<CountScale>, Problem> {
-    let (gyro, accel) = (&live.gyro_count, &live.accel_count);
+/// Reads the bytes that an instrument sent, from a file and `[source.log]`.
+pub(super) fn log(keys: &SourceKeys, file: &str) -> Result<InstrumentLog, Problem> {
+    let Some(log) = &*keys.log else {
+        let message =
+            "missing, expected the protocol of the instrument whose bytes source.uri names";
+        return Err(keys.log.problem(message));
+    };
+    let name = log.protocol.as_str();
+    let protocol = Protocol::of_name(name)
+        .ok_or_else(|| log.protocol.problem(format!("found {name:?}, which no codec reads")))?;
+    let counts = [&log.gyro_count, &log.accel_count];
+    let count = count_scale("log", counts, &Speaks::Bytes(protocol))?;
+    let axes = mounting(&log.axes)?;
+    Ok(InstrumentLog { file: FileName(file.to_owned()), protocol, count, axes })
+}
+
+fn mounting(axes: &At<String>) -> Result<Axes, Problem> {
+    Axes::parse(axes).map_err(|error| axes.problem(format!("it says no mounting: {error}")))
+}
+
+/// Reads the size of a count from two keys of a table, which no protocol but NovAtel's leaves to the kind of
+/// unit.
+fn count_scale(
+    table: &str,
+    [gyro, accel]: [&At<Option<f64>>; 2],
+    speaks: &Speaks,
+) -> Result<Option<CountScale>, Problem> {
     let (given, missing) = match (**gyro, **accel) {
         (None, None) => return Ok(None),
         (Some(rotation_rad), Some(velocity_mps)) if *speaks == Speaks::Bytes(Protocol::NovAtel) => {
@@ -58,5 +82,5 @@ fn count_scale(live: &SourceLiveKeys, speaks: &Speaks) -> Result<Option<CountSca
         (Some(_), None) => (gyro, "accel_count"),
         (None, Some(_)) => (accel, "gyro_count"),
     };
-    Err(given.problem(format!("source.live.{missing} is missing, expected both or none")))
+    Err(given.problem(format!("source.{table}.{missing} is missing, expected both or none")))
 }

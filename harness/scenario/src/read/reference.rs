@@ -21,7 +21,9 @@ pub(super) fn read(
 ) -> Result<Option<ReferenceSpec>, Problem> {
     let of_reference = &keys.source.reference;
     let tells_nothing = match &scenario.source {
-        SourceSpec::Text(_) | SourceSpec::Replay { mapping: Some(_), .. } => true,
+        SourceSpec::Text(_) | SourceSpec::Log(_) | SourceSpec::Replay { mapping: Some(_), .. } => {
+            true
+        }
         SourceSpec::Live(_) => of_reference.is_some(),
         SourceSpec::Plant
         | SourceSpec::Fmu(_)

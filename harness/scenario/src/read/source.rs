@@ -1,6 +1,6 @@
 //! Reads the source of the samples from `[source]`.
 
-use super::instrument_port::instrument;
+use super::instrument_port::{instrument, log};
 use super::unit_of::unit_si;
 use crate::error::Problem;
 use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
@@ -29,6 +29,7 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpe
             };
             Ok(SourceSpec::Text(read_text(text, file, sample_period_ns)?))
         }
+        Some(("log", file)) if !file.is_empty() => Ok(SourceSpec::Log(log(keys, file)?)),
         Some(("fmu", file)) if !file.is_empty() => {
             Ok(SourceSpec::Fmu(Box::new(super::fmu::source(keys, file, sample_period_ns)?)))
         }
@@ -37,8 +38,8 @@ pub(super) fn read(keys: &SourceKeys, sample_period_ns: u64) -> Result<SourceSpe
         }
         _ if octant_link::Uri::is_one(uri) => Ok(SourceSpec::Live(instrument(keys)?)),
         _ => Err(keys.uri.problem(format!(
-            "found {uri:?}, expected plant, replay:FILE, text:FILE, solution:FILE, fmu:FILE, \
-             serial:PORT, udp:HOST:PORT, can:INTERFACE or slcan:PORT"
+            "found {uri:?}, expected plant, replay:FILE, text:FILE, log:FILE, solution:FILE, \
+             fmu:FILE, serial:PORT, udp:HOST:PORT, can:INTERFACE or slcan:PORT"
         ))),
     }
 }

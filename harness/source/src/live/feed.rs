@@ -2,13 +2,11 @@
 
 use super::bus::Bus;
 use crate::SourceError;
-use octant_base::number::counted;
-use octant_instruments::novatel::{self, NovAtel, NovatelDecoder};
-use octant_instruments::{AnyDecoder, FramingEvent, Protocol, Reading, ReadingDefect};
+use crate::traffic::traffic;
+use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::EndRole;
-use std::fmt::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -45,12 +43,6 @@ impl Feed {
                 return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
         };
-        let decoder = match (protocol, instrument.count) {
-            (Protocol::NovAtel, scale) => {
-                AnyDecoder::NovAtel(NovatelDecoder::new(NovAtel { scale }))
-            }
-            (protocol, _) => AnyDecoder::new(protocol),
-        };
         // The port waits for a sender, as a device does.
         let port = match port::open(uri, EndRole::Device) {
             Ok(Port::Bytes(port)) => port,
@@ -63,7 +55,7 @@ impl Feed {
         };
         Ok(Self::Line(Box::new(Line {
             port,
-            decoder,
+            decoder: AnyDecoder::scaled(protocol, instrument.count),
             unread: None,
             buffer: [0; 4096],
             rest: 0..0,
@@ -111,28 +103,8 @@ impl Feed {
     pub(super) fn said(&self, protocol: &str) -> String {
         match self {
             Self::Line(line) => {
-                let counters = line.decoder.counters();
-                let mut said = format!(
-                    "received so far: {}, {}, {} of protocol {protocol}, {} with a wrong checksum",
-                    counted(counters.bytes, "byte", "bytes"),
-                    counted(counters.readings, "reading", "readings"),
-                    counted(counters.other, "other frame", "other frames"),
-                    counted(counters.checksum, "frame", "frames"),
-                );
-                if let Some(cause) = line.unread {
-                    let frames = counted(counters.unknown, "frame", "frames");
-                    _ = write!(said, ", {frames} that can't be read, the first: {cause}");
-                    if matches!(cause, ReadingDefect::Unknown { field: novatel::IMU_TYPE, .. }) {
-                        let keys = "source.live.gyro_count and accel_count";
-                        _ = write!(said, " (with {keys} it is read)");
-                    }
-                }
-                // Beside readings, lost bytes are damage of the line, which the checksums tell.
-                if counters.readings == 0 && counters.bytes_lost > 0 {
-                    let bytes = counted(counters.bytes_lost, "byte", "bytes");
-                    _ = write!(said, "; {bytes} belong to no frame of this protocol");
-                }
-                said
+                let said = traffic(line.decoder.counters(), line.unread, protocol, "live");
+                format!("received so far: {said}")
             }
             Self::Bus(bus) => bus.said(),
         }
