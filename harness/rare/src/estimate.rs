@@ -14,7 +14,7 @@
 
 use crate::mixture::NormalMixture;
 use crate::point::{RareBench, RarePoint, RareSample, RareStage};
-use crate::proposal::{WeightedSample, chosen, explored, of_pilot};
+use crate::proposal::{Explored, WeightedSample, chosen};
 use crate::subset::{Stepped, SubsetFound, SubsetGoal, SubsetPlan, run, subset, worse};
 use octant_statistics::proportion::{success_lower_bound, success_upper_bound};
 use octant_statistics::sample::{deviation, mean};
@@ -25,11 +25,13 @@ pub const EFFECTIVE_MIN: f64 = 50.0;
 /// Weighted samples at least.
 const FINAL_MIN: usize = 400;
 /// Share of the budget that subset simulation may have.
-const EXPLORING: f64 = 0.6;
+const EXPLORING: f64 = 0.65;
 /// A failure of the chains whose weight is this many times the probability isn't covered by the proposal.
 const UNCOVERED_WEIGHT: f64 = 1000.0;
 /// Share of such failures from which on an estimate is in doubt.
 const UNCOVERED_SHARE: f64 = 0.02;
+/// Ratio of predicted and shown mean squares from which on an estimate is in doubt.
+const VARIANCE_MAX: f64 = 3.0;
 /// Share of accepted steps below which chains didn't move.
 const ACCEPTED_MIN: f64 = 0.05;
 
@@ -54,7 +56,7 @@ pub struct RarePlan {
 
 impl Default for RarePlan {
     fn default() -> Self {
-        Self { runs: 10_000, replicates: 4, samples: 250, pilot: 1000, error: 0.05, confidence: 0.95, seed: 1 }
+        Self { runs: 10_000, replicates: 4, samples: 200, pilot: 1000, error: 0.05, confidence: 0.95, seed: 1 }
     }
 }
 
@@ -77,6 +79,11 @@ pub enum RareDoubt {
     Uncovered {
         /// Their share of the failures of the chains.
         share: f64,
+    },
+    /// The failures of the chains predict a much larger variance than the weighted samples show.
+    Variance {
+        /// Ratio of the two.
+        ratio: f64,
     },
     /// The replicates contradict the estimate.
     Replicates {
@@ -193,7 +200,7 @@ pub fn estimate<B: RareBench>(
     out.count_plain();
     let mut draws = Stepped { seed: plan.seed, stream: "rare weighted".to_owned(), step: 0 };
     let reached = out.found.iter().filter(|found| found.probability.is_some()).count();
-    match explored(&out.found, &mut draws) {
+    match Explored::of(&out.found, &mut draws) {
         Some(explored) => out.weigh(bench, &explored, plan, &mut draws)?,
         // Plain samples are all that shows anything now.
         None => out.more_plain(bench, plan, &mut draws)?,
@@ -249,12 +256,12 @@ impl RareEstimate {
     fn weigh<B: RareBench>(
         &mut self,
         bench: &mut B,
-        explored: &NormalMixture,
+        explored: &Explored,
         plan: &RarePlan,
         draws: &mut Stepped,
     ) -> Result<(), B::Error> {
         let left = plan.runs.saturating_sub(self.runs);
-        let wide = of_pilot(explored);
+        let wide = explored.of_pilot();
         self.pilot = plan.pilot.min(left / 2);
         let pilot = weighted(bench, &wide, self.pilot, draws)?;
         let (proposal, count) = match chosen(explored, &self.found, &pilot, self.severity) {
@@ -278,6 +285,16 @@ impl RareEstimate {
         let share = uncovered as f64 / beyond.len().max(1) as f64;
         if share > UNCOVERED_SHARE {
             self.doubts.push(RareDoubt::Uncovered { share });
+        }
+        // The mean square of weight × failure is the probability times the mean weight of a failure, which the
+        // chains' failures give without the weighted samples.
+        let weights: f64 = beyond.iter().map(|s| libm::exp(-proposal.log_ratio(&s.point.u))).sum();
+        if let Some(mean) = self.mean {
+            let predicted = weights / beyond.len().max(1) as f64 / mean.probability;
+            let shown = 1.0 + mean.error * mean.error * self.weighted.len() as f64;
+            if predicted > VARIANCE_MAX * shown {
+                self.doubts.push(RareDoubt::Variance { ratio: predicted / shown });
+            }
         }
         Ok(())
     }
@@ -330,17 +347,20 @@ impl RareEstimate {
         self.doubts.append(&mut doubts);
     }
 
-    /// Compares the estimate with the mean of the replicates' own, which is nearly unbiased: at 99.9 % of Student's
-    /// distribution, widened where few replicates happen to agree by chance.
+    /// Compares the estimate with the replicates' own, in logarithms. These scatter by what the replicates show, or by
+    /// what theory says of chains that resemble their seeds, if that is more: few replicates may agree by chance. The
+    /// logarithm of an unbiased number lies below that of its mean by half of its variance.
     fn replicates_against(&self, mean: &WeightedMean) -> Option<RareDoubt> {
-        let own: Vec<f64> = self.found.iter().filter_map(|found| found.probability).collect();
-        // For a goal that is a probability each replicate has its own severity.
-        let is_same = self.found.iter().all(|found| found.severity == self.severity);
-        let (average, scatter) = (octant_statistics::sample::mean(&own)?, deviation(&own)?);
-        let error = scatter / libm::sqrt(own.len() as f64);
-        let allowed = 6.0 * libm::hypot(error.max(0.15 * average), mean.error * mean.probability);
-        let apart = (average - mean.probability).abs();
-        (is_same && apart > allowed).then_some(RareDoubt::Replicates { subset: average, error })
+        let of_goal = self.found.iter().filter(|found| found.severity == self.severity);
+        let own: Vec<f64> = of_goal.clone().filter_map(|found| found.probability).collect();
+        let logs: Vec<f64> = own.iter().map(|own| libm::log(*own)).collect();
+        let (average, scatter) = (octant_statistics::sample::mean(&logs)?, deviation(&logs)?);
+        let expected: Vec<f64> = of_goal.map(SubsetFound::variance).collect();
+        let variance = octant_statistics::sample::mean(&expected)?.max(scatter * scatter);
+        let error = libm::sqrt(variance / own.len() as f64);
+        let apart = (average + 0.5 * variance - libm::log(mean.probability)).abs();
+        let subset = octant_statistics::sample::mean(&own)?;
+        (apart > 4.0 * error + 0.5 * variance).then_some(RareDoubt::Replicates { subset, error })
     }
 
     /// Finds the most probable failure among all samples.

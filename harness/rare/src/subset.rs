@@ -82,6 +82,8 @@ pub struct SubsetFound {
     pub severity: f64,
     /// Samples beyond the goal, of the last level.
     pub beyond: Vec<RareSample>,
+    /// Runs of the last two levels, accepted or not.
+    pub tried: Vec<RareSample>,
     /// The sample that came nearest to the goal, or the worst.
     pub worst: Option<RareSample>,
     /// Runs that it took.
@@ -96,6 +98,7 @@ struct Chains {
     width: f64,
     steps: [usize; 2],
     accepted: [usize; 2],
+    tried: Vec<RareSample>,
 }
 
 /// Runs a subset simulation.
@@ -117,11 +120,13 @@ pub fn subset<B: RareBench>(
         probability: None,
         severity: f64::INFINITY,
         beyond: Vec::new(),
+        tried: samples.clone(),
         worst: None,
         runs: samples.len(),
     };
     let mut probability = 1.0;
     let mut width = 1.0;
+    let mut last_tried = found.tried.len();
     loop {
         samples.sort_by(|a, b| b.severity.total_cmp(&a.severity));
         found.worst = worse(found.worst.take(), samples.first());
@@ -143,6 +148,9 @@ pub fn subset<B: RareBench>(
         samples = chains.filled(bench, plan.samples, &mut draws)?;
         found.runs += plan.samples - seeds;
         width = chains.width;
+        found.tried.drain(..found.tried.len() - last_tried);
+        last_tried = chains.tried.len();
+        found.tried.append(&mut chains.tried);
         found.levels.push(chains.told(share));
     }
     Ok(found)
@@ -177,11 +185,23 @@ fn reached(
     true
 }
 
+impl SubsetFound {
+    /// Variance of the logarithm of the probability, by Au and Beck, with six samples of a chain for one.
+    pub(crate) fn variance(&self) -> f64 {
+        let samples = self.plain.len() as f64;
+        let of = |share: f64, chained: f64| chained * (1.0 - share) / (share * samples);
+        let last = self.beyond.len() as f64 / samples;
+        let levels = self.levels.iter().enumerate();
+        let before = levels.map(|(level, of_level)| of(of_level.share, if level == 0 { 1.0 } else { 6.0 }));
+        before.sum::<f64>() + of(last.max(1.0 / samples), if self.levels.is_empty() { 1.0 } else { 6.0 })
+    }
+}
+
 impl Chains {
     fn new(level: f64, states: Vec<RareSample>, width: f64) -> Self {
         let dimension = states.first().map_or(0, |state| state.point.u.len());
         let sigma = (0..dimension).map(|component| spread(&states, component)).collect();
-        Self { level, states, sigma, width, steps: [0; 2], accepted: [0; 2] }
+        Self { level, states, sigma, width, steps: [0; 2], accepted: [0; 2], tried: Vec::new() }
     }
 
     /// Steps all chains together until there are enough samples.
@@ -199,6 +219,7 @@ impl Chains {
             let (points, anew): (Vec<RarePoint>, Vec<bool>) =
                 (0..moving).map(|chain| self.proposed(chain, &mut draws.next())).unzip();
             let proposed = run(bench, points, RareStage::Chain)?;
+            self.tried.extend(proposed.iter().cloned());
             let mut accepted = 0;
             for (chain, (sample, anew)) in proposed.into_iter().zip(anew).enumerate() {
                 self.steps[usize::from(anew)] += 1;
