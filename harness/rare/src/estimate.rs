@@ -60,6 +60,16 @@ impl Default for RarePlan {
     }
 }
 
+impl RarePlan {
+    /// The subset simulation of a replicate.
+    #[must_use]
+    pub fn subset(&self, replicate: usize) -> SubsetPlan {
+        let runs = (EXPLORING * self.runs as f64 / self.replicates.max(1) as f64) as usize;
+        let samples = self.samples.min(runs.max(1));
+        SubsetPlan { samples, share: 0.1, runs, seed: self.seed, replicate }
+    }
+}
+
 /// Reason why an estimate isn't taken for shown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RareDoubt {
@@ -174,16 +184,8 @@ pub fn estimate<B: RareBench>(
     plan: &RarePlan,
 ) -> Result<RareEstimate, B::Error> {
     let mut found = Vec::new();
-    let budget = (EXPLORING * plan.runs as f64 / plan.replicates.max(1) as f64) as usize;
     for replicate in 0..plan.replicates {
-        let subset_plan = SubsetPlan {
-            samples: plan.samples.min(budget.max(1)),
-            share: 0.1,
-            runs: budget,
-            seed: plan.seed,
-            replicate,
-        };
-        found.push(subset(bench, goal, &subset_plan)?);
+        found.push(subset(bench, goal, &plan.subset(replicate))?);
     }
     let mut out = RareEstimate {
         mean: None,

@@ -110,10 +110,9 @@ pub fn subset<B: RareBench>(
     goal: SubsetGoal,
     plan: &SubsetPlan,
 ) -> Result<SubsetFound, B::Error> {
-    let mut draws = Stepped { seed: plan.seed, stream: format!("rare subset {}", plan.replicate), step: 0 };
-    let dimension = bench.dimension();
-    let points = (0..plan.samples).map(|_| RarePoint::drawn(dimension, &mut draws.next()));
-    let mut samples = run(bench, points.collect(), RareStage::Plain)?;
+    let mut draws = Stepped::of_replicate(plan);
+    let points = plain_points(bench.dimension(), plan, &mut draws);
+    let mut samples = run(bench, points, RareStage::Plain)?;
     let mut found = SubsetFound {
         plain: samples.clone(),
         levels: Vec::new(),
@@ -154,6 +153,16 @@ pub fn subset<B: RareBench>(
         found.levels.push(chains.told(share));
     }
     Ok(found)
+}
+
+fn plain_points(dimension: usize, plan: &SubsetPlan, draws: &mut Stepped) -> Vec<RarePoint> {
+    (0..plan.samples).map(|_| RarePoint::drawn(dimension, &mut draws.next())).collect()
+}
+
+/// The plain samples with which a subset simulation begins, whatever its goal.
+#[must_use]
+pub fn beginning(dimension: usize, plan: &SubsetPlan) -> Vec<RarePoint> {
+    plain_points(dimension, plan, &mut Stepped::of_replicate(plan))
 }
 
 /// Takes the samples beyond the goal, if there are enough of them.
@@ -276,6 +285,11 @@ pub(crate) struct Stepped {
 }
 
 impl Stepped {
+    fn of_replicate(plan: &SubsetPlan) -> Self {
+        let stream = format!("rare subset {}", plan.replicate);
+        Self { seed: plan.seed, stream, step: 0 }
+    }
+
     pub(crate) fn next(&mut self) -> Draws {
         self.step += 1;
         Draws::of(self.seed, &self.stream, self.step)

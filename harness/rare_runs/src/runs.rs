@@ -7,6 +7,8 @@ use crate::outcome::{RareOutcome, RareSubject, outcome};
 use octant_rare::point::{RareBench, RarePoint, RareStage};
 use octant_base::control::Control;
 use octant_base::pool::in_order;
+use octant_rare::estimate::RarePlan;
+use octant_rare::subset::beginning;
 use octant_scenario::{Scenario, SourceSpec};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -153,6 +155,21 @@ impl<'a> RareRuns<'a> {
     #[must_use]
     pub fn reasons(&self) -> &BTreeMap<String, usize> {
         &self.reasons
+    }
+
+    /// True if a calibration publishes a parameter: by the plain runs that every estimate of the plan begins with. If
+    /// none of them publishes anything, it may.
+    ///
+    /// # Errors
+    /// If the end was asked for.
+    pub fn publishes(&mut self, name: &str, plan: &RarePlan) -> Result<bool, RareError> {
+        let points = beginning(self.inputs.len(), &plan.subset(0));
+        self.severities(&points, RareStage::Plain)?;
+        let mut published = points.iter().filter_map(|point| match self.outcome_of(point) {
+            Some(RareOutcome::Published(parameters)) => Some(parameters.contains_key(name)),
+            _ => None,
+        });
+        Ok(published.next().unwrap_or(true))
     }
 
     /// The scenario of a point.

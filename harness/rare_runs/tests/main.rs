@@ -1,0 +1,2 @@
+//! Tests with real runs.
+#![allow(clippy::unwrap_used, missing_docs)]
