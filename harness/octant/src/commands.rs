@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, characterise, compare, completions, design, diff, doctor, export, faults, fmu, new,
-    nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score, selftest, serve,
-    turntable, verify, watch,
+    nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score, selftest,
+    serve, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;

@@ -86,17 +86,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
     };
     let controls = std::slice::from_ref(&control);
-    Follower::Host(&stop)
-        .follow(controls, None, 0.0, || estimated(arguments, &scenario, &control))
+    Follower::Host(&stop).follow(controls, None, 0.0, || estimated(arguments, &scenario, &control))
 }
 
 fn plan(arguments: &Arguments) -> RarePlan {
     RarePlan {
-        runs: arguments.runs as usize,
         error: arguments.error,
         confidence: arguments.confidence,
         seed: arguments.seed,
-        ..RarePlan::default()
+        ..RarePlan::of_runs(arguments.runs as usize)
     }
 }
 

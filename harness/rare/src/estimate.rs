@@ -16,9 +16,9 @@ use crate::mixture::NormalMixture;
 use crate::point::{RareBench, RarePoint, RareSample, RareStage};
 use crate::proposal::{Explored, WeightedSample, chosen};
 use crate::subset::{Stepped, SubsetFound, SubsetGoal, SubsetPlan, run, subset, worse};
+use octant_statistics::normal;
 use octant_statistics::proportion::{success_lower_bound, success_upper_bound};
 use octant_statistics::sample::{deviation, mean};
-use octant_statistics::normal;
 
 /// Weighted failures, as if their weights were equal, that an interval takes at least.
 pub const EFFECTIVE_MIN: f64 = 50.0;
@@ -56,11 +56,27 @@ pub struct RarePlan {
 
 impl Default for RarePlan {
     fn default() -> Self {
-        Self { runs: 10_000, replicates: 4, samples: 200, pilot: 1000, error: 0.05, confidence: 0.95, seed: 1 }
+        Self {
+            runs: 10_000,
+            replicates: 4,
+            samples: 200,
+            pilot: 1000,
+            error: 0.05,
+            confidence: 0.95,
+            seed: 1,
+        }
     }
 }
 
 impl RarePlan {
+    /// The plan for a number of runs: samples of a level and of the pilot in proportion, so that subset simulation has
+    /// room for the levels of one in a million.
+    #[must_use]
+    pub fn of_runs(runs: usize) -> Self {
+        let samples = (runs / 50).clamp(20, 2000);
+        Self { runs, samples, pilot: (runs / 10).max(100), ..Self::default() }
+    }
+
     /// The subset simulation of a replicate.
     #[must_use]
     pub fn subset(&self, replicate: usize) -> SubsetPlan {
@@ -318,7 +334,8 @@ impl RareEstimate {
         let variance = (squares / count - probability * probability).max(0.0) / (count - 1.0);
         let error = libm::sqrt(variance) / probability;
         let z = normal::quantile(0.5 + 0.5 * confidence);
-        let interval = [probability * libm::exp(-z * error), (probability * libm::exp(z * error)).min(1.0)];
+        let interval =
+            [probability * libm::exp(-z * error), (probability * libm::exp(z * error)).min(1.0)];
         let effective = sum * sum / squares;
         Some(WeightedMean { probability, error, interval, failures, effective })
     }
@@ -391,7 +408,8 @@ impl RareEstimate {
         };
         let low = first(&|mean| mean.interval[0] <= probability)?;
         let level = first(&|mean| mean.probability <= probability)?;
-        let high = first(&|mean| mean.interval[1] < probability && mean.effective >= EFFECTIVE_MIN.sqrt());
+        let high =
+            first(&|mean| mean.interval[1] < probability && mean.effective >= EFFECTIVE_MIN.sqrt());
         let last = severities.last().copied()?;
         let high = high.filter(|high| *high < last).unwrap_or(f64::INFINITY);
         Some([low, level, high])

@@ -171,7 +171,10 @@ impl NormalMixture {
     #[must_use]
     pub fn of(mixtures: &[(f64, &Self)]) -> Self {
         let parts = mixtures.iter().flat_map(|(share, mixture)| {
-            mixture.parts.iter().map(move |part| MixturePart { weight: share * part.weight, ..part.clone() })
+            mixture
+                .parts
+                .iter()
+                .map(move |part| MixturePart { weight: share * part.weight, ..part.clone() })
         });
         Self { parts: parts.collect() }
     }

@@ -32,8 +32,11 @@ pub struct WeightedSample {
 /// Fits a mixture to the failures of subset simulations. The number of components is the one with the best likelihood
 /// of a replicate by the fit to the others: replicates don't depend on each other, samples of a chain do.
 fn fitted(found: &[SubsetFound], draws: &mut Stepped) -> Option<NormalMixture> {
-    let beyond: Vec<Weighted<'_>> =
-        found.iter().map(|found| of_samples(&found.beyond)).filter(|data| !data.points.is_empty()).collect();
+    let beyond: Vec<Weighted<'_>> = found
+        .iter()
+        .map(|found| of_samples(&found.beyond))
+        .filter(|data| !data.points.is_empty())
+        .collect();
     let all = joined(beyond.iter());
     if all.points.is_empty() {
         return None;
@@ -68,7 +71,9 @@ fn joined<'a, 'b: 'a>(data: impl Iterator<Item = &'a Weighted<'b>>) -> Weighted<
     Weighted { points: data.flat_map(|data| data.points.iter().copied()).collect() }
 }
 
-/// What the chains found: the fit to their failures, and the same with its means on the lines of growing severity.
+/// What the chains found: the fit to their failures, and the same with its means on the lines of growing severity. Both
+/// have a mirror image of every component: a limit on a magnitude fails on both sides, and a few chains may have met one
+/// alone. The pilot tells whether there is anything on the other side.
 #[derive(Clone, Debug)]
 pub(crate) struct Explored {
     full: NormalMixture,
@@ -82,6 +87,8 @@ impl Explored {
     pub(crate) fn of(found: &[SubsetFound], draws: &mut Stepped) -> Option<Self> {
         let full = fitted(found, draws)?;
         let projected = full.projected(&tried(found, &[]));
+        let [full, projected] = [full, projected]
+            .map(|fit| NormalMixture::of(&[(0.5, &fit), (0.5, &fit.nearer(-1.0))]));
         let dimension = full.parts.first().map_or(0, |part| part.mean.len());
         let radii: Vec<f64> =
             found.iter().flat_map(|found| &found.beyond).map(|s| s.point.radius()).collect();
@@ -141,9 +148,8 @@ pub(crate) fn chosen(
     let count = pilot.len() as f64;
     let probability = failures.iter().map(|sample| sample.weight).sum::<f64>() / count;
     let tried = tried(found, pilot);
-    let halves: Vec<Vec<&WeightedSample>> = (0..2)
-        .map(|half| failures.iter().skip(half).step_by(2).copied().collect())
-        .collect();
+    let halves: Vec<Vec<&WeightedSample>> =
+        (0..2).map(|half| failures.iter().skip(half).step_by(2).copied().collect()).collect();
     let fits = |failures: &[&WeightedSample]| -> [NormalMixture; 4] {
         let full = refitted(&explored.full, found, failures);
         let projected = full.projected(&tried);

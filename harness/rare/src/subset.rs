@@ -181,8 +181,7 @@ fn reached(
         }
         SubsetGoal::Probability(goal) => {
             let beyond = (goal / probability * count) as usize;
-            found.severity =
-                sorted.get(beyond).map_or(f64::NEG_INFINITY, |sample| sample.severity);
+            found.severity = sorted.get(beyond).map_or(f64::NEG_INFINITY, |sample| sample.severity);
             sorted.iter().filter(|sample| sample.severity > found.severity).count()
         }
     };
@@ -201,8 +200,10 @@ impl SubsetFound {
         let of = |share: f64, chained: f64| chained * (1.0 - share) / (share * samples);
         let last = self.beyond.len() as f64 / samples;
         let levels = self.levels.iter().enumerate();
-        let before = levels.map(|(level, of_level)| of(of_level.share, if level == 0 { 1.0 } else { 6.0 }));
-        before.sum::<f64>() + of(last.max(1.0 / samples), if self.levels.is_empty() { 1.0 } else { 6.0 })
+        let before =
+            levels.map(|(level, of_level)| of(of_level.share, if level == 0 { 1.0 } else { 6.0 }));
+        before.sum::<f64>()
+            + of(last.max(1.0 / samples), if self.levels.is_empty() { 1.0 } else { 6.0 })
     }
 }
 

@@ -20,7 +20,9 @@ pub enum RareError {
     #[error("found {0} requirements, expected --requirement with the id of one of them: {1}")]
     Several(usize, String),
     /// The runs don't come from a simulation.
-    #[error("found a source or a unit that isn't simulated in this program, expected the plant and the core in process")]
+    #[error(
+        "found a source or a unit that isn't simulated in this program, expected the plant and the core in process"
+    )]
     NotSimulated,
     /// Runs by the clock can't be repeated by the thousand.
     #[error("found a run by the clock, expected realtime.pace = \"free\"")]

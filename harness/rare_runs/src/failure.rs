@@ -215,7 +215,8 @@ fn file_of(
     let seed = sample.point.noise;
     let text = at.to_resolved_toml(seed, &DrawnValues::of(&at, &Seeded(seed)));
     let differs = || RareError::Differs(format!("of seed {seed}"));
-    let again = Scenario::parse(&text, "failing.toml", &scenario.folder, &[]).map_err(|_| differs())?;
+    let again =
+        Scenario::parse(&text, "failing.toml", &scenario.folder, &[]).map_err(|_| differs())?;
     if Some(&runs.again(&again)?) != runs.outcome_of(&sample.point) {
         return Err(differs());
     }
@@ -299,7 +300,10 @@ impl RareFailure {
         let of = counted(self.plain_runs, "plain run", "plain runs");
         out += &match self.plain_failures {
             0 => format!("  no failure in {of}: by these alone p < {high} ({percent} %)\n"),
-            n => format!("  {} in {of}: by these alone {low} to {high}\n", counted(n, "failure", "failures")),
+            n => format!(
+                "  {} in {of}: by these alone {low} to {high}\n",
+                counted(n, "failure", "failures")
+            ),
         };
         out
     }
@@ -311,7 +315,11 @@ impl RareFailure {
             let of_chains = if replicate.levels.is_empty() {
                 "no chains".to_owned()
             } else {
-                format!("{} levels, {} % accepted or more", replicate.levels.len(), fixed(100.0 * accepted, 0))
+                format!(
+                    "{} levels, {} % accepted or more",
+                    replicate.levels.len(),
+                    fixed(100.0 * accepted, 0)
+                )
             };
             format!("{p} ({of_chains})")
         };
@@ -321,9 +329,10 @@ impl RareFailure {
 }
 
 fn run_text(run: &FailingRun) -> String {
-    let margin = run.margin.map_or_else(|| "without a measure".to_owned(), |margin| {
-        format!("margin {}", significant(margin, 3))
-    });
+    let margin = run.margin.map_or_else(
+        || "without a measure".to_owned(),
+        |margin| format!("margin {}", significant(margin, 3)),
+    );
     let mut out = format!(
         "{margin}, seed {}, {} σ from the mean instrument\n",
         run.seed,

@@ -1,6 +1,7 @@
 //! One run, and what it says.
 
 use octant_base::control::Control;
+use octant_requirements::Verdict;
 use octant_run::assemble::assemble;
 use octant_run::drive::Ended;
 use octant_run::many::judge_many;
@@ -9,7 +10,6 @@ use octant_sample::Health;
 use octant_scenario::{Method, Scenario};
 use octant_score::health::name;
 use octant_score::summary::Summary;
-use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -55,7 +55,8 @@ pub fn outcome(
 }
 
 fn of_calibration(scenario: &Scenario, control: &Control) -> Option<RareOutcome> {
-    let run = run_method(scenario, Method::Primary, scenario.seed, StreamKeeping::HashAlone, control);
+    let run =
+        run_method(scenario, Method::Primary, scenario.seed, StreamKeeping::HashAlone, control);
     let run = match run {
         Ok(run) if run.ended == Ended::Cancelled => return None,
         Ok(run) => run,
@@ -117,9 +118,8 @@ fn of_requirement(scenario: &Scenario, id: &str, control: &Control) -> Option<Ra
         let silent = || RareOutcome::Broken("the run gave no result".to_owned());
         return if is_cancelled { None } else { Some(told.unwrap_or_else(silent)) };
     }
-    let run = |method| {
-        run_method(scenario, method, scenario.seed, StreamKeeping::HashAlone, control)
-    };
+    let run =
+        |method| run_method(scenario, method, scenario.seed, StreamKeeping::HashAlone, control);
     let primary = match run(Method::Primary) {
         Ok(run) if run.ended == Ended::Cancelled => return None,
         Ok(run) => run,
@@ -157,7 +157,9 @@ fn judged(summary: &Summary, id: &str, cut: Option<String>) -> RareOutcome {
         Verdict::Pass | Verdict::Fail if margin.is_finite() => {
             RareOutcome::Judged(margin, result.verdict == Verdict::Pass)
         }
-        Verdict::Pass | Verdict::Fail => RareOutcome::Broken("the measure is not a number".to_owned()),
+        Verdict::Pass | Verdict::Fail => {
+            RareOutcome::Broken("the measure is not a number".to_owned())
+        }
         _ => RareOutcome::Broken(format!("the run doesn't decide the requirement: {}", reason())),
     }
 }

@@ -148,11 +148,11 @@ fn level(
     risk: f64,
     confidence: f64,
 ) -> ParameterLevel {
-    let sigmas = found.found.iter().flat_map(|found| &found.plain).filter_map(|sample| {
-        match runs.outcome_of(&sample.point) {
-            Some(RareOutcome::Published(parameters)) => parameters.get(name).map(|[_, s]| *s),
-            _ => None,
-        }
+    let sigmas = found.found.iter().flat_map(|found| &found.plain).filter_map(|sample| match runs
+        .outcome_of(&sample.point)
+    {
+        Some(RareOutcome::Published(parameters)) => parameters.get(name).map(|[_, s]| *s),
+        _ => None,
     });
     let sigma = mean(&sigmas.collect::<Vec<f64>>());
     let [low, level, high] = found.level(risk, confidence).unwrap_or([f64::NAN; 3]);
@@ -194,7 +194,9 @@ impl ProtectionLevels {
             out += &format!("    {count} × {reason}\n");
         }
         let percent = fixed(100.0 * self.confidence, 0);
-        out += &format!("  parameter, level, {percent} % interval, published σ × normal quantile, unit\n");
+        out += &format!(
+            "  parameter, level, {percent} % interval, published σ × normal quantile, unit\n"
+        );
         for of in &self.parameters {
             let number = |value: Option<f64>| {
                 value.map_or_else(|| "–".to_owned(), |value| significant(value, 3))
