@@ -353,7 +353,7 @@ impl RareEstimate {
             self.doubts.append(&mut doubts);
             return;
         };
-        doubts.extend(self.replicates_against(&mean));
+        doubts.extend(self.replicates_against());
         let interval = self.plain.interval(0.9995);
         if mean.interval[1] < interval[0] || mean.interval[0] > interval[1] {
             doubts.push(RareDoubt::Plain { interval });
@@ -369,16 +369,20 @@ impl RareEstimate {
     /// Compares the estimate with the replicates' own, in logarithms. These scatter by what the replicates show, or by
     /// what theory says of chains that resemble their seeds, if that is more: few replicates may agree by chance. The
     /// logarithm of an unbiased number lies below that of its mean by half of its variance.
-    fn replicates_against(&self, mean: &WeightedMean) -> Option<RareDoubt> {
-        let of_goal = self.found.iter().filter(|found| found.severity == self.severity);
-        let own: Vec<f64> = of_goal.clone().filter_map(|found| found.probability).collect();
-        let logs: Vec<f64> = own.iter().map(|own| libm::log(*own)).collect();
-        let (average, scatter) = (octant_statistics::sample::mean(&logs)?, deviation(&logs)?);
-        let expected: Vec<f64> = of_goal.map(SubsetFound::variance).collect();
-        let variance = octant_statistics::sample::mean(&expected)?.max(scatter * scatter);
-        let error = libm::sqrt(variance / own.len() as f64);
-        let apart = (average + 0.5 * variance - libm::log(mean.probability)).abs();
-        let subset = octant_statistics::sample::mean(&own)?;
+    fn replicates_against(&self) -> Option<RareDoubt> {
+        // For a goal that is a probability each replicate has a severity of its own.
+        let against = |found: &SubsetFound| {
+            let weighted = self.above(found.severity, 0.5)?.probability;
+            let own = found.probability?;
+            Some([libm::log(own / weighted), own, found.variance()])
+        };
+        let all: Vec<[f64; 3]> = self.found.iter().filter_map(against).collect();
+        let column = |index: usize| all.iter().map(|row| row[index]).collect::<Vec<f64>>();
+        let (average, scatter) = (mean(&column(0))?, deviation(&column(0))?);
+        let variance = mean(&column(2))?.max(scatter * scatter);
+        let error = libm::sqrt(variance / all.len() as f64);
+        let apart = (average + 0.5 * variance).abs();
+        let subset = mean(&column(1))?;
         (apart > 4.0 * error + 0.5 * variance).then_some(RareDoubt::Replicates { subset, error })
     }
 

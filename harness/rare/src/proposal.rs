@@ -126,7 +126,8 @@ impl Explored {
 fn tried<'a>(found: &'a [SubsetFound], pilot: &'a [WeightedSample]) -> Vec<(&'a [f64], f64)> {
     let chains = found.iter().flat_map(|found| &found.tried);
     let all = chains.chain(pilot.iter().map(|sample| &sample.sample));
-    all.filter(|sample| sample.severity.is_finite())
+    // A run that counts as a failure without a measure has the largest number, which no slope explains.
+    all.filter(|sample| sample.severity.is_finite() && sample.severity < f64::MAX)
         .map(|sample| (sample.point.u.as_slice(), sample.severity))
         .collect()
 }
