@@ -52,8 +52,11 @@ fn the_answer_the_failing_run_and_the_journal() {
     assert_eq!(summary["requirements"][0]["margin"], found["most_probable"]["margin"]);
     // An edited journal is refused.
     let journal = read("rare.jsonl");
-    std::fs::write(folder.path().join("found/rare.jsonl"), journal.replacen(",true]", ",false]", 1))
-        .unwrap();
+    std::fs::write(
+        folder.path().join("found/rare.jsonl"),
+        journal.replacen(",true]", ",false]", 1),
+    )
+    .unwrap();
     let edited = with(&["--below", "0.1", "--out", "found"]);
     assert_eq!(edited.status.code(), Some(2), "{}", words(&edited));
     assert!(words(&edited).contains("the checksum doesn't fit"), "{}", words(&edited));
