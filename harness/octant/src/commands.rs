@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, characterise, compare, completions, design, diff, doctor, export, faults, fmu, new,
-    nightly, observe, progress, rejudge, replay, report, requirements, run, score, selftest, serve,
-    turntable, verify, watch,
+    nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score, selftest,
+    serve, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -66,6 +66,8 @@ enum Command {
     Watch(watch::Arguments),
     /// List and describe the kinds of faults, sweep a fault, search for the worst, or minimise a set of faults.
     Faults(faults::Arguments),
+    /// Estimate the probability of a rare failure of a requirement, or protection levels of a calibration.
+    Rare(rare::Arguments),
     /// Build, check and step FMUs.
     Fmu(fmu::Arguments),
     /// Query, move or stop a turntable by hand, or simulate one.
@@ -188,6 +190,7 @@ pub(crate) fn status() -> u8 {
         Command::Rejudge(arguments) => rejudge::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
+        Command::Rare(arguments) => rare::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
         Command::Turntable(arguments) => turntable::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),

@@ -32,6 +32,7 @@ mod observe;
 mod place;
 mod progress;
 pub mod progress_bar;
+mod rare;
 mod reexecute;
 mod rejudge;
 mod replay;
