@@ -1,12 +1,15 @@
 //! Tests of requirements and their trace, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod archive;
 mod attributes;
 mod decision;
+mod dialects;
 mod equipment;
 mod errors;
 mod formats;
 mod measures;
+mod needs;
 mod reqif;
 mod signed;
 mod trace;
