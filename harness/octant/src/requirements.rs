@@ -4,8 +4,7 @@
 mod measures;
 
 use crate::failure::Failure;
-use crate::terminal::note;
-use crate::terminal::{print, print_json, write};
+use crate::terminal::{note, print, print_json};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::requirements::Measures;

@@ -23,6 +23,7 @@ mod fields;
 pub mod file;
 mod foreign;
 pub mod format;
+mod hierarchy;
 pub mod losses;
 pub mod mapping;
 pub mod measures;

@@ -118,6 +118,16 @@ fn polarion_has_the_title_of_every_item_where_others_have_that_of_chapters() {
     assert_eq!(only.kind.as_deref(), Some("System Requirement"));
     assert!(notes(&found).contains("no requirements but information: INS-3"));
     survives(&found);
+    // Of a heading its title is kept, and the rest is named.
+    let more = text("polarion.reqif").replacen(
+        "<ATTRIBUTE-VALUE-STRING THE-VALUE=\"Alignment\">",
+        "<ATTRIBUTE-VALUE-DATE THE-VALUE=\"2025-03-15T10:46:58Z\"><DEFINITION>\
+         <ATTRIBUTE-DEFINITION-DATE-REF>ad-0-4</ATTRIBUTE-DEFINITION-DATE-REF></DEFINITION>\
+         </ATTRIBUTE-VALUE-DATE><ATTRIBUTE-VALUE-STRING THE-VALUE=\"Alignment\">",
+        1,
+    );
+    let found = reqif::read(&more, "more.reqif").unwrap();
+    assert!(notes(&found).contains("other attributes are left out: INS-1"), "{}", notes(&found));
 }
 
 #[test]

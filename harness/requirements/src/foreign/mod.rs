@@ -42,6 +42,8 @@ pub(crate) struct Assembly<'a> {
     open: Vec<String>,
     /// Objects that are no requirements.
     informative: Vec<String>,
+    /// Headings with more than a title and an id.
+    headings: Vec<String>,
     /// Types about which a note was made.
     noted: HashSet<(String, RequirementPart)>,
 }
@@ -56,6 +58,7 @@ impl<'a> Assembly<'a> {
             ids: HashMap::new(),
             open: Vec::new(),
             informative: Vec::new(),
+            headings: Vec::new(),
             noted: HashSet::new(),
         }
     }
@@ -63,6 +66,22 @@ impl<'a> Assembly<'a> {
     /// Notes that an object is no requirement.
     pub(crate) fn informative(&mut self, object: &Object) {
         self.informative.push(object.name(self.mapping));
+    }
+
+    /// Notes what a heading has beside its title and id, which is all that a section keeps.
+    pub(crate) fn heading(&mut self, object: &Object) {
+        let parts = [RequirementPart::Id, RequirementPart::Title, RequirementPart::Heading];
+        let is_kept = |attribute: &Attribute| {
+            let of =
+                |part: &RequirementPart| self.mapping.rank(&object.kind, *part, &attribute.name);
+            let says_so =
+                |value: &String| self.mapping.is_informative_value(&attribute.name, value);
+            attribute.formatted.is_none() && parts.iter().any(|part| of(part).is_some())
+                || attribute.values.iter().any(says_so)
+        };
+        if !object.attributes.iter().all(is_kept) {
+            self.headings.push(object.name(self.mapping));
+        }
     }
 
     /// Adds the requirement that an object is, or a note why it is none; returns its id.
@@ -133,8 +152,14 @@ impl<'a> Assembly<'a> {
         object.has_identifier.then(|| object.identifier.clone())
     }
 
-    fn title(&self, object: &mut Object) -> Option<String> {
-        let title = object.take(self.mapping, RequirementPart::Title).map(|found| found.text);
+    fn title(&mut self, object: &mut Object) -> Option<String> {
+        let found = object.take(self.mapping, RequirementPart::Title);
+        if found.as_ref().is_some_and(|found| found.formatted.is_some()) {
+            let message =
+                format!("the formatting of the title of {} is left out", object.identifier);
+            self.notes.push(Note::new(object.line, message).in_file(&object.file));
+        }
+        let title = found.map(|found| found.text);
         title.or_else(|| object.long_name.take()).map(|title| title.replace('\n', " "))
     }
 
@@ -295,6 +320,14 @@ impl<'a> Assembly<'a> {
             let message = format!(
                 "left out, because they are no requirements but information: {}",
                 listed(&self.informative)
+            );
+            self.notes.push(Note::new(0, message));
+        }
+        if !self.headings.is_empty() {
+            let message = format!(
+                "of these headings the title is kept, and the formatting and other attributes are left \
+                 out: {}",
+                listed(&self.headings)
             );
             self.notes.push(Note::new(0, message));
         }

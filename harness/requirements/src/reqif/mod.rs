@@ -10,7 +10,6 @@
 mod archive;
 mod columns;
 mod escapes;
-mod hierarchy;
 mod identifier;
 mod parse;
 mod read;

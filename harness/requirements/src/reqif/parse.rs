@@ -283,6 +283,10 @@ impl<'a> Parser<'a> {
     fn specification(&mut self, node: Node<'_, '_>) -> Result<Specification, Wrong> {
         let title = node.attribute("LONG-NAME").map(normal).filter(|title| !title.is_empty());
         let values = self.values(node, "the document")?;
+        if values.iter().any(|value| value.formatted.is_some()) {
+            let message = "the formatting of the attributes of the document is left out";
+            self.note(self.line(node), message);
+        }
         let document = values.into_iter().map(|value| (value.name, value.values.join(", ")));
         Ok(Specification {
             title: title.unwrap_or_else(|| "Requirements".to_owned()),

@@ -216,7 +216,10 @@ impl Combiner<'_> {
         above: &[(usize, Above)],
     ) -> Result<Above, RequirementsError> {
         match object.role(self.mapping) {
-            Role::Heading(title, false) => return Ok(Above::Section(title)),
+            Role::Heading(title, false) => {
+                self.assembly.heading(&object);
+                return Ok(Above::Section(title));
+            }
             Role::Heading(title, true) => {
                 self.assembly.informative(&object);
                 return Ok(Above::Section(title));

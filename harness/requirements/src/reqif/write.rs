@@ -1,12 +1,12 @@
 //! Writing of ReqIF files.
 
 use super::columns::{Column, columns};
-use super::hierarchy::{Step, steps};
 use super::identifier::{identifier, legal, object_id};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL};
 use crate::error::ExportError;
 use crate::fields::own_fields;
 use crate::file::misfit;
+use crate::hierarchy::{Step, steps};
 use crate::requirement::{AttributeKind, Requirement, Requirements};
 use crate::sdoc::REQUIREMENT;
 use crate::xhtml;

@@ -4,7 +4,7 @@ use crate::requirement::Requirements;
 
 /// A step through the hierarchy of a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step<'a> {
+pub(crate) enum Step<'a> {
     /// Begins the section with this title and number.
     Section(&'a str, usize),
     /// Begins the requirement with this index.
@@ -14,7 +14,7 @@ pub(super) enum Step<'a> {
 }
 
 /// Steps through all requirements, in their order.
-pub(super) fn steps(requirements: &Requirements) -> Vec<Step<'_>> {
+pub(crate) fn steps(requirements: &Requirements) -> Vec<Step<'_>> {
     let mut steps = Vec::new();
     let mut open: Vec<Step<'_>> = Vec::new();
     let mut sections = 0;
