@@ -23,7 +23,8 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Check a file, .toml, .sdoc, .reqif, .reqifz or needs.json: print its number of requirements, or its errors.
+    /// Check a file, .toml, .sdoc, .reqif, .reqifz or needs.json, or a folder of Doorstop: print its number of requirements, or
+    /// its errors.
     Check {
         /// The file.
         #[arg(value_name = "FILE")]
@@ -32,7 +33,8 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         mapping: Option<PathBuf>,
     },
-    /// Convert a file to another format; the extensions tell the formats: .toml, .sdoc, .reqif, .reqifz, .json.
+    /// Convert a file to another format; the extensions tell the formats: .toml, .sdoc, .reqif, .reqifz, .json, none for a folder
+    /// of Doorstop.
     ///
     /// Parts that the other format can't keep are named. The exit status is 3 if requirements could not be read.
     Convert {
@@ -102,7 +104,7 @@ fn convert(
 ) -> Result<Verdict, Failure> {
     // Before the work, and without a warning that nobody needs then.
     exchange::format_of(to).map_err(Failure::input)?;
-    if to.exists() && !force {
+    if to.is_file() && !force {
         return Err(Failure::input(ExchangeError::Exists { path: to.to_owned() }));
     }
     let imported = read(from, mapping)?;

@@ -17,16 +17,30 @@ const BYTES: u64 = 512 << 20;
 #[derive(Debug, thiserror::Error)]
 pub enum ExchangeError {
     /// The name tells no format.
-    #[error("{}: expected a file that ends in .toml, .sdoc, .reqif, .reqifz or .json (needs.json)", path.display())]
+    #[error("{}: expected a file that ends in .toml, .sdoc, .reqif, .reqifz or .json (needs.json), or a folder of Doorstop", path.display())]
     Format {
         /// The file.
         path: PathBuf,
     },
     /// A mapping was given for a format that has names of its own.
-    #[error("{}: a mapping is for .reqif, .reqifz and needs.json: this format has Octant's names", path.display())]
+    #[error("{}: a mapping is for .reqif, .reqifz, needs.json and Doorstop: this format has Octant's names", path.display())]
     Mapping {
         /// The file.
         path: PathBuf,
+    },
+    /// The format is a feature that this program was built without.
+    #[error("{}: a folder of Doorstop takes a program with the feature \"doorstop\": cargo build --features doorstop", path.display())]
+    NotBuilt {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A folder has items that the new document doesn't have.
+    #[error("failed to write {}: the folder has items that the new document doesn't have: {items}; remove them first", path.display())]
+    Stale {
+        /// The folder.
+        path: PathBuf,
+        /// Names of their files.
+        items: String,
     },
     /// The file can't be read.
     #[error("failed to read {}: {error}", path.display())]
@@ -108,6 +122,9 @@ pub fn read(
     let usual = Mapping::default();
     let mapping = mapping.unwrap_or(&usual);
     let name = path.display().to_string();
+    if format == ExchangeFormat::Doorstop {
+        return folder::read(path, mapping);
+    }
     let bytes = bytes(path)?;
     if format == ExchangeFormat::ReqIfArchive {
         return Ok(reqif::read_archive(&bytes, &name, mapping)?);
@@ -147,6 +164,10 @@ pub fn write(
             reqif::write_archive(requirements, &imported.attachments, time)?
         }
         ExchangeFormat::Needs => needs::write(requirements, time)?.into_bytes(),
+        ExchangeFormat::Doorstop => {
+            folder::write(path, requirements, force)?;
+            return Ok(losses(imported, format));
+        }
     };
     store(path, &bytes, force)?;
     Ok(losses(imported, format))
@@ -165,4 +186,95 @@ fn store(path: &Path, bytes: &[u8], force: bool) -> Result<(), ExchangeError> {
         io::ErrorKind::AlreadyExists => ExchangeError::Exists { path: path.to_owned() },
         _ => ExchangeError::Write { path: path.to_owned(), error },
     })
+}
+
+/// Folders of Doorstop.
+#[cfg(feature = "doorstop")]
+mod folder {
+    use super::{ExchangeError, bytes, store};
+    use crate::document::decode;
+    use crate::doorstop;
+    use crate::error::{Imported, Note, listed};
+    use crate::mapping::Mapping;
+    use crate::requirement::Requirements;
+    use std::io;
+    use std::path::Path;
+
+    /// Names of the files and folders in a folder, sorted.
+    fn names(path: &Path) -> io::Result<Vec<String>> {
+        let mut names = Vec::new();
+        for entry in std::fs::read_dir(path)? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn is_item(name: &str) -> bool {
+        !name.starts_with('.') && (name.ends_with(".yml") || name.ends_with(".yaml"))
+    }
+
+    pub(super) fn read(path: &Path, mapping: &Mapping) -> Result<Imported, ExchangeError> {
+        let failed = |error| ExchangeError::Read { path: path.to_owned(), error };
+        let (mut files, mut notes) = (Vec::new(), Vec::new());
+        for name in names(path).map_err(failed)? {
+            let file = path.join(&name);
+            if is_item(&name) || name == ".doorstop.yml" {
+                let text = decode(&bytes(&file)?, &file.display().to_string())?;
+                files.push((name, text));
+            } else if file.join(".doorstop.yml").exists() {
+                notes.push(Note::new(0, format!("the document in {name} is not read")));
+            } else if name.ends_with(".md") {
+                notes.push(Note::new(0, format!("{name} is not read: items in Markdown")));
+            }
+        }
+        let mut imported = doorstop::read(&files, &path.display().to_string(), mapping)?;
+        imported.notes.extend(notes);
+        Ok(imported)
+    }
+
+    pub(super) fn write(
+        path: &Path,
+        requirements: &Requirements,
+        force: bool,
+    ) -> Result<(), ExchangeError> {
+        let files = doorstop::write(requirements)?;
+        let failed = |error| ExchangeError::Write { path: path.to_owned(), error };
+        if path.exists() {
+            let names = names(path).map_err(failed)?;
+            if !force && !names.is_empty() {
+                return Err(ExchangeError::Exists { path: path.to_owned() });
+            }
+            let stale =
+                |name: &&String| is_item(name) && !files.iter().any(|(new, _)| new == *name);
+            let stale: Vec<&String> = names.iter().filter(stale).collect();
+            if !stale.is_empty() {
+                let items = listed(&stale);
+                return Err(ExchangeError::Stale { path: path.to_owned(), items });
+            }
+        }
+        std::fs::create_dir_all(path).map_err(failed)?;
+        for (name, text) in &files {
+            store(&path.join(name), text.as_bytes(), force)?;
+        }
+        Ok(())
+    }
+}
+
+/// Folders of Doorstop, in a program without them.
+#[cfg(not(feature = "doorstop"))]
+mod folder {
+    use super::ExchangeError;
+    use crate::error::Imported;
+    use crate::mapping::Mapping;
+    use crate::requirement::Requirements;
+    use std::path::Path;
+
+    pub(super) fn read(path: &Path, _: &Mapping) -> Result<Imported, ExchangeError> {
+        Err(ExchangeError::NotBuilt { path: path.to_owned() })
+    }
+
+    pub(super) fn write(path: &Path, _: &Requirements, _: bool) -> Result<(), ExchangeError> {
+        Err(ExchangeError::NotBuilt { path: path.to_owned() })
+    }
 }

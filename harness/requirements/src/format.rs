@@ -15,13 +15,20 @@ pub enum ExchangeFormat {
     ReqIfArchive,
     /// `needs.json` of sphinx-needs.
     Needs,
+    /// A folder of Doorstop.
+    Doorstop,
 }
 
 impl ExchangeFormat {
-    /// Format that the name of a file tells, if it is one of them.
+    /// Format that the name of a file tells, if it is one of them. A folder, and a name without an ending,
+    /// is one of Doorstop.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?;
+        if path.is_dir() {
+            return Some(Self::Doorstop);
+        }
+        let Some(ending) = path.extension() else { return Some(Self::Doorstop) };
+        let ending = ending.to_str()?;
         match ending.to_ascii_lowercase().as_str() {
             "toml" => Some(Self::Toml),
             "sdoc" => Some(Self::StrictDoc),

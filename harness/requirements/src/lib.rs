@@ -6,7 +6,7 @@
 //!   [`decision`] defines the verdict on a value near its limit, [`equipment`] the equipment of a run
 //! - [`sdoc`] and [`reqif`] are formats of other tools: StrictDoc's documents, and ReqIF; a [`mapping`] has
 //!   the names that those tools give to the parts of a requirement
-//! - [`needs`] is the exchange file of sphinx-needs
+//! - [`needs`] is the exchange file of sphinx-needs, `doorstop` (a feature of the build) Doorstop's folder
 //! - [`exchange`] reads and writes files by the format that their name tells; [`losses`] names what a format
 //!   can't keep
 //! - [`trace`] links requirements to cases, results and recordings, in both directions; [`strictdoc`]
@@ -16,6 +16,8 @@
 
 pub mod decision;
 mod document;
+#[cfg(feature = "doorstop")]
+pub mod doorstop;
 pub mod equipment;
 pub mod error;
 pub mod exchange;

@@ -23,6 +23,7 @@ pub fn losses(imported: &Imported, format: ExchangeFormat) -> Vec<String> {
         ExchangeFormat::ReqIf | ExchangeFormat::ReqIfArchive => reqif(requirements, &mut found),
         ExchangeFormat::StrictDoc => sdoc(requirements, &mut found),
         ExchangeFormat::Needs => needs(requirements, &mut found),
+        ExchangeFormat::Doorstop => doorstop(requirements, &mut found),
     }
     found
 }
@@ -101,12 +102,30 @@ fn sdoc(requirements: &Requirements, found: &mut Vec<String>) {
     name(found, "the kind becomes capitals", &ids);
 }
 
-fn needs(requirements: &Requirements, found: &mut Vec<String>) {
-    formatted(requirements, found);
+fn head(requirements: &Requirements, found: &mut Vec<String>, kept: impl Fn(&str) -> bool) {
     let head = requirements.document.iter().map(|(key, _)| key.as_str());
-    let head: Vec<&str> = head.filter(|key| !["VERSION", "OPTIONS.MARKUP"].contains(key)).collect();
+    let head: Vec<&str> = head.filter(|key| !kept(key)).collect();
     name(found, "of the head of the document is left out", &head);
     let fields = requirements.definitions.iter().filter(|d| d.field.is_some());
     let fields: Vec<&str> = fields.map(|d| d.name.as_str()).collect();
     name(found, "the names of these attributes in StrictDoc are left out", &fields);
+}
+
+fn needs(requirements: &Requirements, found: &mut Vec<String>) {
+    formatted(requirements, found);
+    head(requirements, found, |key| ["VERSION", "OPTIONS.MARKUP"].contains(&key));
+}
+
+fn doorstop(requirements: &Requirements, found: &mut Vec<String>) {
+    formatted(requirements, found);
+    head(requirements, found, |key| key.starts_with("DOORSTOP_"));
+    let lost = |kind: &AttributeKind| {
+        let choice = kind.options().is_some();
+        choice || *kind == AttributeKind::Date
+    };
+    let definitions = requirements.definitions.iter().filter(|d| lost(&d.kind));
+    let names: Vec<&str> = definitions.map(|d| d.name.as_str()).collect();
+    name(found, "the types of these attributes become text", &names);
+    let ids = ids(requirements, |r| r.parents.iter().any(|parent| parent.role.is_some()));
+    name(found, "the roles of the parents are left out", &ids);
 }

@@ -5,6 +5,8 @@ mod archive;
 mod attributes;
 mod decision;
 mod dialects;
+#[cfg(feature = "doorstop")]
+mod doorstop;
 mod equipment;
 mod errors;
 mod formats;
