@@ -4,13 +4,14 @@
 mod measures;
 
 use crate::failure::Failure;
-use crate::terminal::note;
-use crate::terminal::{print, print_json, write};
+use crate::terminal::{note, print, print_json};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
 use octant_campaign::requirements::Measures;
+use octant_requirements::Imported;
 use octant_requirements::Verdict;
-use octant_requirements::{Requirements, file, reqif, sdoc};
+use octant_requirements::exchange::{self, ExchangeError};
+use octant_requirements::file::Checker as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -22,20 +23,33 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Check a file, .toml, .sdoc or .reqif: print its number of requirements, or its errors.
+    /// Check a file, .toml, .sdoc, .reqif, .reqifz or needs.json, or a folder of Doorstop: print its number of requirements, or
+    /// its errors.
     Check {
         /// The file.
         #[arg(value_name = "FILE")]
         file: PathBuf,
+        /// Names that the file has for the parts of a requirement: a mapping file.
+        #[arg(long, value_name = "FILE")]
+        mapping: Option<PathBuf>,
     },
-    /// Convert a file to another format; the extensions tell the formats: .toml, .sdoc, .reqif.
+    /// Convert a file to another format; the extensions tell the formats: .toml, .sdoc, .reqif, .reqifz, .json, none for a folder
+    /// of Doorstop.
+    ///
+    /// Parts that the other format can't keep are named. The exit status is 3 if requirements could not be read.
     Convert {
         /// Existing file.
         #[arg(value_name = "FROM")]
         from: PathBuf,
-        /// New file; an existing one is never overwritten.
+        /// New file.
         #[arg(value_name = "TO")]
         to: PathBuf,
+        /// Names that FROM has for the parts of a requirement: a mapping file.
+        #[arg(long, value_name = "FILE")]
+        mapping: Option<PathBuf>,
+        /// Overwrite TO.
+        #[arg(long)]
+        force: bool,
     },
     /// List all measures that a requirement can have: unit, meaning, sign, and what a run needs to have them.
     Measures {
@@ -47,43 +61,9 @@ enum Command {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     match &arguments.command {
-        Command::Check { file } => {
-            let requirements = read(file)?;
-            let count = |name: &str| {
-                let of = |r: &&octant_requirements::Requirement| r.verification.name() == name;
-                requirements.requirements.iter().filter(of).count()
-            };
-            print(&format!(
-                "{}: {}, {} by test, {} by analysis, {} by inspection, {} open\n",
-                file.display(),
-                counted(requirements.requirements.len(), "requirement", "requirements"),
-                count("test"),
-                count("analysis"),
-                count("inspection"),
-                count("open")
-            ))?;
-            // A requirement without a stated verification can't be shown.
-            Ok(if count("open") == 0 { Verdict::Pass } else { Verdict::Inconclusive })
-        }
-        Command::Convert { from, to } => {
-            let requirements = read(from)?;
-            let text = match ending(to)? {
-                Format::Toml => file::write(&requirements),
-                Format::StrictDoc => sdoc::write(&requirements).map_err(Failure::input)?,
-                Format::ReqIf => {
-                    let now = octant_base::utc::seconds(SystemTime::now());
-                    reqif::write(&requirements, &now).map_err(Failure::input)?
-                }
-            };
-            if to.exists() {
-                return Err(Failure::input(format!(
-                    "failed to write {}: the file exists already",
-                    to.display()
-                )));
-            }
-            write(to, text)?;
-            print(&format!("{}\n", to.display()))?;
-            Ok(Verdict::Pass)
+        Command::Check { file, mapping } => check(file, mapping.as_deref()),
+        Command::Convert { from, to, mapping, force } => {
+            convert(from, to, mapping.as_deref(), *force)
         }
         Command::Measures { json } => {
             if *json {
@@ -96,38 +76,67 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
 }
 
-enum Format {
-    Toml,
-    StrictDoc,
-    ReqIf,
+fn check(path: &Path, mapping: Option<&Path>) -> Result<Verdict, Failure> {
+    let imported = read(path, mapping)?;
+    let all = &imported.requirements.requirements;
+    let count = |name: &str| {
+        all.iter().filter(|requirement| requirement.verification.name() == name).count()
+    };
+    print(&format!(
+        "{}: {}, {} by test, {} by analysis, {} by inspection, {} open\n",
+        path.display(),
+        counted(all.len(), "requirement", "requirements"),
+        count("test"),
+        count("analysis"),
+        count("inspection"),
+        count("open")
+    ))?;
+    // A requirement without a stated verification can't be shown, and one that is missing neither.
+    let is_whole = count("open") == 0 && imported.skipped() == 0;
+    Ok(if is_whole { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
-fn ending(path: &Path) -> Result<Format, Failure> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("toml") => Ok(Format::Toml),
-        Some("sdoc") => Ok(Format::StrictDoc),
-        Some("reqif") => Ok(Format::ReqIf),
-        _ => Err(Failure::input(format!(
-            "{}: expected a file that ends in .toml, .sdoc or .reqif",
-            path.display()
-        ))),
+fn convert(
+    from: &Path,
+    to: &Path,
+    mapping: Option<&Path>,
+    force: bool,
+) -> Result<Verdict, Failure> {
+    // Before the work, and without a warning that nobody needs then.
+    exchange::format_of(to).map_err(Failure::input)?;
+    if to.is_file() && !force {
+        return Err(Failure::input(ExchangeError::Exists { path: to.to_owned() }));
+    }
+    let imported = read(from, mapping)?;
+    let now = octant_base::utc::seconds(SystemTime::now());
+    let lost = exchange::write(to, &imported, &now, force).map_err(Failure::input)?;
+    for loss in lost {
+        note!("octant: {}: {loss}", to.display());
+    }
+    print(&format!("{}\n", to.display()))?;
+    match imported.skipped() {
+        0 => Ok(Verdict::Pass),
+        number => {
+            let number = counted(number, "requirement", "requirements");
+            note!("octant: {}: {number} could not be read: the file is not complete", to.display());
+            Ok(Verdict::Inconclusive)
+        }
     }
 }
 
 /// Reads the requirements of a file; parts that an import leaves out are listed on stderr.
-fn read(path: &Path) -> Result<Requirements, Failure> {
-    let format = ending(path)?;
-    let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::input(format!("failed to read {name}: {error}")))?;
-    let imported = match format {
-        Format::Toml => return file::read(&text, &name, &Measures).map_err(Failure::input),
-        Format::StrictDoc => sdoc::read(&text, &name),
-        Format::ReqIf => reqif::read(&text, &name),
-    }
-    .map_err(Failure::input)?;
+fn read(path: &Path, mapping: Option<&Path>) -> Result<Imported, Failure> {
+    let mapping = mapping.map(exchange::read_mapping).transpose().map_err(Failure::input)?;
+    let imported = exchange::read(path, mapping.as_ref(), &Measures).map_err(Failure::input)?;
     for note in &imported.notes {
-        note!("octant: {name}: {note}");
+        note!("octant: {}: {note}", path.display());
     }
-    Ok(imported.requirements)
+    for requirement in &imported.requirements.requirements {
+        let Some(check) = requirement.check() else { continue };
+        let measure = Measures.measure(&check.measure);
+        if let Err(error) = measure.and_then(|()| Measures.limit(&check.measure, &check.limit)) {
+            note!("octant: {}: {}: {error}", path.display(), requirement.id);
+        }
+    }
+    Ok(imported)
 }

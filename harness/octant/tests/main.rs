@@ -90,6 +90,7 @@ mod reference_rows;
 mod rejudge;
 mod replay;
 mod report;
+mod requirements_convert;
 mod rotation_reference;
 mod scenario_errors;
 mod scenario_files;

@@ -1,7 +1,7 @@
 //! Converts requirements from one format to another, and shows a campaign in StrictDoc.
 //!
 //! ```text
-//! exchange convert FROM TO              .toml, .sdoc, .reqif, by their endings
+//! exchange convert FROM TO              formats by their endings, as `octant requirements convert`
 //! exchange strictdoc REQUIREMENTS CASES FOLDER
 //! ```
 //!
@@ -10,7 +10,7 @@
 
 use octant_requirements::Verdict;
 use octant_requirements::trace::{CampaignTrace, TracedCase, TracedResult};
-use octant_requirements::{Requirements, file, reqif, sdoc, strictdoc};
+use octant_requirements::{Imported, exchange, file, strictdoc};
 use std::error::Error;
 use std::path::Path;
 
@@ -24,33 +24,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-fn read(path: &str) -> Result<Requirements, Box<dyn Error>> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| format!("failed to read {path}: {error}"))?;
-    let imported = match Path::new(path).extension().and_then(|e| e.to_str()) {
-        Some("toml") => return Ok(file::read(&text, path, &file::Anything)?),
-        Some("sdoc") => sdoc::read(&text, path)?,
-        Some("reqif") => reqif::read(&text, path)?,
-        _ => return Err(format!("{path}: expected .toml, .sdoc or .reqif").into()),
-    };
+fn read(path: &str) -> Result<Imported, Box<dyn Error>> {
+    let imported = exchange::read(Path::new(path), None, &file::Anything)?;
     for note in &imported.notes {
         println!("{path}: {note}");
     }
-    Ok(imported.requirements)
+    Ok(imported)
 }
 
-fn write(requirements: &Requirements, path: &str) -> Result<(), Box<dyn Error>> {
-    let text = match Path::new(path).extension().and_then(|e| e.to_str()) {
-        Some("toml") => file::write(requirements),
-        Some("sdoc") => sdoc::write(requirements)?,
-        Some("reqif") => reqif::write(requirements, "2026-01-31T12:00:00Z")?,
-        _ => return Err(format!("{path}: expected .toml, .sdoc or .reqif").into()),
-    };
-    Ok(std::fs::write(path, text)?)
+fn write(imported: &Imported, path: &str) -> Result<(), Box<dyn Error>> {
+    for loss in exchange::write(Path::new(path), imported, "2026-01-31T12:00:00Z", true)? {
+        println!("{path}: {loss}");
+    }
+    Ok(())
 }
 
 fn show(requirements: &str, cases: &str, folder: &Path) -> Result<(), Box<dyn Error>> {
-    let requirements = read(requirements)?;
+    let requirements = read(requirements)?.requirements;
     let mut all = Vec::new();
     for line in std::fs::read_to_string(cases)?.lines().filter(|line| !line.trim().is_empty()) {
         let mut words = line.split_whitespace();

@@ -1,6 +1,6 @@
 //! Tables of a TOML file that know their place in it, and collect problems.
 
-use crate::error::{RequirementsProblem, suggestion};
+use crate::error::{RequirementsError, RequirementsProblem, suggestion};
 use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
         self
     }
 
-    fn path_of(&self, key: &str) -> String {
+    pub(crate) fn path_of(&self, key: &str) -> String {
         match (self.path.as_str(), key) {
             ("", key) => key.to_owned(),
             (path, "") => path.to_owned(),
@@ -105,6 +105,10 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn problems(&self) -> &'a Problems<'a> {
         self.problems
+    }
+
+    pub(crate) fn place(&self, offset: usize) -> (usize, usize) {
+        self.problems.lines.place(offset)
     }
 
     pub(crate) fn line(&self) -> usize {
@@ -228,4 +232,85 @@ impl<'a> Reader<'a> {
             }
         }
     }
+}
+
+/// Checks the version of a file's schema.
+pub(crate) fn schema(root: &Reader<'_>, expected: i64) -> bool {
+    let version = match root.get("schema").map(|v| v.get_ref()) {
+        None => {
+            root.problem("schema", format!("missing, expected {expected}"));
+            return false;
+        }
+        Some(DeValue::Integer(n)) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
+        Some(_) => None,
+    };
+    match version {
+        Some(version) if version == expected => true,
+        Some(newer) if newer > expected => {
+            root.problem(
+                "schema",
+                format!(
+                    "the file is of version {newer}, and this Octant reads version {expected}: it takes \
+                     a newer Octant"
+                ),
+            );
+            false
+        }
+        Some(other) => {
+            root.problem("schema", format!("found version {other}, expected {expected}"));
+            false
+        }
+        None => {
+            let found = root.get("schema").map(|v| describe(v.get_ref())).unwrap_or_default();
+            root.problem("schema", format!("found {found}, expected {expected}"));
+            false
+        }
+    }
+}
+
+/// Decodes the bytes of a text file: UTF-8 or UTF-16, or another encoding that an XML declaration names.
+pub(crate) fn decode(bytes: &[u8], file: &str) -> Result<String, RequirementsError> {
+    let wrong = |line: usize, message: String| {
+        RequirementsError::one(file, RequirementsProblem::new((line, 1), "", message))
+    };
+    let wide = match bytes {
+        [0xff, 0xfe, ..] => Some(false),
+        [0xfe, 0xff, ..] => Some(true),
+        // A UTF-16 file without a mark begins with `<` and a zero.
+        [0x3c, 0x00, ..] => Some(false),
+        [0x00, 0x3c, ..] => Some(true),
+        _ => None,
+    };
+    if let Some(big) = wide {
+        let (pairs, rest) = bytes.as_chunks::<2>();
+        let units =
+            pairs.iter().map(|p| if big { u16::from_be_bytes(*p) } else { u16::from_le_bytes(*p) });
+        let text: Result<String, _> = char::decode_utf16(units).collect();
+        return match text {
+            Ok(text) if rest.is_empty() => Ok(text.trim_start_matches('\u{feff}').to_owned()),
+            _ => Err(wrong(1, "the text is no valid UTF-16".to_owned())),
+        };
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let error = match std::str::from_utf8(bytes) {
+        Ok(text) => return Ok(text.to_owned()),
+        Err(error) => error,
+    };
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_ascii_lowercase();
+    let declared = head.split_once("encoding=").and_then(|(_, rest)| {
+        let mut parts = rest.splitn(3, ['"', '\'']);
+        parts.nth(1)
+    });
+    if matches!(declared, Some("iso-8859-1" | "latin1" | "windows-1252" | "cp1252")) {
+        return Ok(octant_base::encoding::windows_1252(bytes));
+    }
+    let line = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+    let found = bytes[error.valid_up_to()];
+    let declared = declared.map_or_else(String::new, |name| format!(", and declares {name:?}"));
+    Err(wrong(
+        line,
+        format!(
+            "the text is not UTF-8: found the byte 0x{found:02x}{declared}; expected UTF-8 or UTF-16"
+        ),
+    ))
 }

@@ -110,6 +110,8 @@ pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, Stri
     let verification = match how.to_ascii_lowercase().as_str() {
         "analysis" => Verification::Analysis,
         "inspection" => Verification::Inspection,
+        // The field stays an attribute.
+        "open" => return Ok(Some((Verification::Open, Vec::new()))),
         "test" => {
             let Some((line, names)) = of(TESTS) else {
                 let reason =

@@ -141,7 +141,7 @@ pub enum Verification {
     Analysis,
     /// Verified by inspection.
     Inspection,
-    /// Not yet decided. Imports can have it; a `requirements.toml` with it is refused.
+    /// Not yet decided: it is listed, and inconclusive, until somebody says how it is verified.
     Open,
 }
 
@@ -176,6 +176,15 @@ pub struct ForeignAttribute {
     pub values: Vec<String>,
 }
 
+/// Formatting of a text, as XHTML. It counts as long as its plain text is the text itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FormattedText {
+    /// Attribute of ReqIF with the text: `ReqIF.Text`, or the name of another attribute.
+    pub name: String,
+    /// Elements of XHTML, without a prefix.
+    pub xhtml: String,
+}
+
 /// A requirement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
@@ -195,12 +204,16 @@ pub struct Requirement {
     pub parents: Vec<Parent>,
     /// Titles of its sections, from the outermost.
     pub section: Vec<String>,
+    /// Id of the requirement before it that it stands below, as an indented one.
+    pub under: Option<String>,
     /// Type, if it is not simply a requirement: `SYSTEM_REQUIREMENT`.
     pub kind: Option<String>,
     /// Identifier for machines: the MID of StrictDoc, the IDENTIFIER of ReqIF.
     pub identifier: Option<String>,
     /// Attributes of other tools.
     pub attributes: Vec<ForeignAttribute>,
+    /// Formatting of its texts, where they have one.
+    pub formatted: Vec<FormattedText>,
 }
 
 impl Requirement {
@@ -216,9 +229,11 @@ impl Requirement {
             rationale: None,
             parents: Vec::new(),
             section: Vec::new(),
+            under: None,
             kind: None,
             identifier: None,
             attributes: Vec::new(),
+            formatted: Vec::new(),
         }
     }
 

@@ -1,11 +1,13 @@
 //! Error texts of invalid files: place, path, found, expected.
 
 use octant_requirements::file::{Anything, Checker};
+use octant_requirements::format::ExchangeFormat;
+use octant_requirements::losses::losses;
 use octant_requirements::requirement::{
     AttributeKind, Definition, EnsembleRequirement, Limit, Parent, Requirement, Requirements,
     Verification, percent, probability,
 };
-use octant_requirements::{file, reqif, sdoc};
+use octant_requirements::{Imported, file, reqif, sdoc};
 
 const HEAD: &str = "schema = 1\n[[requirements]]\nid = \"N-1\"\ntext = \"x\"\n";
 
@@ -70,10 +72,10 @@ fn every_problem_is_told_with_its_place() {
         problems(text),
         [
             "r.toml:2:1: requirements.N-1.measure: missing: a requirement has a measure, or says how \
-             else it is verified (verification = \"analysis\" or \"inspection\", or the names of tests in tests)",
+             else it is verified (verification = \"analysis\", \"inspection\" or \"open\", or the names of tests in tests)",
             "r.toml:5:1: requirements.N-1.mesure: unknown key, did you mean \"measure\"? known: id, \
              title, text, measure, comparison, limit, pass, confidence, verification, tests, \
-             clause, rationale, parents, section, kind, identifier, attributes",
+             clause, rationale, parents, section, under, kind, identifier, attributes, formatted",
             "r.toml:7:6: requirements.N-1.id: found \"N-1\" a second time, the first is in line 2; \
              expected unique ids",
             "r.toml:8:8: requirements.N-1.text: found an empty text",
@@ -298,10 +300,14 @@ fn what_an_import_leaves_out_is_told() {
             "line 18: B: VERIFICATION is \"Review\": how it is verified has to be added",
         ]
     );
-    // Nothing is lost, and requirements.toml asks for the missing parts.
+    // Nothing is lost, and requirements.toml says that it is open.
     let back = sdoc::read(&sdoc::write(&read.requirements).unwrap(), "r.sdoc").unwrap();
     assert_eq!(back.requirements, read.requirements);
-    let error = file::read(&file::write(&read.requirements), "r.toml", &Anything).unwrap_err();
+    let toml = file::write(&read.requirements);
+    assert_eq!(toml.matches("verification = \"open\"").count(), 2, "{toml}");
+    assert_eq!(file::read(&toml, "r.toml", &Anything).unwrap(), read.requirements);
+    let unsaid = toml.replace("verification = \"open\"\n", "");
+    let error = file::read(&unsaid, "r.toml", &Anything).unwrap_err();
     assert_eq!(error.problems.len(), 2);
     assert!(error.to_string().contains("requirements.B.measure: missing"), "{error}");
 }
@@ -380,10 +386,16 @@ fn what_a_format_has_no_place_for_is_refused() {
         text.contains("METADATA:\n  Author: B\n") && text.contains("\n[REQUIREMENT_TYPE]\n"),
         "{text}"
     );
+    // A relation has both ends in one file: the other is named.
     let mut alone = of("A", "x");
     alone.requirements[0].parents.push(Parent { id: "Z".to_owned(), role: None });
-    let error = reqif::write(&alone, "").unwrap_err().to_string();
-    assert!(error.contains("its parent \"Z\" isn't in this document"), "{error}");
+    let imported = Imported { requirements: alone, notes: Vec::new(), attachments: Vec::new() };
+    let lost = losses(&imported, ExchangeFormat::ReqIf);
+    assert_eq!(lost.len(), 1);
+    assert!(
+        lost[0].contains("parents in other documents are left out")
+            && lost[0].ends_with(": Z of A")
+    );
     let mut all = of("A", "x");
     all.requirements[0].identifier = Some("1 2".to_owned());
     let error = reqif::write(&all, "").unwrap_err().to_string();

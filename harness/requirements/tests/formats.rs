@@ -1,11 +1,12 @@
 //! Any requirements survive every format unchanged.
 
 use octant_requirements::Comparison;
+use octant_requirements::mapping::{self, Mapping};
 use octant_requirements::requirement::{
-    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, Limit, Parent,
-    Requirement, Requirements, Verification,
+    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
+    Parent, Requirement, Requirements, Verification,
 };
-use octant_requirements::{file, reqif, sdoc};
+use octant_requirements::{file, needs, reqif, sdoc};
 use proptest::collection::vec;
 use proptest::option::of as maybe;
 use proptest::prelude::*;
@@ -187,6 +188,26 @@ fn unordered(mut requirements: Requirements) -> Requirements {
     requirements
 }
 
+/// Puts requirements below others and formats their texts, which StrictDoc's format doesn't keep.
+fn nested(mut requirements: Requirements) -> Requirements {
+    for at in 1..requirements.requirements.len() {
+        let (before, rest) = requirements.requirements.split_at_mut(at);
+        let (above, requirement) = (&before[at - 1], &mut rest[0]);
+        if at % 3 > 0 && requirement.section.starts_with(&above.section) {
+            requirement.under = Some(above.id.clone());
+        }
+    }
+    for (at, requirement) in requirements.requirements.iter_mut().enumerate().step_by(2) {
+        requirement.text = format!("Below {at} µ & <not> more.\n\nIt holds.");
+        let xhtml = format!(
+            "<p>Below <b class=\"x &quot;y\">{at} µ</b> &amp; &lt;not&gt;\n more.</p><p>It holds.</p>"
+        );
+        let name = "ReqIF.Text".to_owned();
+        requirement.formatted = vec![FormattedText { name, xhtml }];
+    }
+    requirements
+}
+
 /// Names the markup of a document that names none, as StrictDoc's format does.
 fn marked(mut requirements: Requirements) -> Requirements {
     let document = &mut requirements.document;
@@ -231,7 +252,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn toml_comes_back_as_it_was(all in requirements()) {
+    fn toml_comes_back_as_it_was(all in requirements().prop_map(nested)) {
         let text = file::write(&all);
         let back = file::read(&text, "test.toml", &file::Anything).map_err(|e| format!("{e}\n{text}"));
         prop_assert_eq!(back.unwrap(), all);
@@ -276,9 +297,25 @@ proptest! {
     }
 
     #[test]
-    fn reqif_comes_back_as_it_was(all in requirements()) {
+    fn reqif_comes_back_as_it_was(all in requirements().prop_map(nested)) {
         let text = reqif::write(&all, "2026-01-31T12:00:00Z").unwrap();
         let back = reqif::read(&text, "test.reqif").map_err(|e| format!("{e}\n{text}")).unwrap();
+        prop_assert_eq!(&back.notes, &[]);
+        let found = unordered(sorted(back.requirements, |_| true));
+        prop_assert_eq!(found, unordered(sorted(all, |_| true)), "{}", text);
+    }
+
+    #[test]
+    fn needs_come_back_as_they_were(mut all in requirements().prop_map(nested), rst in any::<bool>()) {
+        // The file has a place for the version of a document.
+        all.document.retain(|(key, _)| key == "VERSION");
+        if rst {
+            all.document.push(("OPTIONS.MARKUP".to_owned(), "RST".to_owned()));
+        }
+        all.requirements.iter_mut().for_each(|requirement| requirement.formatted.clear());
+        let text = needs::write(&all, "2026-01-31T12:00:00Z").unwrap();
+        let usual = Mapping::default();
+        let back = needs::read(&text, "needs.json", &usual).map_err(|e| format!("{e}\n{text}")).unwrap();
         prop_assert_eq!(&back.notes, &[]);
         let found = unordered(sorted(back.requirements, |_| true));
         prop_assert_eq!(found, unordered(sorted(all, |_| true)), "{}", text);
@@ -291,6 +328,8 @@ proptest! {
             let _ = sdoc::read(text, "x");
             let _ = reqif::read(text, "x");
             let _ = file::read(text, "x", &file::Anything);
+            let _ = needs::read(text, "x", &Mapping::default());
+            let _ = mapping::read(text, "x");
         }
     }
 

@@ -1,21 +1,22 @@
 //! Reads `requirements.toml`.
 
 use super::{Checker, SCHEMA};
-use crate::document::{Lines, Problems, Reader, describe};
+use crate::document::{Lines, Problems, Reader, describe, schema};
 use crate::error::{RequirementsError, RequirementsProblem};
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
-    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, Limit, Parent,
-    Requirement, Requirements, Verification, probability,
+    AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
+    Parent, Requirement, Requirements, Verification, probability,
 };
 use crate::verdict::Comparison;
+use crate::xhtml;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use toml::de::{DeTable, DeValue};
 
 const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
-const REQUIREMENT: [&str; 17] = [
+const REQUIREMENT: [&str; 19] = [
     "id",
     "title",
     "text",
@@ -30,9 +31,11 @@ const REQUIREMENT: [&str; 17] = [
     "rationale",
     "parents",
     "section",
+    "under",
     "kind",
     "identifier",
     "attributes",
+    "formatted",
 ];
 const KINDS: [&str; 7] = ["text", "integer", "real", "boolean", "date", "choice", "choices"];
 
@@ -56,46 +59,14 @@ pub fn read(
     };
     let root = Reader::new(table.get_ref(), 0, "", &problems);
     // A newer schema may have other keys: unknown ones in it are not reported.
-    let found = if schema(&root) { document(&root, checker) } else { Requirements::default() };
+    let found =
+        if schema(&root, SCHEMA) { document(&root, checker) } else { Requirements::default() };
     let mut problems = problems.all.into_inner();
     problems.sort_by_key(|p| (p.line, p.column));
     if problems.is_empty() {
         Ok(found)
     } else {
         Err(RequirementsError { file: file.to_owned(), problems })
-    }
-}
-
-fn schema(root: &Reader<'_>) -> bool {
-    let version = match root.get("schema").map(|v| v.get_ref()) {
-        None => {
-            root.problem("schema", format!("missing, expected {SCHEMA}"));
-            return false;
-        }
-        Some(DeValue::Integer(n)) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
-        Some(_) => None,
-    };
-    match version {
-        Some(SCHEMA) => true,
-        Some(newer) if newer > SCHEMA => {
-            root.problem(
-                "schema",
-                format!(
-                    "the file is of version {newer}, and this Octant reads version {SCHEMA}: it takes \
-                     a newer Octant"
-                ),
-            );
-            false
-        }
-        Some(other) => {
-            root.problem("schema", format!("found version {other}, expected {SCHEMA}"));
-            false
-        }
-        None => {
-            let found = root.get("schema").map(|v| describe(v.get_ref())).unwrap_or_default();
-            root.problem("schema", format!("found {found}, expected {SCHEMA}"));
-            false
-        }
     }
 }
 
@@ -136,10 +107,22 @@ fn document(root: &Reader<'_>, checker: &dyn Checker) -> Requirements {
                 lines.insert(id.clone(), table.line());
             }
         }
-        requirements.extend(requirement(&table, id, &definitions, checker));
+        let read = requirement(&table, id, &definitions, checker);
+        if let Some(under) = read.as_ref().and_then(|read| read.under.as_ref())
+            && (!lines.contains_key(under) || id_of(read.as_ref()) == Some(under))
+        {
+            let message =
+                format!("found {under:?}, expected the id of a requirement before this one");
+            table.problem("under", message);
+        }
+        requirements.extend(read);
     }
     let title = root.line_of("title").unwrap_or_else(|| "Requirements".to_owned());
     Requirements { title, document, definitions, requirements }
+}
+
+fn id_of(requirement: Option<&Requirement>) -> Option<&String> {
+    requirement.map(|requirement| &requirement.id)
 }
 
 fn definition(table: &Reader<'_>) -> Option<Definition> {
@@ -197,6 +180,7 @@ fn requirement(
         rationale: table.optional("rationale"),
         parents,
         section,
+        under: table.line_of("under"),
         kind: table.line_of("kind"),
         identifier: table.line_of("identifier"),
         ..Requirement::new(&id?, &text?, verification?)
@@ -214,7 +198,21 @@ fn requirement(
             read.attributes.push(ForeignAttribute { name: name.to_owned(), values });
         }
     }
+    read.formatted = formatted(table);
     Some(read)
+}
+
+fn formatted(table: &Reader<'_>) -> Vec<FormattedText> {
+    let Some(table) = table.table("formatted") else { return Vec::new() };
+    let mut all = Vec::new();
+    for (name, value) in table.entries() {
+        let Some(xhtml) = table.text_of(name, value) else { continue };
+        match xhtml::plain(&xhtml) {
+            Ok(_) => all.push(FormattedText { name: name.to_owned(), xhtml }),
+            Err(error) => table.problem(name, error.to_string()),
+        }
+    }
+    all
 }
 
 /// Reports values that don't fit the kind of their attribute.
@@ -280,6 +278,13 @@ fn parents(table: &Reader<'_>) -> Vec<Parent> {
     parents
 }
 
+fn none_with(verification: &Verification) -> String {
+    match verification {
+        Verification::Open => "a requirement whose verification is open has none".to_owned(),
+        how => format!("a requirement that is verified by {} has none", how.name()),
+    }
+}
+
 fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verification> {
     let how = table.optional("verification");
     if table.has("verification") && how.is_none() {
@@ -288,22 +293,22 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
     let tested = ["measure", "comparison", "limit", "pass", "confidence"];
     let elsewhere = match how.as_deref() {
         None | Some("test") => None,
+        Some("open") => Some(Verification::Open),
         Some("analysis") => Some(Verification::Analysis),
         Some("inspection") => Some(Verification::Inspection),
         Some(other) => {
-            let known = crate::error::suggestion(other, &["test", "analysis", "inspection"]);
+            let known =
+                crate::error::suggestion(other, &["test", "analysis", "inspection", "open"]);
             table.problem("verification", format!("found {other:?}, {known}"));
             return None;
         }
     };
     if let Some(verification) = elsewhere {
         for key in tested.into_iter().filter(|key| table.has(key)) {
-            let how = verification.name();
-            table.problem(key, format!("a requirement that is verified by {how} has none"));
+            table.problem(key, none_with(&verification));
         }
         if table.has("tests") {
-            let how = verification.name();
-            table.problem("tests", format!("a requirement that is verified by {how} has none"));
+            table.problem("tests", none_with(&verification));
         }
         return Some(verification);
     }
@@ -322,7 +327,7 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
         table.problem(
             "measure",
             "missing: a requirement has a measure, or says how else it is verified \
-             (verification = \"analysis\" or \"inspection\", or the names of tests in tests)",
+             (verification = \"analysis\", \"inspection\" or \"open\", or the names of tests in tests)",
         );
         return None;
     }

@@ -4,8 +4,7 @@ use super::SCHEMA;
 use crate::requirement::{Limit, Requirement, Requirements, Verification, percent};
 use std::fmt::Write as _;
 
-/// Writes a `requirements.toml`; [`super::read()`] gives back the same requirements. A requirement with
-/// an open verification is written without one, and refused by the reader until one is added.
+/// Writes a `requirements.toml`; [`super::read()`] gives back the same requirements.
 #[must_use]
 pub fn write(requirements: &Requirements) -> String {
     let mut out = format!("schema = {SCHEMA}\n");
@@ -53,7 +52,6 @@ fn one(out: &mut String, requirement: &Requirement) {
             entry(out, "verification", requirement.verification.name());
             array(out, "tests", tests);
         }
-        Verification::Open => {}
         other => entry(out, "verification", other.name()),
     }
     optional(out, "clause", &requirement.clause);
@@ -72,6 +70,7 @@ fn one(out: &mut String, requirement: &Requirement) {
     if !requirement.section.is_empty() {
         array(out, "section", &requirement.section);
     }
+    optional(out, "under", &requirement.under);
     optional(out, "kind", &requirement.kind);
     optional(out, "identifier", &requirement.identifier);
     if !requirement.attributes.is_empty() {
@@ -81,6 +80,12 @@ fn one(out: &mut String, requirement: &Requirement) {
                 [value] => entry(out, &attribute.name, value),
                 values => array(out, &attribute.name, values),
             }
+        }
+    }
+    if !requirement.formatted.is_empty() {
+        out.push_str("[requirements.formatted]\n");
+        for text in &requirement.formatted {
+            entry(out, &text.name, &text.xhtml);
         }
     }
 }

@@ -16,8 +16,11 @@ pub(super) struct Column {
 pub(super) fn columns(requirements: &Requirements) -> Vec<Column> {
     let all = &requirements.requirements;
     let plain = |text: &str| text.chars().all(|c| (' '..='~').contains(&c) && c != '\\');
+    let has_format =
+        |name: &str| all.iter().flat_map(|r| &r.formatted).any(|text| text.name == name);
     let column = |name: &str, kind: AttributeKind, values: &[String]| {
-        let formatted = kind == AttributeKind::Text && !values.iter().all(|text| plain(text));
+        let formatted = kind == AttributeKind::Text
+            && (has_format(name) || !values.iter().all(|text| plain(text)));
         Column { name: name.to_owned(), kind, formatted }
     };
     let mut columns = vec![

@@ -2,12 +2,14 @@
 
 use super::columns::{Column, columns};
 use super::identifier::{identifier, legal, object_id};
-use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL, XHTML, xhtml};
+use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL};
 use crate::error::ExportError;
 use crate::fields::own_fields;
 use crate::file::misfit;
+use crate::hierarchy::{Step, steps};
 use crate::requirement::{AttributeKind, Requirement, Requirements};
 use crate::sdoc::REQUIREMENT;
+use crate::xhtml;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use quick_xml::writer::Writer;
 use std::collections::{HashMap, HashSet};
@@ -19,11 +21,10 @@ use std::io;
 /// requirements and time give the same bytes.
 ///
 /// # Errors
-/// If an attribute has a value that doesn't fit its kind, an identifier is invalid in XML or occurs
-/// twice, or a parent isn't in the document.
+/// If an attribute has a value that doesn't fit its kind, or an identifier is invalid in XML or occurs
+/// twice.
 pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportError> {
     let mut seen = HashSet::new();
-    let ids: HashSet<&str> = requirements.requirements.iter().map(|r| r.id.as_str()).collect();
     for requirement in &requirements.requirements {
         let wrong = |message| ExportError { format: "ReqIF", id: requirement.id.clone(), message };
         let id = object_id(requirement);
@@ -36,13 +37,6 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
                 let found = attribute.values.join(", ");
                 return Err(wrong(format!("{} is {found:?}, expected {expected}", attribute.name)));
             }
-        }
-        if let Some(parent) = requirement.parents.iter().find(|p| !ids.contains(p.id.as_str())) {
-            let message = format!(
-                "its parent {:?} isn't in this document, and a relation has both ends in one file",
-                parent.id
-            );
-            return Err(wrong(message));
         }
         if !seen.insert(id.clone()) {
             return Err(wrong(format!("its identifier {id:?} is there a second time")));
@@ -58,6 +52,22 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
         |error: String| ExportError { format: "ReqIF", id: "(all)".to_owned(), message: error };
     file.document().map_err(|error| failed(error.to_string()))?;
     String::from_utf8(file.out.into_inner()).map_err(|error| failed(error.to_string()))
+}
+
+/// Attributes of a requirement in ReqIF, with their values.
+fn values_of(requirement: &Requirement) -> Vec<(&str, Vec<String>)> {
+    let mut values: Vec<(&str, Vec<String>)> =
+        vec![(FOREIGN_ID, vec![requirement.id.clone()]), (TEXT, vec![requirement.text.clone()])];
+    values.extend(requirement.title.iter().map(|title| (NAME, vec![title.clone()])));
+    values.extend(own_fields(requirement).into_iter().map(|(name, value)| (name, vec![value])));
+    values.extend(requirement.attributes.iter().map(|a| (a.name.as_str(), a.values.clone())));
+    values
+}
+
+/// Text of an attribute in ReqIF.
+pub(crate) fn text_of(requirement: &Requirement, name: &str) -> Option<String> {
+    let values = values_of(requirement).into_iter().find(|(known, _)| *known == name)?;
+    Some(values.1.join("\n\n"))
 }
 
 struct File<'a> {
@@ -103,7 +113,7 @@ impl File<'_> {
 
     fn document(&mut self) -> io::Result<()> {
         self.out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-        self.open("REQ-IF", &[("xmlns", NAMESPACE), ("xmlns:xhtml", XHTML)])?;
+        self.open("REQ-IF", &[("xmlns", NAMESPACE), ("xmlns:xhtml", xhtml::NAMESPACE)])?;
         self.open("THE-HEADER", &[])?;
         self.open("REQ-IF-HEADER", &[("IDENTIFIER", "octant-header")])?;
         self.text("CREATION-TIME", self.time)?;
@@ -268,29 +278,25 @@ impl File<'_> {
 
     /// Writes the objects, and the heads of sections between them.
     fn objects(&mut self) -> io::Result<()> {
-        let time = self.time;
+        let (time, requirements) = (self.time, self.requirements);
         self.open("SPEC-OBJECTS", &[])?;
-        let mut sections = 0;
-        let requirements = self.requirements;
-        let mut open: Vec<String> = Vec::new();
-        for requirement in &requirements.requirements {
-            let shared = open.iter().zip(&requirement.section).take_while(|(a, b)| a == b).count();
-            open.truncate(shared);
-            for title in &requirement.section[shared..] {
-                open.push(title.clone());
-                let id = format!("octant-section-{}", sections);
-                sections += 1;
-                self.open("SPEC-OBJECT", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
-                self.open("VALUES", &[])?;
-                self.open("ATTRIBUTE-VALUE-STRING", &[("THE-VALUE", title)])?;
-                let definition = "ATTRIBUTE-DEFINITION-STRING-REF";
-                self.reference("DEFINITION", definition, "octant-t-section-a-title")?;
-                self.close("ATTRIBUTE-VALUE-STRING")?;
-                self.close("VALUES")?;
-                self.reference("TYPE", "SPEC-OBJECT-TYPE-REF", "octant-t-section")?;
-                self.close("SPEC-OBJECT")?;
+        for step in steps(requirements) {
+            match step {
+                Step::End => {}
+                Step::Requirement(index) => self.object(&requirements.requirements[index])?,
+                Step::Section(title, number) => {
+                    let id = format!("octant-section-{number}");
+                    self.open("SPEC-OBJECT", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
+                    self.open("VALUES", &[])?;
+                    self.open("ATTRIBUTE-VALUE-STRING", &[("THE-VALUE", title)])?;
+                    let definition = "ATTRIBUTE-DEFINITION-STRING-REF";
+                    self.reference("DEFINITION", definition, "octant-t-section-a-title")?;
+                    self.close("ATTRIBUTE-VALUE-STRING")?;
+                    self.close("VALUES")?;
+                    self.reference("TYPE", "SPEC-OBJECT-TYPE-REF", "octant-t-section")?;
+                    self.close("SPEC-OBJECT")?;
+                }
             }
-            self.object(requirement)?;
         }
         self.close("SPEC-OBJECTS")
     }
@@ -299,19 +305,15 @@ impl File<'_> {
         let id = object_id(requirement);
         let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
         let of = format!("octant-t-{}", identifier(kind));
-        let mut values: Vec<(&str, Vec<String>)> = vec![
-            (FOREIGN_ID, vec![requirement.id.clone()]),
-            (TEXT, vec![requirement.text.clone()]),
-        ];
-        values.extend(requirement.title.iter().map(|title| (NAME, vec![title.clone()])));
-        values.extend(own_fields(requirement).into_iter().map(|(name, value)| (name, vec![value])));
-        values.extend(requirement.attributes.iter().map(|a| (a.name.as_str(), a.values.clone())));
+        let values = values_of(requirement);
         self.open("SPEC-OBJECT", &[("IDENTIFIER", &id), ("LAST-CHANGE", self.time)])?;
         self.open("VALUES", &[])?;
         for index in 0..self.columns.len() {
             let name = self.columns[index].name.clone();
             if let Some((_, values)) = values.iter().find(|(n, _)| *n == name) {
-                self.value(index, &format!("{of}-a-{index}"), values)?;
+                let formatted = requirement.formatted.iter().find(|text| text.name == name);
+                let xhtml = formatted.map(|text| text.xhtml.as_str());
+                self.value(index, &format!("{of}-a-{index}"), values, xhtml)?;
             }
         }
         self.close("VALUES")?;
@@ -319,7 +321,23 @@ impl File<'_> {
         self.close("SPEC-OBJECT")
     }
 
-    fn value(&mut self, index: usize, definition: &str, values: &[String]) -> io::Result<()> {
+    /// Writes a text as XHTML: with its formatting, if that is still the formatting of this text.
+    fn formatted(&mut self, formatted: Option<&str>, text: &str) -> io::Result<()> {
+        let formatted = formatted.and_then(|xhtml| xhtml::of_formatted(xhtml, text));
+        let content = formatted.unwrap_or_else(|| xhtml::of_plain(text));
+        self.open("THE-VALUE", &[])?;
+        // As text, because indentation would add space to it.
+        self.out.write_event(Event::Text(BytesText::from_escaped(content)))?;
+        self.close("THE-VALUE")
+    }
+
+    fn value(
+        &mut self,
+        index: usize,
+        definition: &str,
+        values: &[String],
+        formatted: Option<&str>,
+    ) -> io::Result<()> {
         let (tag, datatype) = self.datatype(index);
         let element = format!("ATTRIBUTE-VALUE-{tag}");
         let joined = values.join("\n\n");
@@ -329,9 +347,7 @@ impl File<'_> {
         self.reference("DEFINITION", &format!("ATTRIBUTE-DEFINITION-{tag}-REF"), definition)?;
         match tag {
             "XHTML" => {
-                self.open("THE-VALUE", &[])?;
-                xhtml::write(&mut self.out, &joined)?;
-                self.close("THE-VALUE")?;
+                self.formatted(formatted, &joined)?;
             }
             "ENUMERATION" => {
                 self.open("VALUES", &[])?;
@@ -356,7 +372,7 @@ impl File<'_> {
         let mut number = 0;
         for requirement in &requirements.requirements {
             for parent in &requirement.parents {
-                // A parent that isn't in the document was already refused.
+                // A relation has both ends in one file: crate::losses names the others.
                 let Some(target) = ids.get(parent.id.as_str()) else { continue };
                 let role = roles.iter().position(|role| *role == parent.role).unwrap_or(0);
                 let id = format!("octant-relation-{number}");
@@ -388,46 +404,44 @@ impl File<'_> {
                 let id = format!("octant-t-specification-a-{index}");
                 self.open("ATTRIBUTE-VALUE-XHTML", &[])?;
                 self.reference("DEFINITION", "ATTRIBUTE-DEFINITION-XHTML-REF", &id)?;
-                self.open("THE-VALUE", &[])?;
-                xhtml::write(&mut self.out, value)?;
-                self.close("THE-VALUE")?;
+                self.formatted(None, value)?;
                 self.close("ATTRIBUTE-VALUE-XHTML")?;
             }
             self.close("VALUES")?;
         }
         self.reference("TYPE", "SPECIFICATION-TYPE-REF", "octant-t-specification")?;
         self.open("CHILDREN", &[])?;
-        let mut open: Vec<&str> = Vec::new();
-        let mut next = 0;
-        for requirement in &requirements.requirements {
-            let same = open.iter().zip(&requirement.section).take_while(|(a, b)| **a == b.as_str());
-            let shared = same.count();
-            for _ in shared..open.len() {
-                self.close("CHILDREN")?;
-                self.close("SPEC-HIERARCHY")?;
-            }
-            open.truncate(shared);
-            for title in &requirement.section[shared..] {
-                open.push(title);
-                let (id, object) =
-                    (format!("octant-section-{next}-place"), format!("octant-section-{next}"));
-                next += 1;
-                self.open("SPEC-HIERARCHY", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
-                self.reference("OBJECT", "SPEC-OBJECT-REF", &object)?;
-                self.open("CHILDREN", &[])?;
-            }
-            let object = object_id(requirement);
-            let id = format!("{object}-place");
-            self.open("SPEC-HIERARCHY", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
-            self.reference("OBJECT", "SPEC-OBJECT-REF", &object)?;
-            self.close("SPEC-HIERARCHY")?;
-        }
-        for _ in open {
-            self.close("CHILDREN")?;
-            self.close("SPEC-HIERARCHY")?;
-        }
+        self.hierarchy(&steps(requirements))?;
         self.close("CHILDREN")?;
         self.close("SPECIFICATION")?;
         self.close("SPECIFICATIONS")
+    }
+
+    fn hierarchy(&mut self, steps: &[Step<'_>]) -> io::Result<()> {
+        let (time, requirements) = (self.time, self.requirements);
+        // For each open node, whether it has children.
+        let mut open: Vec<bool> = Vec::new();
+        for (at, step) in steps.iter().enumerate() {
+            let object = match step {
+                Step::Section(_, number) => format!("octant-section-{number}"),
+                Step::Requirement(index) => object_id(&requirements.requirements[*index]),
+                Step::End => {
+                    if open.pop() == Some(true) {
+                        self.close("CHILDREN")?;
+                    }
+                    self.close("SPEC-HIERARCHY")?;
+                    continue;
+                }
+            };
+            let id = format!("{object}-place");
+            self.open("SPEC-HIERARCHY", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
+            self.reference("OBJECT", "SPEC-OBJECT-REF", &object)?;
+            let has_children = steps.get(at + 1).is_some_and(|next| *next != Step::End);
+            if has_children {
+                self.open("CHILDREN", &[])?;
+            }
+            open.push(has_children);
+        }
+        Ok(())
     }
 }

@@ -8,19 +8,19 @@
 use crate::fields::{MEASURE, TESTS};
 
 /// Option of the document, by its name in [`crate::Requirements::document`].
-pub(super) const OPTION: &str = "OPTIONS.MARKUP";
+pub(crate) const OPTION: &str = "OPTIONS.MARKUP";
 /// Texts that are shown as they are.
-pub(super) const PLAIN: &str = "Text";
+pub(crate) const PLAIN: &str = "Text";
 /// reStructuredText, the markup of a document that names none.
-pub(super) const DEFAULT: &str = "RST";
+pub(crate) const DEFAULT: &str = "RST";
 
 /// True if the document's texts are reStructuredText.
-pub(super) fn is_rst(document: &[(String, String)]) -> bool {
+pub(crate) fn is_rst(document: &[(String, String)]) -> bool {
     document.iter().any(|(key, value)| key == OPTION && value == DEFAULT)
 }
 
 /// True if Octant makes the text of a field, of names that its author can't choose freely.
-pub(super) fn made(field: &str) -> bool {
+pub(crate) fn made(field: &str) -> bool {
     [MEASURE, TESTS].contains(&field)
 }
 
@@ -29,7 +29,7 @@ fn has_meaning(c: char) -> bool {
 }
 
 /// Escapes a text for reStructuredText.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text.chars().peekable();
     while let Some(c) = rest.next() {
@@ -44,7 +44,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// Text without the escapes of reStructuredText.
-pub(super) fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text.chars().peekable();
     while let Some(c) = rest.next() {

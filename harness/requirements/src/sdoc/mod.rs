@@ -8,7 +8,7 @@
 //! Texts are plain unless the document names another markup (`OPTIONS.MARKUP`).
 
 mod grammar;
-mod markup;
+pub(crate) mod markup;
 mod read;
 mod write;
 

@@ -30,7 +30,11 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
         open: Vec::new(),
     };
     match parser.document() {
-        Ok(()) => Ok(Imported { requirements: parser.found, notes: parser.notes }),
+        Ok(()) => Ok(Imported {
+            requirements: parser.found,
+            notes: parser.notes,
+            attachments: Vec::new(),
+        }),
         Err((line, message)) => {
             Err(RequirementsError::one(file, RequirementsProblem::new((line, 1), "", message)))
         }
@@ -46,6 +50,8 @@ struct Open {
     line: usize,
     /// Title of a section; `None` for another node.
     section: Option<String>,
+    /// UID of a requirement in which others are nested.
+    requirement: Option<String>,
 }
 
 /// A field of a node.
@@ -82,7 +88,7 @@ impl<'a> Parser<'a> {
     }
 
     fn note(&mut self, line: usize, message: impl Into<String>) {
-        self.notes.push(Note { line, message: message.into() });
+        self.notes.push(Note::new(line, message));
     }
 
     fn found(&self) -> String {
@@ -274,11 +280,10 @@ impl<'a> Parser<'a> {
             _ => self.requirement(line, &kind, fields, parents)?,
         }
         if composite {
-            if kind != "SECTION" {
-                self.note(line, format!("what is nested in this {kind} stands beside it"));
-            }
             let section = if kind == "SECTION" { title } else { None };
-            self.open.push(Open { kind, line, section });
+            let last = self.found.requirements.last().map(|last| last.id.clone());
+            let requirement = last.filter(|_| kind != "SECTION" && kind != "TEXT");
+            self.open.push(Open { kind, line, section, requirement });
         }
         Ok(())
     }
@@ -432,6 +437,7 @@ impl<'a> Parser<'a> {
             rationale: plain(rationale),
             parents,
             section: self.open.iter().filter_map(|open| open.section.clone()).collect(),
+            under: self.open.iter().rev().find_map(|open| open.requirement.clone()),
             kind: (kind != REQUIREMENT).then(|| kind.to_owned()),
             identifier: plain(mid),
             attributes,
