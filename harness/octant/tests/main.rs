@@ -76,7 +76,6 @@ mod nightly;
 mod own_sequences;
 mod progress_bar;
 mod qualification;
-mod rare;
 mod real_chain;
 mod real_recording;
 mod realtime;

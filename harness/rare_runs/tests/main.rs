@@ -1,4 +1,2 @@
 //! Tests with real runs.
 #![allow(clippy::unwrap_used, missing_docs)]
-mod known;
-mod resumed;
