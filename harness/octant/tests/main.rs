@@ -78,6 +78,7 @@ mod progress_bar;
 mod qualification;
 mod real_chain;
 mod real_recording;
+mod rare;
 mod realtime;
 mod recorded_topics;
 mod recording;
