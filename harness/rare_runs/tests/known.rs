@@ -109,7 +109,7 @@ fn plain_monte_carlo_agrees_where_failures_are_frequent() {
         + "\n[procedure.navigation]\nduration = \"10 min\"\n\n[[requirements]]\nid = \"N\"\n\
            text = \"It drifts little.\"\nmeasure = \"navigation.radial_error_nmi.max\"\nlimit = \"0.2 nmi\"\n";
     let scenario = scenario(&text);
-    let plan = RarePlan { runs: 1500, samples: 100, pilot: 400, error: 0.1, ..RarePlan::default() };
+    let plan = RarePlan { runs: 3000, samples: 100, pilot: 400, error: 0.1, ..RarePlan::default() };
     let (found, _) = failing(&scenario, &plan, (None, false)).unwrap();
     assert!(found.shown, "{:?}", found.doubts);
     let [low, high] = found.interval.unwrap();
