@@ -9,6 +9,7 @@
 //! | [`decimal`] | times as decimal text |
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
+//! | [`chained_lines`] | files of lines that grow, by which an interrupted program goes on |
 //! | [`code`] | the file that this code is in |
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
@@ -18,6 +19,7 @@
 //! | [`utc`] | times of the host as text |
 
 pub mod arrow;
+pub mod chained_lines;
 pub mod child;
 pub mod code;
 pub mod control;

@@ -19,6 +19,19 @@ pub(super) fn with_progress<T>(
     Follower::Terminal.follow(controls, epochs, sample_s, work)
 }
 
+/// Does `work` without a line of progress, and passes Ctrl-C on to its control.
+pub(super) fn interruptible<T>(work: impl FnOnce(&Control) -> T) -> T {
+    let control = Control::default();
+    watch_interrupts();
+    let stop = |controls: &[Control], _: Option<u64>| {
+        if interrupt::seen() {
+            controls.iter().for_each(|control| control.cancel.store(true, Ordering::Relaxed));
+        }
+    };
+    let controls = std::slice::from_ref(&control);
+    Follower::Host(&stop).follow(controls, None, 0.0, || work(&control))
+}
+
 /// Program that follows the progress of runs, and may end them.
 pub(crate) enum Follower<'a> {
     /// This one, on a terminal.

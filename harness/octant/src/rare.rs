@@ -1,13 +1,12 @@
 //! `octant rare`: the probability that a requirement fails, and protection levels.
 
 use super::case_progress::CaseBar;
-use super::progress::{Follower, watch_interrupts};
+use super::progress::interruptible;
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
-use octant_base::interrupt;
 use octant_base::pool::processors;
 use octant_rare::estimate::RarePlan;
 use octant_rare_runs::error::RareError;
@@ -21,7 +20,6 @@ use octant_scenario::Scenario;
 use octant_score::numerics::NUMERICS;
 use serde::Serialize;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -49,7 +47,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
     error: f64,
     /// Confidence of the interval, two-sided.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = confidence)]
     confidence: f64,
     /// Seed of the estimate.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
@@ -76,17 +74,15 @@ fn share(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number above 0 and below 1".to_owned())
 }
 
+/// A lower confidence would answer anything.
+fn confidence(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|share| (0.5..1.0).contains(share));
+    number.ok_or_else(|| "expected a number from 0.5 to below 1".to_owned())
+}
+
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = load(&arguments.scenario, &[])?;
-    let control = Control::default();
-    watch_interrupts();
-    let stop = |controls: &[Control], _: Option<u64>| {
-        if interrupt::seen() {
-            controls.iter().for_each(|control| control.cancel.store(true, Ordering::Relaxed));
-        }
-    };
-    let controls = std::slice::from_ref(&control);
-    Follower::Host(&stop).follow(controls, None, 0.0, || estimated(arguments, &scenario, &control))
+    interruptible(|control| estimated(arguments, &scenario, control))
 }
 
 fn plan(arguments: &Arguments) -> RarePlan {

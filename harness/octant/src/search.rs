@@ -1,13 +1,12 @@
 //! `octant faults search`: the fault that does most harm unnoticed.
 
 use super::case_progress::CaseBar;
-use super::progress::{Follower, watch_interrupts};
+use super::progress::interruptible;
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::{note, print, print_json, write};
 use clap::{Args, ValueEnum};
 use octant_base::control::Control;
-use octant_base::interrupt;
 use octant_base::names::suggestion;
 use octant_base::pool::processors;
 use octant_faults::catalogue::FaultKind;
@@ -24,7 +23,6 @@ use octant_search::space::SearchSpace;
 use octant_search::space_file;
 use octant_search::trial::{FaultTrial, TrialEffect, TrialResult};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -90,16 +88,7 @@ fn positive(text: &str) -> Result<f64, String> {
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = load(&arguments.scenario, &[])?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
-    let control = Control::default();
-    watch_interrupts();
-    let stop = |controls: &[Control], _: Option<u64>| {
-        if interrupt::seen() {
-            controls.iter().for_each(|control| control.cancel.store(true, Ordering::Relaxed));
-        }
-    };
-    let controls = std::slice::from_ref(&control);
-    Follower::Host(&stop)
-        .follow(controls, None, 0.0, || searched(arguments, &scenario, seed, &control))
+    interruptible(|control| searched(arguments, &scenario, seed, control))
 }
 
 fn searched(

@@ -56,10 +56,14 @@ fn a_log_is_run_and_its_gaps_are_told() {
     assert!(said.contains("unit.bin: ") && said.contains(" readings, 0 other frames"), "{said}");
     // The file is evidence, as any recording is.
     assert!(manifest.to_string().contains("unit.bin"), "{manifest}");
+    // Samples that would stand for the wrong times.
+    let again = [&run[..], &["--force"]].concat();
+    let (_, said) = ends(&[&again[..], &["--set", "imu.rate=\"100 Hz\""]].concat(), 2);
+    assert!(said.contains("unit.bin: readings are 5.0000 ms apart, 200.0 Hz"), "{said}");
     // An end in the middle of a frame, before the run has all of its samples.
     let bytes = std::fs::read(folder.path().join("unit.bin")).unwrap();
     std::fs::write(folder.path().join("unit.bin"), &bytes[..bytes.len() / 2 + 3]).unwrap();
-    let (said, _) = ends(&[&run[..], &["--force"]].concat(), 3);
+    let (said, _) = ends(&again, 3);
     assert!(said.contains("of an incomplete frame"), "{said}");
 }
 

@@ -9,8 +9,8 @@
 //!
 //! The noise of a sample is drawn from its own distribution, so that the weight has the components u alone.
 //!
-//! What the interval can't show by itself is a region of failures that no sample met. So there are [doubts](RareDoubt):
-//! checks of the estimate against what the chains and the plain samples know. With one of them nothing is shown.
+//! The interval knows nothing of a region of failures that no sample met. [Doubts](RareDoubt) check the estimate against
+//! the failures of the chains and of the plain samples. With one of them nothing is shown.
 
 use crate::mixture::NormalMixture;
 use crate::point::{RareBench, RarePoint, RareSample, RareStage};

@@ -71,7 +71,7 @@ fn joined<'a, 'b: 'a>(data: impl Iterator<Item = &'a Weighted<'b>>) -> Weighted<
     Weighted { points: data.flat_map(|data| data.points.iter().copied()).collect() }
 }
 
-/// What the chains found: the fit to their failures, and the same with its means on the lines of growing severity. Both
+/// Findings of the chains: the fit to their failures, and the same with its means on the lines of growing severity. Both
 /// have a mirror image of every component: a limit on a magnitude fails on both sides, and a few chains may have met one
 /// alone. The pilot tells whether there is anything on the other side.
 #[derive(Clone, Debug)]

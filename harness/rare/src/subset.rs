@@ -30,7 +30,7 @@ const ACCEPTED: f64 = 0.44;
 /// Levels at most: 0.1^15 is beyond any budget.
 const LEVELS_MAX: usize = 15;
 
-/// What a subset simulation looks for.
+/// Goal of a subset simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SubsetGoal {
     /// Severities above this one.

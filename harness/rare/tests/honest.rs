@@ -1,4 +1,4 @@
-//! What an estimate doesn't claim, and what its chains keep.
+//! Limits of an estimate's claims, and the distribution of its chains.
 
 use crate::coverage::Closed;
 use octant_random::draws::Draws;

@@ -1,5 +1,6 @@
 //! Reasons why an estimate gave no result.
 
+use octant_base::chained_lines::ChainedLinesError;
 use std::path::PathBuf;
 
 /// Reasons why an estimate gave no result.
@@ -55,7 +56,7 @@ pub enum RareError {
         path: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// What was found and what was expected.
+        /// Found and expected content.
         problem: String,
     },
     /// The failing run had another result when it was run again from its file.
@@ -64,4 +65,17 @@ pub enum RareError {
     /// Interrupted on request.
     #[error("interrupted: the same command resumes")]
     Cancelled,
+}
+
+impl From<ChainedLinesError> for RareError {
+    fn from(error: ChainedLinesError) -> Self {
+        match error {
+            ChainedLinesError::System { action, path, source } => {
+                Self::Journal { action, path, source }
+            }
+            ChainedLinesError::Line { path, line, problem } => {
+                Self::OtherEstimate { path, line, problem }
+            }
+        }
+    }
 }

@@ -107,7 +107,7 @@ impl DrawnInput {
         if !self.is_uniform {
             return self.scale * u;
         }
-        // Of the nearer tail, so that no digit is lost in the upper one.
+        // The lower tail, because 1 − Φ of a large u would lose its digits.
         let inner = 1.0 - 2.0 * normal::cdf(-u.abs());
         self.scale * libm::copysign(inner, u)
     }

@@ -1,17 +1,15 @@
 //! The journal of an estimate: what it is of, and every run, so that an interrupted estimate goes on.
 //!
-//! Each line is a checksum and JSON. The first names the estimate, each further one is a run. A checksum is the
-//! beginning of the BLAKE3 of the one before and of the JSON, so that no line can be edited or left out. A line without
-//! an end was interrupted, and is cut off. Runs are known by a digest of their point.
+//! It has [chained lines](octant_base::chained_lines) of JSON: the first names the estimate, each further one is a run.
+//! Runs are known by a digest of their point.
 
 use crate::error::RareError;
 use crate::outcome::RareOutcome;
+use octant_base::chained_lines::ChainedLines;
 use octant_rare::point::RarePoint;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Version of the journal.
 pub const RARE_JOURNAL_SCHEMA: u32 = 1;
@@ -28,7 +26,7 @@ pub struct RareIdentity {
     pub numerics: u32,
     /// BLAKE3 of the scenario with every default.
     pub scenario_blake3: String,
-    /// What is looked at.
+    /// The requirement, or the calibration.
     pub subject: String,
     /// Settings of the estimate.
     pub plan: String,
@@ -60,20 +58,7 @@ pub(crate) fn digest(point: &RarePoint) -> PointDigest {
 /// An open journal.
 #[derive(Debug)]
 pub struct RareJournal {
-    path: PathBuf,
-    file: File,
-    chained: String,
-}
-
-/// Characters of a checksum.
-const CHECKSUM: usize = 32;
-
-/// Checksum of a line after another one.
-fn chain(before: &str, json: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(before.as_bytes());
-    hasher.update(json.as_bytes());
-    hasher.finalize().to_hex().chars().take(CHECKSUM).collect()
+    lines: ChainedLines,
 }
 
 fn hex(digest: &PointDigest) -> String {
@@ -101,69 +86,37 @@ impl RareJournal {
         identity: &RareIdentity,
         known: &mut HashMap<PointDigest, RareOutcome>,
     ) -> Result<Self, RareError> {
-        let failed =
-            |action| move |source| RareError::Journal { action, path: path.to_owned(), source };
-        let mut options = OpenOptions::new();
-        options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(failed("open"))?;
-        file.try_lock().map_err(|error| failed("lock")(error.into()))?;
-        let text = std::fs::read(path).map_err(failed("read"))?;
-        let end = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let other =
-            |line, problem| RareError::OtherEstimate { path: path.to_owned(), line, problem };
-        let whole = std::str::from_utf8(&text[..end])
-            .map_err(|_| other(1, "found bytes that are not UTF-8".to_owned()))?;
-        let mut chained = String::new();
-        for (index, line) in whole.lines().enumerate() {
-            let (checksum, json) = line.split_once(' ').unwrap_or(("", line));
-            if index == 0 {
-                refuse_other(identity, json).map_err(|problem| other(1, problem))?;
-            }
-            chained = chain(&chained, json);
-            if checksum != chained {
-                let problem = "the checksum doesn't fit: a line was changed or left out".to_owned();
-                return Err(other(index + 1, problem));
-            }
-            if index > 0 {
+        let first = serde_json::to_string(identity).map_err(|error| unwritten(path, error))?;
+        let lines = ChainedLines::open(
+            path,
+            &first,
+            |found| refuse_other(identity, found),
+            |json| {
                 let run: RunLine = serde_json::from_str(json)
-                    .map_err(|error| other(index + 1, format!("expected a run: {error}")))?;
+                    .map_err(|error| format!("expected a run: {error}"))?;
                 let digest = unhex(&run.point);
-                let digest = digest.ok_or_else(|| {
-                    other(index + 1, format!("found point {:?}, expected 32 digits", run.point))
-                })?;
+                let digest = digest
+                    .ok_or_else(|| format!("found point {:?}, expected 32 digits", run.point))?;
                 known.insert(digest, run.outcome);
-            }
-        }
-        file.set_len(end as u64).map_err(failed("cut"))?;
-        file.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
-        let mut journal = Self { path: path.to_owned(), file, chained };
-        if end == 0 {
-            journal.append(&[identity])?;
-        }
-        Ok(journal)
+                Ok(())
+            },
+        )?;
+        Ok(Self { lines })
     }
 
     /// Appends runs; they are on the disk when this returns.
     pub(crate) fn keep(&mut self, runs: &[(PointDigest, RareOutcome)]) -> Result<(), RareError> {
-        let line = |(digest, outcome): &(PointDigest, RareOutcome)| RunLine {
-            point: hex(digest),
-            outcome: outcome.clone(),
+        let line = |(digest, outcome): &(PointDigest, RareOutcome)| {
+            serde_json::to_string(&RunLine { point: hex(digest), outcome: outcome.clone() })
         };
-        self.append(&runs.iter().map(line).collect::<Vec<_>>())
+        let texts: Result<Vec<String>, _> = runs.iter().map(line).collect();
+        let texts = texts.map_err(|error| unwritten(self.lines.path(), error))?;
+        Ok(self.lines.append(texts)?)
     }
+}
 
-    fn append<T: Serialize>(&mut self, values: &[T]) -> Result<(), RareError> {
-        let failed =
-            |source| RareError::Journal { action: "write", path: self.path.clone(), source };
-        let mut text = String::new();
-        for value in values {
-            let json = serde_json::to_string(value).map_err(|error| failed(error.into()))?;
-            self.chained = chain(&self.chained, &json);
-            text += &format!("{} {json}\n", self.chained);
-        }
-        self.file.write_all(text.as_bytes()).map_err(failed)?;
-        self.file.sync_data().map_err(failed)
-    }
+fn unwritten(path: &Path, error: serde_json::Error) -> RareError {
+    RareError::Journal { action: "write", path: path.to_owned(), source: error.into() }
 }
 
 /// Refuses the first line of a journal of another estimate, naming the field.

@@ -9,12 +9,13 @@ use octant_run::method::{MethodRun, StreamKeeping, run_method};
 use octant_sample::Health;
 use octant_scenario::{Method, Scenario};
 use octant_score::health::name;
+use octant_score::judge::unfired;
 use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// What an estimate looks at in a run.
+/// The part of a run that an estimate is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RareSubject {
     /// A requirement, by its id.
@@ -93,12 +94,15 @@ fn published(run: &MethodRun) -> RareOutcome {
     RareOutcome::Published(parameters)
 }
 
+/// A run whose faults don't all act shows nothing of the hypothesis.
 fn broken(run: &MethodRun) -> Option<String> {
     let cut = run.cut_short.as_ref().map(|cut| format!("the run ended early: {cut}"));
     let failed = run.broken.as_ref().map(ToString::to_string);
     let misbehaved = matches!(run.ended, Ended::Misbehaved | Ended::Broken)
         .then(|| "the unit misbehaved, or the bench failed".to_owned());
-    failed.or(cut).or(misbehaved)
+    let unfired = run.receipts.iter().find(|receipt| !receipt.fired());
+    let unfired = unfired.map(|receipt| format!("fault {} never fired", receipt.id));
+    failed.or(cut).or(misbehaved).or(unfired)
 }
 
 fn of_requirement(scenario: &Scenario, id: &str, control: &Control) -> Option<RareOutcome> {
@@ -141,6 +145,9 @@ fn of_requirement(scenario: &Scenario, id: &str, control: &Control) -> Option<Ra
 fn judged(summary: &Summary, id: &str, cut: Option<String>) -> RareOutcome {
     if let Some(reason) = cut {
         return RareOutcome::Broken(reason);
+    }
+    if let Some((_, never)) = unfired(summary).next() {
+        return RareOutcome::Broken(never);
     }
     let of_baseline = summary.baseline.as_ref().and_then(|baseline| baseline.calibration.as_ref());
     let scores = [summary.calibration.as_ref(), of_baseline];

@@ -58,7 +58,7 @@ impl StageCounts {
 /// How the severity of a run is found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SeverityOf {
-    /// Of a requirement; true if a run without a measure counts as a failure.
+    /// Margin of the requirement; true if a run without a measure counts as a failure.
     Margin(bool),
     /// Magnitude of the error of a parameter.
     Error(String),

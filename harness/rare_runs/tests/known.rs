@@ -171,6 +171,30 @@ fn a_measure_that_no_run_has_is_never_a_pass() {
     assert_eq!(found.verdict, Verdict::Fail);
 }
 
+/// A fault that acts in no run, for whatever reason, is no hypothesis that anything was shown under.
+#[test]
+fn a_fault_that_never_fires_is_never_a_pass() {
+    let fault = |trigger: &str| {
+        format!(
+            "\n[[faults]]\nid = \"late\"\nkind = \"bias-step\"\nchannels = \"gyro x\"\n\
+             amplitude = \"1 deg/h\"\ntrigger = {{ {trigger} }}\n"
+        )
+    };
+    let plan = RarePlan { runs: 200, samples: 50, pilot: 50, ..RarePlan::default() };
+    let never = fault("when = \"nis above 1e6\"");
+    let text = SHORT.to_owned() + &g_zz(4.0) + &never;
+    let (found, _) = failing(&scenario(&text), &plan, (Some(0.5), true)).unwrap();
+    assert_eq!(found.verdict, Verdict::Inconclusive);
+    assert!(found.reasons.keys().any(|r| r.contains("fault late never fired")), "{found:?}");
+    let found = levels(&text, &["gyro_bias_x"], 0.1, &plan);
+    assert_eq!(found.verdict, Verdict::Inconclusive);
+    assert!(!found.parameters[0].shown && !found.reasons.is_empty(), "{found:?}");
+    // One that acts in every run is told by the runs that noticed it, or shown.
+    let text = SHORT.to_owned() + &g_zz(4.0) + &fault("at = \"100 s\"");
+    let (found, _) = failing(&scenario(&text), &plan, (Some(0.5), true)).unwrap();
+    assert!(found.stages.values().all(|stage| stage.broken == 0), "{found:?}");
+}
+
 #[test]
 fn bad_input_is_refused_with_what_is_known() {
     let plan = RarePlan::default();

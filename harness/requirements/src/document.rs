@@ -54,6 +54,21 @@ pub(crate) struct Problems<'a> {
     pub(crate) all: RefCell<Vec<RequirementsProblem>>,
 }
 
+impl Problems<'_> {
+    /// Reads the text of the file as TOML.
+    pub(crate) fn table<'t>(
+        &self,
+        text: &'t str,
+        file: &str,
+    ) -> Result<Spanned<DeTable<'t>>, RequirementsError> {
+        DeTable::parse(text).map_err(|error| {
+            let at = self.lines.place(error.span().map_or(text.len(), |span| span.start));
+            let message = format!("not TOML: {}", error.message().replace('\n', ", "));
+            RequirementsError::one(file, RequirementsProblem::new(at, "", message))
+        })
+    }
+}
+
 /// A table of the file.
 #[derive(Clone)]
 pub(crate) struct Reader<'a> {

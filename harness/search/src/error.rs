@@ -1,5 +1,6 @@
 //! Reasons why a search gave no result.
 
+use octant_base::chained_lines::ChainedLinesError;
 use octant_run::method::MethodError;
 use octant_scenario::Problem;
 use std::path::PathBuf;
@@ -54,4 +55,17 @@ pub enum FaultSearchError {
     /// Interrupted on request.
     #[error("interrupted: the same command resumes")]
     Cancelled,
+}
+
+impl From<ChainedLinesError> for FaultSearchError {
+    fn from(error: ChainedLinesError) -> Self {
+        match error {
+            ChainedLinesError::System { action, path, source } => {
+                Self::Journal { action, path, source }
+            }
+            ChainedLinesError::Line { path, line, problem } => {
+                Self::OtherSearch { path, line, problem }
+            }
+        }
+    }
 }

@@ -1,15 +1,12 @@
 //! The journal of a search: what it is of, and every result, so that an interrupted search goes on.
 //!
-//! Each line is a checksum and JSON. The first names the search, each further one is a trial. A checksum is the
-//! beginning of the BLAKE3 of the one before and of the JSON, so that no line can be edited or left out. A line without
-//! an end was interrupted, and is cut off.
+//! It has [chained lines](octant_base::chained_lines) of JSON: the first names the search, each further one is a trial.
 
 use crate::error::FaultSearchError;
 use crate::trial::FaultTrial;
+use octant_base::chained_lines::ChainedLines;
 use serde::{Deserialize, Serialize};
-use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Version of the journal.
 pub const JOURNAL_SCHEMA: u32 = 1;
@@ -39,24 +36,10 @@ pub struct SearchIdentity {
 /// An open journal.
 #[derive(Debug)]
 pub struct SearchJournal {
-    path: PathBuf,
-    file: File,
+    lines: ChainedLines,
     /// Trials that it had when it was opened and that were not taken yet, first last.
     known: Vec<FaultTrial>,
     line: usize,
-    /// Checksum of the last line.
-    chained: String,
-}
-
-/// Characters of a checksum.
-const CHECKSUM: usize = 32;
-
-/// Checksum of a line after another one.
-fn chain(before: &str, json: &str) -> String {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(before.as_bytes());
-    hasher.update(json.as_bytes());
-    hasher.finalize().to_hex().chars().take(CHECKSUM).collect()
 }
 
 impl SearchJournal {
@@ -65,44 +48,20 @@ impl SearchJournal {
     /// # Errors
     /// If it is of another search, is damaged, or the operating system refuses.
     pub fn open(path: &Path, identity: &SearchIdentity) -> Result<Self, FaultSearchError> {
-        let failed = |action| {
-            move |source| FaultSearchError::Journal { action, path: path.to_owned(), source }
-        };
-        let mut options = OpenOptions::new();
-        options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(failed("open"))?;
-        file.try_lock().map_err(|error| failed("lock")(error.into()))?;
-        let text = std::fs::read(path).map_err(failed("read"))?;
-        let end = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let other =
-            |line, problem| FaultSearchError::OtherSearch { path: path.to_owned(), line, problem };
-        let whole = std::str::from_utf8(&text[..end])
-            .map_err(|_| other(1, "found bytes that are not UTF-8".to_owned()))?;
-        let (mut known, mut chained) = (Vec::new(), String::new());
-        for (index, line) in whole.lines().enumerate() {
-            let (checksum, json) = line.split_once(' ').unwrap_or(("", line));
-            if index == 0 {
-                refuse_other(identity, json).map_err(|problem| other(1, problem))?;
-            }
-            chained = chain(&chained, json);
-            if checksum != chained {
-                let problem = "the checksum doesn't fit: a line was changed or left out".to_owned();
-                return Err(other(index + 1, problem));
-            }
-            if index > 0 {
-                let trial = serde_json::from_str(json)
-                    .map_err(|error| other(index + 1, format!("expected a trial: {error}")))?;
-                known.push(trial);
-            }
-        }
+        let mut known = Vec::new();
+        let first = serde_json::to_string(identity).map_err(|error| unwritten(path, error))?;
+        let lines = ChainedLines::open(
+            path,
+            &first,
+            |found| refuse_other(identity, found),
+            |json| {
+                let trial = serde_json::from_str(json);
+                known.push(trial.map_err(|error| format!("expected a trial: {error}"))?);
+                Ok(())
+            },
+        )?;
         known.reverse();
-        file.set_len(end as u64).map_err(failed("cut"))?;
-        file.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
-        let mut journal = Self { path: path.to_owned(), file, known, line: 1, chained };
-        if end == 0 {
-            journal.append(&[identity])?;
-        }
-        Ok(journal)
+        Ok(Self { lines, known, line: 1 })
     }
 
     /// Takes the next trials where the journal has all of them.
@@ -118,7 +77,7 @@ impl SearchJournal {
             let kept = !self.known.is_empty();
             self.known.clear();
             if kept {
-                self.forget_from(self.line)?;
+                self.lines.forget_from(self.line)?;
             }
             return Ok(None);
         }
@@ -127,7 +86,7 @@ impl SearchJournal {
             self.line += 1;
             if trial.candidate != *candidate {
                 return Err(FaultSearchError::OtherSearch {
-                    path: self.path.clone(),
+                    path: self.lines.path().to_owned(),
                     line: self.line,
                     problem: "found another candidate than this search has here".to_owned(),
                 });
@@ -136,41 +95,20 @@ impl SearchJournal {
         Ok(Some(trials))
     }
 
-    /// Cuts off all lines but the first ones.
-    fn forget_from(&mut self, lines: usize) -> Result<(), FaultSearchError> {
-        let failed =
-            |source| FaultSearchError::Journal { action: "cut", path: self.path.clone(), source };
-        let text = std::fs::read(&self.path).map_err(failed)?;
-        let lines: Vec<&[u8]> = text.split_inclusive(|byte| *byte == b'\n').take(lines).collect();
-        let kept = lines.iter().map(|line| line.len()).sum::<usize>() as u64;
-        let checksum = lines.last().and_then(|line| line.get(..CHECKSUM)).unwrap_or_default();
-        self.chained = String::from_utf8_lossy(checksum).into_owned();
-        self.file.set_len(kept).map_err(failed)?;
-        self.file.seek(SeekFrom::Start(kept)).map_err(failed)?;
-        Ok(())
-    }
-
     /// Appends trials; they are on the disk when this returns.
     ///
     /// # Errors
     /// If the operating system refuses.
     pub fn keep(&mut self, trials: &[FaultTrial]) -> Result<(), FaultSearchError> {
         self.line += trials.len();
-        self.append(trials)
+        let texts: Result<Vec<String>, _> = trials.iter().map(serde_json::to_string).collect();
+        let texts = texts.map_err(|error| unwritten(self.lines.path(), error))?;
+        Ok(self.lines.append(texts)?)
     }
+}
 
-    fn append<T: Serialize>(&mut self, values: &[T]) -> Result<(), FaultSearchError> {
-        let failed =
-            |source| FaultSearchError::Journal { action: "write", path: self.path.clone(), source };
-        let mut text = String::new();
-        for value in values {
-            let json = serde_json::to_string(value).map_err(|error| failed(error.into()))?;
-            self.chained = chain(&self.chained, &json);
-            text += &format!("{} {json}\n", self.chained);
-        }
-        self.file.write_all(text.as_bytes()).map_err(failed)?;
-        self.file.sync_data().map_err(failed)
-    }
+fn unwritten(path: &Path, error: serde_json::Error) -> FaultSearchError {
+    FaultSearchError::Journal { action: "write", path: path.to_owned(), source: error.into() }
 }
 
 /// Refuses the first line of a journal of another search, naming the field.

@@ -14,6 +14,7 @@ mod log;
 mod measured;
 mod messages;
 mod plant;
+mod rate_check;
 mod reference_mcap;
 mod reference_text;
 mod replay;

@@ -3,11 +3,13 @@
 //! Damaged frames are skipped, and a gap stays a gap, as on a port. The file has no time of its own: stamps
 //! are those of the readings, and where the protocol has none, readings follow each other.
 
+use crate::rate_check::RateCheck;
 use crate::traffic::traffic;
 use crate::{Epoch, Source, SourceError};
 use octant_base::number::counted;
 use octant_instruments::{
-    AnyDecoder, FramingEvent, Protocol, Reading, ReadingDefect, Sampler, SamplerSettings, Unusable,
+    AnyDecoder, FramingEvent, Protocol, Reading, ReadingDefect, Sampler, SamplerCounters,
+    SamplerSettings, Unusable,
 };
 use octant_plant::Truth;
 use octant_recorder::event::{BenchReadings, BenchRecord};
@@ -20,6 +22,9 @@ use std::path::Path;
 
 /// Number of bytes that are read at a time.
 const READ_BYTES: usize = 1 << 16;
+
+/// More missing samples than one for so many that are there make a file incomplete.
+const MISSING_MAX: u64 = 10;
 
 /// A file of what an instrument sent.
 pub struct LogSource {
@@ -36,6 +41,7 @@ pub struct LogSource {
     /// frame.
     lost_before_end: Option<u64>,
     sampler: Sampler,
+    rate: RateCheck,
 }
 
 impl LogSource {
@@ -63,6 +69,7 @@ impl LogSource {
             rest: 0..0,
             lost_before_end: None,
             sampler: Sampler::new(SamplerSettings { axes: log.axes, period_ns }),
+            rate: RateCheck::new(period_ns),
         })
     }
 
@@ -107,6 +114,7 @@ impl LogSource {
 impl Source for LogSource {
     fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         while let Some(reading) = self.reading()? {
+            self.rate.reading(&reading).map_err(|reason| self.error(reason))?;
             match self.sampler.sample(&reading, None) {
                 Ok(sample) => {
                     (epoch.sample, epoch.aiding) = (sample, None);
@@ -119,6 +127,7 @@ impl Source for LogSource {
         if self.sampler.counters().samples == 0 {
             return Err(self.error(format!("it has no reading: {}", self.said())));
         }
+        self.rate.end().map_err(|reason| self.error(reason))?;
         Ok(false)
     }
 
@@ -131,6 +140,11 @@ impl Source for LogSource {
     }
 
     fn cut_short(&self) -> Option<String> {
+        let SamplerCounters { samples, missing, .. } = *self.sampler.counters();
+        if missing > samples / MISSING_MAX {
+            let missing = counted(missing, "sample", "samples");
+            return Some(format!("{} has gaps: {missing} missing, {samples} there", self.path));
+        }
         let torn = self.decoder.counters().bytes_lost - self.lost_before_end?;
         (torn > 0).then(|| {
             let bytes = counted(torn, "byte", "bytes");
@@ -164,23 +178,10 @@ impl Source for LogSource {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::live::tests::{PERIOD_NS, sample};
     use octant_instruments::{AnyEncoder, Axes, Stamp, StampClock};
-    use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
+    use octant_sample::Sample;
     use octant_scenario::FileName;
-
-    const PERIOD_NS: u64 = 5_000_000;
-
-    fn sample(number: u64) -> Sample {
-        let k = number as i32;
-        Sample {
-            sequence: number,
-            device_time: DeviceTime { ns: number * PERIOD_NS },
-            delta_theta: [17_000 + k, -k, 3],
-            delta_velocity: [k, 40 - k, -52_600_000],
-            gimbal: GimbalAngles { azimuth: 5, roll: -k },
-            status: Status::empty(),
-        }
-    }
 
     /// Frames of a protocol with the samples of these numbers, and bytes between them that are no frame.
     fn bytes(protocol: Protocol, numbers: impl Iterator<Item = u64>) -> Vec<u8> {
@@ -257,12 +258,32 @@ mod tests {
         let sent =
             bytes(Protocol::VectorNav, (1..=40).filter(|number| !(11..=13).contains(number)));
         let torn = &sent[..sent.len() - 35];
-        let (_folder, mut source) = source(torn, Protocol::VectorNav);
-        assert_eq!(all(&mut source).iter().filter(|sample| sample.sequence > 13).count(), 26);
-        let told = source.conclude(None).0.unwrap();
+        let (_folder, mut torn) = source(torn, Protocol::VectorNav);
+        assert_eq!(all(&mut torn).iter().filter(|sample| sample.sequence > 13).count(), 26);
+        let told = torn.conclude(None).0.unwrap();
         assert_eq!((told.readings.samples, told.readings.missing), (36, 3));
-        let said = source.cut_short().unwrap();
+        let said = torn.cut_short().unwrap();
         assert!(said.ends_with("bytes of an incomplete frame"), "{said}");
+        // One in five lost is no complete file.
+        let sent = bytes(Protocol::VectorNav, (1..=200).filter(|number| number % 5 != 3));
+        let (_folder, mut source) = source(&sent, Protocol::VectorNav);
+        assert_eq!(all(&mut source).len(), 160);
+        let said = source.cut_short().unwrap();
+        assert!(said.ends_with("has gaps: 40 samples missing, 160 there"), "{said}");
+    }
+
+    #[test]
+    fn another_rate_than_the_scenarios_is_an_error() {
+        let (_folder, mut source) =
+            source(&bytes(Protocol::VectorNav, 1..=200), Protocol::VectorNav);
+        source.rate = RateCheck::new(2 * PERIOD_NS);
+        let mut epoch = Epoch::default();
+        let mut next = || source.next(&GimbalCommand::default(), &mut epoch);
+        let error =
+            std::iter::from_fn(|| next().err().map(|e| e.to_string()).or(Some(String::new())))
+                .find(|error| !error.is_empty())
+                .unwrap();
+        assert!(error.contains("5.0000 ms apart, 200.0 Hz, expected 10.0000 ms"), "{error}");
     }
 
     #[test]

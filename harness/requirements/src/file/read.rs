@@ -2,7 +2,7 @@
 
 use super::{Checker, SCHEMA};
 use crate::document::{Lines, Problems, Reader, describe, schema};
-use crate::error::{RequirementsError, RequirementsProblem};
+use crate::error::RequirementsError;
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
@@ -12,7 +12,7 @@ use crate::verdict::Comparison;
 use crate::xhtml;
 use std::cell::RefCell;
 use std::collections::HashMap;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
@@ -49,14 +49,7 @@ pub fn read(
     checker: &dyn Checker,
 ) -> Result<Requirements, RequirementsError> {
     let problems = Problems { lines: Lines::new(text), all: RefCell::default() };
-    let table = match DeTable::parse(text) {
-        Ok(table) => table,
-        Err(error) => {
-            let at = problems.lines.place(error.span().map_or(text.len(), |span| span.start));
-            let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-            return Err(RequirementsError::one(file, RequirementsProblem::new(at, "", message)));
-        }
-    };
+    let table = problems.table(text, file)?;
     let root = Reader::new(table.get_ref(), 0, "", &problems);
     // A newer schema may have other keys: unknown ones in it are not reported.
     let found =

@@ -279,7 +279,7 @@ impl<'a> Assembly<'a> {
             Ok(Some((verification, used))) => {
                 let mut used: Vec<usize> =
                     used.iter().filter_map(|field| Some(places.get(field)?.0)).collect();
-                // Of several methods the first counts, and the attribute keeps them all.
+                // The first of several methods counts; the attribute keeps all of them.
                 used.retain(|index| object.attributes[*index].values.len() == 1);
                 used.sort_unstable();
                 for index in used.into_iter().rev() {
@@ -316,28 +316,20 @@ impl<'a> Assembly<'a> {
         self.found.definitions = definitions;
         self.sort_attributes();
         self.notes.extend(changed.into_iter().map(|message| Note::new(0, message)));
-        if !self.informative.is_empty() {
-            let message = format!(
-                "left out, because they are no requirements but information: {}",
-                listed(&self.informative)
-            );
-            self.notes.push(Note::new(0, message));
-        }
-        if !self.headings.is_empty() {
-            let message = format!(
-                "of these headings the title is kept, and the formatting and other attributes are left \
-                 out: {}",
-                listed(&self.headings)
-            );
-            self.notes.push(Note::new(0, message));
-        }
-        if !self.open.is_empty() {
-            let message = format!(
-                "without a measure or a stated verification, and open until somebody says how they are \
-                 verified: {}",
-                listed(&self.open)
-            );
-            self.notes.push(Note::new(0, message));
+        for (words, ids) in [
+            ("left out, because they are no requirements but information", &self.informative),
+            (
+                "of these headings the title is kept, and the formatting and other attributes are left out",
+                &self.headings,
+            ),
+            (
+                "without a measure or a stated verification, and open until somebody says how they are verified",
+                &self.open,
+            ),
+        ] {
+            if !ids.is_empty() {
+                self.notes.push(Note::new(0, format!("{words}: {}", listed(ids))));
+            }
         }
         Imported { requirements: self.found, notes: self.notes, attachments: Vec::new() }
     }

@@ -21,10 +21,10 @@
 
 use super::{Mapping, Named, Names, RequirementPart};
 use crate::document::{Lines, Problems, Reader, describe};
-use crate::error::{RequirementsError, RequirementsProblem};
+use crate::error::RequirementsError;
 use std::cell::RefCell;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// Version of the schema of mapping files.
 pub const SCHEMA: i64 = 1;
@@ -35,14 +35,7 @@ pub const SCHEMA: i64 = 1;
 /// All problems, each with line, column and field.
 pub fn read(text: &str, file: &str) -> Result<Mapping, RequirementsError> {
     let problems = Problems { lines: Lines::new(text), all: RefCell::default() };
-    let table = match DeTable::parse(text) {
-        Ok(table) => table,
-        Err(error) => {
-            let at = problems.lines.place(error.span().map_or(text.len(), |span| span.start));
-            let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-            return Err(RequirementsError::one(file, RequirementsProblem::new(at, "", message)));
-        }
-    };
+    let table = problems.table(text, file)?;
     let root = Reader::new(table.get_ref(), 0, "", &problems);
     let mut found = Mapping { file: file.to_owned(), ..Mapping::default() };
     // A newer schema may have other keys: unknown ones in it are not reported.

@@ -125,6 +125,11 @@ keys! {
     }
 }
 
+const AXES_DOC: &str =
+    "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+const GYRO_COUNT_DOC: &str = "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
+const ACCEL_COUNT_DOC: &str = "Velocity of one accelerometer count, likewise.";
+
 keys! {
     /// `[source.live]`.
     pub(crate) struct SourceLiveKeys {
@@ -135,11 +140,11 @@ keys! {
         mapping: At<Option<String>> = text(), absent("needed by protocol = \"dbc\""),
             "Which signals of the database are which channels, a TOML file. Relative to the scenario.";
         axes: At<String> = text(), "x y z",
-            "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+            AXES_DOC;
         gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),
-            "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
+            GYRO_COUNT_DOC;
         accel_count: At<Option<f64>> = si(&[UnitDimension::VELOCITY], Bounds::Positive), absent("by the kind of unit"),
-            "Velocity of one accelerometer count, likewise.";
+            ACCEL_COUNT_DOC;
         silence: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "5 s",
             "How long a reading is waited for; then the instrument is gone.";
     }
@@ -151,11 +156,11 @@ keys! {
         protocol: At<String> = Of::<String>::kind(Kind::Choice(&crate::choices::LINES)), required,
             "What the instrument spoke.";
         axes: At<String> = text(), "x y z",
-            "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+            AXES_DOC;
         gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),
-            "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
+            GYRO_COUNT_DOC;
         accel_count: At<Option<f64>> = si(&[UnitDimension::VELOCITY], Bounds::Positive), absent("by the kind of unit"),
-            "Velocity of one accelerometer count, likewise.";
+            ACCEL_COUNT_DOC;
     }
 }
 

@@ -18,6 +18,7 @@ use self::clock::Clock;
 use self::feed::Feed;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
+use crate::rate_check::RateCheck;
 use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
 use octant_recorder::event::{BenchReadings, BenchRecord};
@@ -35,6 +36,7 @@ pub struct LiveSource {
     feed: Feed,
     instrument: Instrument,
     sampler: Sampler,
+    rate: RateCheck,
     clock: Clock,
     table: Option<Table>,
     total: u64,
@@ -87,6 +89,7 @@ impl LiveSource {
             feed,
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
+            rate: RateCheck::new(sample_period_ns),
             clock: Clock::new(),
             table: None,
             total: samples.unwrap_or(u64::MAX),
@@ -138,6 +141,7 @@ impl Source for LiveSource {
         let until = Instant::now() + Duration::from_secs_f64(self.instrument.silence_s);
         loop {
             while let Some((mut reading, came)) = self.feed.reading() {
+                self.rate.reading(&reading).map_err(|reason| self.gone(reason))?;
                 let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
                 let when = self.clock.when(stamp_ns, came);
                 let has_own =
@@ -212,17 +216,18 @@ impl Source for LiveSource {
         (Some(Box::new(bench)), ended)
     }
 }
+
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use octant_instruments::{AnyEncoder, Axes, MeasuredTriad, Protocol, Reading, ReadingKind};
     use octant_instruments::{Stamp, StampClock, novatel};
     use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
     use std::net::UdpSocket;
 
-    const PERIOD_NS: u64 = 5_000_000;
+    pub(crate) const PERIOD_NS: u64 = 5_000_000;
 
-    fn sample(number: u64) -> Sample {
+    pub(crate) fn sample(number: u64) -> Sample {
         let k = number as i32;
         Sample {
             sequence: number,
