@@ -32,7 +32,7 @@ impl Shown {
 
 /// Returns the independent draw of each case, numbered from 0, from its seed and its stream.
 #[must_use]
-pub fn draws<'a, H: Ord>(cases: impl IntoIterator<Item = (&'a Case, Option<H>)>) -> Vec<usize> {
+pub fn draws<'a, H: Ord>(cases: impl IntoIterator<Item = (&'a Case, Option<H>)>) -> Vec<u32> {
     cluster::draws(cases.into_iter().map(|(case, stream)| (case.seed, stream)))
 }
 

@@ -169,7 +169,7 @@ pub fn of_results(
     let mine = || plan.cases.iter().take(end).enumerate().filter(|(index, _)| shard.has(*index));
     let looked = || mine().map(|(_, case)| case).zip(tally.streams.iter().map(Option::as_ref));
     let draws = independence::draws(looked());
-    status.draws = draws.iter().max().map_or(0, |last| last + 1);
+    status.draws = draws.iter().max().map_or(0, |last| *last as usize + 1);
     let idle = independence::idle(plan, looked());
     (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
     status.requirements = tally.requirements(&draws);
@@ -205,9 +205,9 @@ impl RequirementTally {
     }
 
     /// Returns the draw of each case that checks it, and whether it passed.
-    fn rows(&self, draws: &[usize]) -> impl Iterator<Item = (usize, Option<bool>)> {
+    fn rows(&self, draws: &[u32]) -> impl Iterator<Item = (usize, Option<bool>)> {
         let shown = self.shown.iter().map(|place| SHOWN[usize::from(*place)]);
-        draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw, shown?)))
+        draws.iter().zip(shown).filter_map(|(draw, shown)| Some((*draw as usize, shown?)))
     }
 }
 
@@ -269,7 +269,7 @@ impl<'p> StatusTally<'p> {
     }
 
     /// Judges each requirement by the draws of the cases.
-    fn requirements(self, draws: &[usize]) -> BTreeMap<String, RequirementStatus> {
+    fn requirements(self, draws: &[u32]) -> BTreeMap<String, RequirementStatus> {
         let of = |(id, tally): (&str, RequirementTally)| {
             let (ensemble, counts) = (self.plan.ensemble(id), tally.counts);
             let draws = DrawCounts::of(tally.rows(draws));

@@ -104,7 +104,7 @@ pub fn trace_by(
     }
     let rows = plan.cases.iter().zip(streams.iter().map(Option::as_ref));
     for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
-        case.draw = draw;
+        case.draw = draw as usize;
     }
     Ok(CampaignTrace::new(requirements, &cases))
 }
@@ -115,14 +115,14 @@ pub(crate) fn first_by(
     plan: &Plan,
     requirements: &Requirements,
     results: &CampaignResults,
-    draws: &[usize],
+    draws: &[u32],
     links_max: usize,
 ) -> Result<CampaignTrace, ResultError> {
     let requirements = &with_those_of_scenarios(plan, requirements);
     let mut growing = GrowingTrace::new(requirements, links_max);
     for (case, draw) in plan.cases.iter().zip(draws) {
         let (case, _) = traced_case(plan, requirements, results, case)?;
-        growing.add(&TracedCase { draw: *draw, ..case });
+        growing.add(&TracedCase { draw: *draw as usize, ..case });
     }
     Ok(growing.trace())
 }

@@ -13,46 +13,47 @@ use std::hash::Hash;
 /// Draw of each row, as numbers from 0 in the order of the first rows. Rows with the same seed belong
 /// to one draw, and so do rows with the same stream, also over several steps.
 #[must_use]
-pub fn draws<S: Ord, H: Ord>(rows: impl IntoIterator<Item = (S, Option<H>)>) -> Vec<usize> {
+pub fn draws<S: Ord, H: Ord>(rows: impl IntoIterator<Item = (S, Option<H>)>) -> Vec<u32> {
     let (seeds, streams): (Vec<S>, Vec<Option<H>>) = rows.into_iter().unzip();
-    let mut order: Vec<usize> = (0..seeds.len()).collect();
+    let mut order: Vec<u32> = (0..).take(seeds.len()).collect();
+    let (seeds, streams) = (|row: u32| &seeds[row as usize], |row: u32| &streams[row as usize]);
     // Each row points to a row of its draw that isn't after it; the first row of a draw points to
     // itself.
     let mut first = order.clone();
     // Sorted lists: maps of millions of rows would take several times the memory.
-    order.sort_unstable_by_key(|row| &seeds[*row]);
-    for same in order.chunk_by(|a, b| seeds[*a] == seeds[*b]) {
+    order.sort_unstable_by_key(|row| seeds(*row));
+    for same in order.chunk_by(|a, b| seeds(*a) == seeds(*b)) {
         join(&mut first, same);
     }
-    order.retain(|row| streams[*row].is_some());
-    order.sort_unstable_by_key(|row| &streams[*row]);
-    for same in order.chunk_by(|a, b| streams[*a] == streams[*b]) {
+    order.retain(|row| streams(*row).is_some());
+    order.sort_unstable_by_key(|row| streams(*row));
+    for same in order.chunk_by(|a, b| streams(*a) == streams(*b)) {
         join(&mut first, same);
     }
     let mut next = 0;
     let mut numbers = order;
     numbers.clear();
-    for row in 0..first.len() {
+    for row in (0..).take(first.len()) {
         let root = root(&mut first, row);
-        numbers.push(if root == row { next } else { numbers[root] });
-        next += usize::from(root == row);
+        numbers.push(if root == row { next } else { numbers[root as usize] });
+        next += u32::from(root == row);
     }
     numbers
 }
 
-fn root(first: &mut [usize], mut row: usize) -> usize {
-    while first[row] != row {
-        first[row] = first[first[row]];
-        row = first[row];
+fn root(first: &mut [u32], mut row: u32) -> u32 {
+    while first[row as usize] != row {
+        first[row as usize] = first[first[row as usize] as usize];
+        row = first[row as usize];
     }
     row
 }
 
 /// Makes rows one draw.
-fn join(first: &mut [usize], rows: &[usize]) {
+fn join(first: &mut [u32], rows: &[u32]) {
     for pair in rows.windows(2) {
         let (a, b) = (root(first, pair[0]), root(first, pair[1]));
-        first[a.max(b)] = a.min(b);
+        first[a.max(b) as usize] = a.min(b);
     }
 }
 

@@ -135,7 +135,9 @@ fn design(
 
 fn counted(rows: &[(u64, bool)]) -> DrawCounts {
     let of = draws(rows.iter().map(|(seed, _)| (*seed, None::<u64>)));
-    DrawCounts::of(of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw, Some(*passed))))
+    DrawCounts::of(
+        of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw as usize, Some(*passed))),
+    )
 }
 
 /// Probability that all rows of an instrument pass, by quadrature over their shared part.

@@ -7,8 +7,8 @@ use super::curves::StoredCurve;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-/// Number of curves of a block.
-const BLOCK: usize = 1024;
+/// Number of curves of a block: a curve of a thousand points takes 16 kB of it, twice while it is written.
+const BLOCK: usize = 256;
 
 /// Curves in blocks. A block has latitude before longitude, and of each the values of all of its curves at the first
 /// time, then at the second.

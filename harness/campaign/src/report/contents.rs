@@ -124,7 +124,7 @@ pub struct CampaignReport<'a> {
     /// Times at which the first and the last result were stored.
     pub run_between: [Option<SystemTime>; 2],
     /// Independent draw of each case.
-    draws: Vec<usize>,
+    draws: Vec<u32>,
 }
 
 /// Checks that the rows and their drifts could be read.
@@ -171,6 +171,10 @@ impl<'a> CampaignReport<'a> {
         let trace = first_by(plan, &about, &results, &draws, ROWS_MAX)?;
         let run = (0..rows.len()).filter(|place| rows.has_run(*place)).count();
         let (tables, mut wrong) = tables::look(plan, folder, &results, run)?;
+        let run_between = run_between(&rows, &results);
+        let prediction = predicted(plan, &results);
+        // The figures need the rows alone, and most of the memory.
+        drop(results);
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
             wrong.push(reason);
             None
@@ -204,7 +208,6 @@ impl<'a> CampaignReport<'a> {
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
         };
         check(&rows)?;
-        let run_between = run_between(&rows, &results);
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let name = absolute.file_name().map_or(".".into(), |name| name.to_string_lossy());
         let name = name.into_owned();
@@ -213,7 +216,7 @@ impl<'a> CampaignReport<'a> {
             name,
             status,
             statistics,
-            prediction: predicted(plan, &results),
+            prediction,
             rows,
             combinations,
             dispositions,

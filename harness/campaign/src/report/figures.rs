@@ -184,10 +184,10 @@ struct Sample<'a> {
 
 impl<'a> Sample<'a> {
     /// Selects the cases at these places, the first of each draw.
-    fn of_draws(rows: &'a ReportRows<'_>, places: &[usize], draws: &[usize]) -> Self {
-        let mut seen = vec![false; draws.iter().max().map_or(0, |last| last + 1)];
+    fn of_draws(rows: &'a ReportRows<'_>, places: &[usize], draws: &[u32]) -> Self {
+        let mut seen = vec![false; draws.iter().max().map_or(0, |last| *last as usize + 1)];
         let mut is_new = |place: usize| {
-            let seen = draws.get(place).and_then(|draw| seen.get_mut(*draw));
+            let seen = draws.get(place).and_then(|draw| seen.get_mut(*draw as usize));
             seen.is_none_or(|seen| !std::mem::replace(seen, true))
         };
         Self::of(rows, places.iter().copied().filter(|p| rows.has_run(*p) && is_new(*p)))
@@ -246,7 +246,7 @@ impl CombinationFigures {
         grid: &[String],
         combination: &Combination,
         rows: &ReportRows<'_>,
-        draws: &[usize],
+        draws: &[u32],
     ) -> Self {
         let sample = Sample::of_draws(rows, &combination.cases, draws);
         let column = |f: fn(&CaseDrift) -> f64| sample.column(f);
@@ -287,7 +287,7 @@ impl CombinationFigures {
 pub(super) fn envelope_in(
     combination: &Combination,
     rows: &ReportRows<'_>,
-    draws: &[usize],
+    draws: &[u32],
     factors: impl Fn(usize) -> [f64; 2],
 ) -> Option<ShownEnvelope> {
     let sample = Sample::of_draws(rows, &combination.cases, draws);

@@ -138,7 +138,7 @@ pub(super) fn of(
     about: &Requirements,
     combinations: &[Combination],
     rows: &ReportRows<'_>,
-    draws: &[usize],
+    draws: &[u32],
 ) -> Vec<RequirementFigures> {
     status
         .requirements
@@ -154,7 +154,7 @@ fn one(
     about: &Requirements,
     combinations: &[Combination],
     rows: &ReportRows<'_>,
-    draws: &[usize],
+    draws: &[u32],
 ) -> RequirementFigures {
     let results = || {
         rows.iter().filter_map(|row| {
@@ -174,7 +174,7 @@ fn one(
         }
         (None, None) => (None, None, None),
     };
-    let all = Counted::of(plan, id, draws.iter().copied().zip(rows.iter()));
+    let all = Counted::of(plan, id, draws.iter().map(|draw| *draw as usize).zip(rows.iter()));
     let counted = all.draws();
     let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
     let nearest = results()
@@ -209,7 +209,8 @@ fn one(
         combinations: (combinations.iter())
             .map(|combination| {
                 let cases = combination.cases.iter().copied();
-                let draws = cases.clone().filter_map(|case| draws.get(case).copied());
+                let draws =
+                    cases.clone().filter_map(|case| draws.get(case).map(|draw| *draw as usize));
                 let mine = Counted::of(plan, id, draws.zip(rows.at(cases)));
                 let draws = mine.draws();
                 CombinationChecks {

@@ -95,7 +95,7 @@ pub fn read<'a>(
 }
 
 /// Returns the independent draw of each row.
-pub(super) fn draws(rows: &ReportRows<'_>) -> Vec<usize> {
+pub(super) fn draws(rows: &ReportRows<'_>) -> Vec<u32> {
     let stream = |row: ReportRow<'_>| -> Option<StreamKey> {
         Some(row.outcome?.stream_hash?.as_str().into())
     };

@@ -182,7 +182,8 @@ pub(super) fn lengths(fixed: &[u8; FIXED]) -> Option<Lengths> {
 /// Reads a head from its fixed part and the rest; `None` if its checksum is wrong.
 pub(super) fn head(fixed: &[u8; FIXED], lengths: Lengths, rest: &[u8]) -> Option<RecordHead> {
     let (named, check) = rest.split_at_checked(lengths.case + lengths.facts)?;
-    if checksum(&[fixed, named]) != check {
+    let found = checksum(&[fixed, named]);
+    if found != check {
         return None;
     }
     let (case, facts) = named.split_at(lengths.case);
@@ -198,7 +199,7 @@ pub(super) fn head(fixed: &[u8; FIXED], lengths: Lengths, rest: &[u8]) -> Option
         raw_bytes: number(fixed, 16),
         time_ns: u64::from_le_bytes(time_ns),
         blake3,
-        check: checksum(&[fixed, named]),
+        check: found,
     })
 }
 

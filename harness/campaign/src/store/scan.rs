@@ -181,14 +181,15 @@ struct Source<'a> {
     file: &'a File,
     /// Length of the file.
     bytes: u64,
-    /// Bytes that were read last, and where they begin.
+    /// Bytes that were read last, the first `filled` of it, and where they begin.
     window: Vec<u8>,
+    filled: usize,
     start: u64,
 }
 
 impl Source<'_> {
     fn of(file: &File, bytes: u64) -> Source<'_> {
-        Source { file, bytes, window: Vec::new(), start: 0 }
+        Source { file, bytes, window: Vec::new(), filled: 0, start: 0 }
     }
 
     /// Reads bytes at a place. Small reads are served from a window, which holds the end of a record with
@@ -198,17 +199,20 @@ impl Source<'_> {
             return read_at(self.file, at, buffer);
         }
         let end = at + buffer.len() as u64;
-        if at < self.start || end > self.start + self.window.len() as u64 {
+        if at < self.start || end > self.start + self.filled as u64 {
             if end > self.bytes {
                 return Err(io::ErrorKind::UnexpectedEof.into());
             }
-            let length = (self.bytes - at).min(WINDOW as u64);
-            self.window.resize(usize::try_from(length).unwrap_or(WINDOW), 0);
-            self.start = at;
-            if let Err(error) = read_at(self.file, at, &mut self.window) {
-                self.window.clear();
-                return Err(error);
+            // Zeros from the allocator, and once: filling the window anew for each of a million records takes
+            // longer than reading them.
+            if self.window.is_empty() {
+                self.window = vec![0; WINDOW];
             }
+            let length = (self.bytes - at).min(WINDOW as u64);
+            let length = usize::try_from(length).unwrap_or(WINDOW);
+            self.filled = 0;
+            read_at(self.file, at, &mut self.window[..length])?;
+            (self.filled, self.start) = (length, at);
         }
         let from = usize::try_from(at - self.start).unwrap_or(0);
         buffer.copy_from_slice(&self.window[from..from + buffer.len()]);
