@@ -45,6 +45,7 @@ fn estimators(n: &mut Numbers) -> Vec<Estimator> {
             aiding_period_ns: 123_456_789_012_345_678,
             sway: if i == 0 { SwayNoise::White } else { SwayNoise::Coloured },
             refuse_above_mean_nis: n.next(),
+            further: Default::default(),
         }));
     }
     for (gravity_mps2, gyro, intervals) in [

@@ -63,6 +63,7 @@ impl InstrumentCase {
                 latitude_rad: LATITUDE_RAD,
                 longitude_rad: 2.0,
                 height_m: 0.0,
+                gravity: plant::GravityDisturbance::default(),
             },
             motion: plant::Motion::Static(plant::CaseAttitude::default()),
             turntable: plant::TurntableConfig {
@@ -123,6 +124,7 @@ impl InstrumentCase {
                     aiding_period_ns: 1_000_000_000,
                     sway: SwayNoise::White,
                     refuse_above_mean_nis: 9.0,
+                    further: Default::default(),
                 }),
             }),
             navigation: (self.navigation_h > 0.0).then(|| NavigationPlan {

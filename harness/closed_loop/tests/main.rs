@@ -13,4 +13,5 @@ mod core_spikes;
 mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
+mod further_states;
 mod state_core;

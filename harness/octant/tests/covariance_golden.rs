@@ -41,6 +41,7 @@ fn config(positions: &[(f64, f64, f64)], hours: f64, g_dph_per_g: f64) -> CoreCo
                 aiding_period_ns: 1_000_000_000,
                 sway: SwayNoise::White,
                 refuse_above_mean_nis: 9.0,
+                further: Default::default(),
             }),
         }),
         navigation: None,

@@ -49,6 +49,7 @@ fn config(calibration: bool) -> CoreConfig {
                 aiding_period_ns: 1_000_000_000,
                 sway: SwayNoise::White,
                 refuse_above_mean_nis: 9.0,
+                further: Default::default(),
             }),
         }),
         navigation: Some(NavigationPlan {

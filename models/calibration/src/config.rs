@@ -1,5 +1,11 @@
 //! Configuration of the core, given before the first sample. All angles in rad, all quantities SI.
 
+mod further;
+#[cfg(feature = "state")]
+mod stored;
+
+pub use further::{Further, FurtherUse};
+
 use crate::sequence::Sequence;
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_sample::Parameters;
@@ -91,6 +97,7 @@ pub struct Calibration {
 /// Method of estimating the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "state", serde(from = "stored::Estimator", into = "stored::Estimator"))]
 pub enum Estimator {
     /// 39-state error-state Kalman filter, closed loop.
     Kalman(Kalman),
@@ -113,7 +120,6 @@ pub enum ErrorModel {
 
 /// Tuning of the Kalman filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Kalman {
     /// Form of the error model.
     pub error_model: ErrorModel,
@@ -130,6 +136,8 @@ pub struct Kalman {
     pub sway: SwayNoise,
     /// Mean NIS (three axes) above which the calibration is refused.
     pub refuse_above_mean_nis: f64,
+    /// Errors beside the parameters that the filter takes into account.
+    pub further: Further,
 }
 
 /// What the sway of the base is to a filter whose reference is fixed to the dock.

@@ -262,7 +262,7 @@ impl Covariance {
     }
 
     /// Row `s` and 1/√(P_ss + r).
-    fn gain_row(&self, s: usize, r: f64) -> (CovarianceRow, f64) {
+    pub(crate) fn gain_row(&self, s: usize, r: f64) -> (CovarianceRow, f64) {
         let row = self.p[s];
         (row, 1.0 / libm::sqrt(row[s] + r))
     }

@@ -17,7 +17,7 @@
 //! δM ω + δG f and ∇ = δb_a + δM_a f are the errors that remain after compensation.
 
 use crate::config::ErrorModel;
-use crate::covariance::{CovarianceRow, DR, DV, PARAMETERS, PHI, Transition};
+use crate::covariance::{CovarianceRow, DR, DV, MOVING, PARAMETERS, PHI, Transition};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 
@@ -82,110 +82,121 @@ impl Transition {
         earth: &Ellipsoid,
         input: [CovarianceRow; 6],
     ) {
-        match model {
-            ErrorModel::Phi => self.advance_by::<true>(interval, earth, input),
-            ErrorModel::Psi => self.advance_by::<false>(interval, earth, input),
-        }
+        advance_columns(&mut self.rows, model, interval, earth, input, ACCELEROMETERS);
     }
+}
 
-    fn advance_by<const PHI_ANGLE: bool>(
-        &mut self,
-        interval: &MotionInterval,
-        earth: &Ellipsoid,
-        mut input: [CovarianceRow; 6],
-    ) {
-        let h = interval.interval_s;
-        let v = &interval.velocity_mps;
-        let (rm, rn) = (earth.meridian_radius_m, earth.transverse_radius_m);
-        let tan_latitude = earth.sin_latitude / earth.cos_latitude;
-        let w_ie = earth.earth_rate() * h;
-        let w_en = earth.transport_rate(v) * h;
-        let w_in = w_ie + w_en;
-        let w_coriolis = w_ie + w_in;
-        let f = &interval.delta_velocity_n;
+/// Advances columns of a transition's moving rows over an interval, as [`Transition::advance`]:
+/// `input` is their contribution to φ and δv in it. Those of `accelerometers` drive the velocity.
+#[inline(always)]
+pub(crate) fn advance_columns<const N: usize>(
+    rows: &mut [[f64; N]; MOVING],
+    model: ErrorModel,
+    interval: &MotionInterval,
+    earth: &Ellipsoid,
+    input: [[f64; N]; 6],
+    accelerometers: core::ops::Range<usize>,
+) {
+    match model {
+        ErrorModel::Phi => advance_by::<true, N>(rows, interval, earth, input, accelerometers),
+        ErrorModel::Psi => advance_by::<false, N>(rows, interval, earth, input, accelerometers),
+    }
+}
 
-        // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; zero in psi-angle form.
-        let on = if PHI_ANGLE { 1.0 } else { 0.0 };
-        let ie_x_rn = on * w_ie.z / rm;
-        let ie_z_rn = -on * w_ie.x / rm;
-        let en_x_ve = on * h / rn;
-        let en_x_rd = on * h * v.y / (rn * rn);
-        let en_y_vn = -on * h / rm;
-        let en_y_rd = -on * h * v.x / (rm * rm);
-        let en_z_ve = -on * h * tan_latitude / rn;
-        let en_z_rn = -on * h * v.y / (rn * rm * earth.cos_latitude * earth.cos_latitude);
-        let en_z_rd = -on * h * v.y * tan_latitude / (rn * rn);
-        let g = earth.gravity_mps2 * h;
-        let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
-        let g_d = 2.0 * g / rm;
+fn advance_by<const PHI_ANGLE: bool, const N: usize>(
+    rows: &mut [[f64; N]; MOVING],
+    interval: &MotionInterval,
+    earth: &Ellipsoid,
+    mut input: [[f64; N]; 6],
+    accelerometers: core::ops::Range<usize>,
+) {
+    let h = interval.interval_s;
+    let v = &interval.velocity_mps;
+    let (rm, rn) = (earth.meridian_radius_m, earth.transverse_radius_m);
+    let tan_latitude = earth.sin_latitude / earth.cos_latitude;
+    let w_ie = earth.earth_rate() * h;
+    let w_en = earth.transport_rate(v) * h;
+    let w_in = w_ie + w_en;
+    let w_coriolis = w_ie + w_in;
+    let f = &interval.delta_velocity_n;
 
-        // Errors at the middle of the interval close the Schuler loop: with those at its start an
-        // oscillation would grow by (ω h)²/4 in each. Of the velocity there the parts of tilt and
-        // accelerometers count, which a reference lets cancel; in psi-angle form of the position
-        // there that of the velocity.
-        let half = 0.5 * h;
-        let half_f = f * 0.5;
-        for j in ACCELEROMETERS {
-            let (vn, ve) = (0.5 * input[3][j], 0.5 * input[4][j]);
-            input[0][j] += en_x_ve * ve;
-            input[1][j] += en_y_vn * vn;
-            input[2][j] += en_z_ve * ve;
+    // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; zero in psi-angle form.
+    let on = if PHI_ANGLE { 1.0 } else { 0.0 };
+    let ie_x_rn = on * w_ie.z / rm;
+    let ie_z_rn = -on * w_ie.x / rm;
+    let en_x_ve = on * h / rn;
+    let en_x_rd = on * h * v.y / (rn * rn);
+    let en_y_vn = -on * h / rm;
+    let en_y_rd = -on * h * v.x / (rm * rm);
+    let en_z_ve = -on * h * tan_latitude / rn;
+    let en_z_rn = -on * h * v.y / (rn * rm * earth.cos_latitude * earth.cos_latitude);
+    let en_z_rd = -on * h * v.y * tan_latitude / (rn * rn);
+    let g = earth.gravity_mps2 * h;
+    let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
+    let g_d = 2.0 * g / rm;
+
+    // Errors at the middle of the interval close the Schuler loop: with those at its start an
+    // oscillation would grow by (ω h)²/4 in each. Of the velocity there the parts of tilt and
+    // accelerometers count, which a reference lets cancel; in psi-angle form of the position
+    // there that of the velocity.
+    let half = 0.5 * h;
+    let half_f = f * 0.5;
+    for j in accelerometers {
+        let (vn, ve) = (0.5 * input[3][j], 0.5 * input[4][j]);
+        input[0][j] += en_x_ve * ve;
+        input[1][j] += en_y_vn * vn;
+        input[2][j] += en_z_ve * ve;
+    }
+    for j in 0..N {
+        let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
+        let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
+        let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
+
+        let (vn, ve) = (
+            dv[0] + (half_f.y * phi[2] - half_f.z * phi[1]),
+            dv[1] + (half_f.z * phi[0] - half_f.x * phi[2]),
+        );
+        let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
+        let en = [
+            en_x_ve * ve + en_x_rd * dr[2],
+            en_y_vn * vn + en_y_rd * dr[2],
+            en_z_ve * ve + en_z_rn * dr[0] + en_z_rd * dr[2],
+        ];
+        let phi_new = [
+            phi[0] - (w_in.y * phi[2] - w_in.z * phi[1]) + ie[0] + en[0] + input[0][j],
+            phi[1] - (w_in.z * phi[0] - w_in.x * phi[2]) + en[1] + input[1][j],
+            phi[2] - (w_in.x * phi[1] - w_in.y * phi[0]) + ie[2] + en[2] + input[2][j],
+        ];
+        let m =
+            [0.5 * (phi[0] + phi_new[0]), 0.5 * (phi[1] + phi_new[1]), 0.5 * (phi[2] + phi_new[2])];
+        // a = (2δω_ie + δω_en) h; −a × v = v × a.
+        let a = [2.0 * ie[0] + en[0], en[1], 2.0 * ie[2] + en[2]];
+        let c = &w_coriolis;
+        let mut dv_new = [
+            dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
+                + (v.y * a[2] - v.z * a[1])
+                + input[3][j],
+            dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
+                + (v.z * a[0] - v.x * a[2])
+                + input[4][j],
+            dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
+                + (v.x * a[1] - v.y * a[0])
+                + g_d * dr[2]
+                + input[5][j],
+        ];
+        if !PHI_ANGLE {
+            dv_new[0] += g_n * (dr[0] + half * dv[0]);
+            dv_new[1] += g_e * (dr[1] + half * dv[1]);
         }
-        let rows = &mut self.rows;
-        for j in 0..rows[0].len() {
-            let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
-            let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
-            let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
-
-            let (vn, ve) = (
-                dv[0] + (half_f.y * phi[2] - half_f.z * phi[1]),
-                dv[1] + (half_f.z * phi[0] - half_f.x * phi[2]),
-            );
-            let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
-            let en = [
-                en_x_ve * ve + en_x_rd * dr[2],
-                en_y_vn * vn + en_y_rd * dr[2],
-                en_z_ve * ve + en_z_rn * dr[0] + en_z_rd * dr[2],
-            ];
-            let phi_new = [
-                phi[0] - (w_in.y * phi[2] - w_in.z * phi[1]) + ie[0] + en[0] + input[0][j],
-                phi[1] - (w_in.z * phi[0] - w_in.x * phi[2]) + en[1] + input[1][j],
-                phi[2] - (w_in.x * phi[1] - w_in.y * phi[0]) + ie[2] + en[2] + input[2][j],
-            ];
-            let m = [
-                0.5 * (phi[0] + phi_new[0]),
-                0.5 * (phi[1] + phi_new[1]),
-                0.5 * (phi[2] + phi_new[2]),
-            ];
-            // a = (2δω_ie + δω_en) h; −a × v = v × a.
-            let a = [2.0 * ie[0] + en[0], en[1], 2.0 * ie[2] + en[2]];
-            let c = &w_coriolis;
-            let mut dv_new = [
-                dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
-                    + (v.y * a[2] - v.z * a[1])
-                    + input[3][j],
-                dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
-                    + (v.z * a[0] - v.x * a[2])
-                    + input[4][j],
-                dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
-                    + (v.x * a[1] - v.y * a[0])
-                    + g_d * dr[2]
-                    + input[5][j],
-            ];
-            if !PHI_ANGLE {
-                dv_new[0] += g_n * (dr[0] + half * dv[0]);
-                dv_new[1] += g_e * (dr[1] + half * dv[1]);
-            }
-            let dr_new = [
-                dr[0] + half * (dv[0] + dv_new[0]) - (w_en.y * dr[2] - w_en.z * dr[1]),
-                dr[1] + half * (dv[1] + dv_new[1]) - (w_en.z * dr[0] - w_en.x * dr[2]),
-                dr[2] + half * (dv[2] + dv_new[2]) - (w_en.x * dr[1] - w_en.y * dr[0]),
-            ];
-            for axis in 0..3 {
-                rows[PHI + axis][j] = phi_new[axis];
-                rows[DV + axis][j] = dv_new[axis];
-                rows[DR + axis][j] = dr_new[axis];
-            }
+        let dr_new = [
+            dr[0] + half * (dv[0] + dv_new[0]) - (w_en.y * dr[2] - w_en.z * dr[1]),
+            dr[1] + half * (dv[1] + dv_new[1]) - (w_en.z * dr[0] - w_en.x * dr[2]),
+            dr[2] + half * (dv[2] + dv_new[2]) - (w_en.x * dr[1] - w_en.y * dr[0]),
+        ];
+        for axis in 0..3 {
+            rows[PHI + axis][j] = phi_new[axis];
+            rows[DV + axis][j] = dv_new[axis];
+            rows[DR + axis][j] = dr_new[axis];
         }
     }
 }

@@ -5,6 +5,7 @@
 //! between measurements.
 
 mod checkpoint;
+mod further;
 mod measurement;
 mod noise;
 mod oscillator;
@@ -14,6 +15,7 @@ mod sub_step;
 mod sway;
 
 pub use measurement::MeasurementResult;
+use noise::add_bias_walk;
 pub use noise::add_process_noise;
 pub use sub_step::{SensorIntegrals, sub_step_samples};
 
@@ -21,9 +23,11 @@ use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Screening, Site
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
 use crate::drift::DriftTest;
 use crate::error_model::MotionInterval;
+use crate::further::FurtherEstimates;
 use crate::screen::ACCELEROMETERS;
 use crate::strapdown::Strapdown;
 use checkpoint::Checkpoint;
+use further::FurtherStates;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
@@ -65,6 +69,8 @@ pub struct CalibrationFilter {
     gate: Option<Gate>,
     gyro_variance_per_s: f64,
     accel_variance_per_s: f64,
+    /// Growth of the gyro biases' variance by their random walk, (rad/s)²/s; 0: none.
+    walk_variance_per_s: f64,
     covariance: Covariance,
     transition: Transition,
     sub_step: SubStep,
@@ -82,6 +88,8 @@ pub struct CalibrationFilter {
     drift: Option<DriftTest>,
     /// States of the base's sway; `None`: none, or white noise of the reference.
     sway: Option<SwayStates>,
+    /// States beside the 39, if any group of them is on.
+    further: Option<FurtherStates>,
     /// The older and the newer checkpoint.
     checkpoints: Option<[Checkpoint; 2]>,
 }
@@ -91,7 +99,8 @@ octant_state::state! {
     CalibrationFilter {
         values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, keeps_attitude, tally;
         parts: covariance, transition, sub_step, drift, sway, checkpoints;
-        kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s;
+        kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s,
+            walk_variance_per_s, further;
         check: Self::check_counts
     }
 }
@@ -138,8 +147,10 @@ impl CalibrationFilter {
         let covariance = Covariance::from_sigmas(&prior_sigmas(kalman));
         // A filter without a group of parameters attributes them to the others, which then aren't
         // constant: by design, and not by a fault of the sensors.
+        // The same holds for gyro biases that walk.
+        let walk = kalman.further.gyro_rate_random_walk;
         let drift = match screening.drift_sigmas {
-            Some(limit) if kalman.estimated == [true; 7] => {
+            Some(limit) if kalman.estimated == [true; 7] && walk == 0.0 => {
                 Some(DriftTest::new(limit, &covariance))
             }
             _ => None,
@@ -153,6 +164,7 @@ impl CalibrationFilter {
             gate: screening.gate,
             gyro_variance_per_s: noise.angle_random_walk * noise.angle_random_walk,
             accel_variance_per_s: noise.velocity_random_walk * noise.velocity_random_walk,
+            walk_variance_per_s: walk * walk,
             covariance,
             transition: Transition::identity(),
             sub_step: SubStep::new(sub_step_samples(sample_period_ns, kalman.aiding_period_ns)),
@@ -169,6 +181,7 @@ impl CalibrationFilter {
                 SwayNoise::White => None,
                 SwayNoise::Coloured => Some(SwayStates::new(kalman.aiding_period_ns as f64 * 1e-9)),
             },
+            further: FurtherStates::new(kalman, screening.checkpoints),
             checkpoints: screening.checkpoints.then(|| [start.clone(), start]),
         }
     }
@@ -182,6 +195,9 @@ impl CalibrationFilter {
         dv: &Vector3<f64>,
         interval_s: f64,
     ) {
+        if let Some(further) = &mut self.further {
+            further.accumulate(dtheta, dv, interval_s);
+        }
         let step = &mut self.sub_step;
         step.delta_theta += dtheta;
         step.delta_velocity += dv;
@@ -237,17 +253,19 @@ impl CalibrationFilter {
             delta_velocity_n: step.delta_velocity_n,
             velocity_mps: *strapdown.velocity_mps(),
         };
+        let used = |channel: u8| step.bridged & (1 << channel) == 0;
+        let gyros_used = [used(0), used(1), used(2)];
+        let accelerometers_used = step.bridged & ACCELEROMETERS == 0;
+        let earth = strapdown.earth();
         if step.bridged == 0 {
-            self.transition.advance(self.model, &interval, strapdown.earth());
+            self.transition.advance(self.model, &interval, earth);
         } else {
-            let used = |channel: u8| step.bridged & (1 << channel) == 0;
-            self.transition.advance_bridged(
-                self.model,
-                &interval,
-                strapdown.earth(),
-                [used(0), used(1), used(2)],
-                step.bridged & ACCELEROMETERS == 0,
-            );
+            let transition = &mut self.transition;
+            let model = self.model;
+            transition.advance_bridged(model, &interval, earth, gyros_used, accelerometers_used);
+        }
+        if let Some(further) = &mut self.further {
+            further.advance(self.model, &interval, earth, gyros_used, accelerometers_used);
         }
         self.elapsed_s += step.elapsed_s;
         self.force_sum += step.delta_velocity_n;
@@ -276,6 +294,13 @@ impl CalibrationFilter {
             sway.propagate(&self.transition, self.elapsed_s);
         }
         self.covariance.propagate(&self.transition);
+        if let Some(further) = &mut self.further {
+            further.propagate(&self.transition, self.elapsed_s, &mut self.covariance);
+        }
+        if self.walk_variance_per_s > 0.0 {
+            let variance = self.walk_variance_per_s * self.elapsed_s;
+            add_bias_walk(&mut self.covariance, variance, &self.transition);
+        }
         add_process_noise(
             &mut self.covariance,
             (self.gyro_variance_per_s, self.accel_variance_per_s),
@@ -303,6 +328,31 @@ impl CalibrationFilter {
     #[must_use]
     pub fn has_sway(&self) -> bool {
         self.sway.is_some()
+    }
+
+    /// Estimates of the further states; `None` if all of them are off.
+    #[must_use]
+    pub fn further(&self) -> Option<FurtherEstimates> {
+        self.further.as_ref().map(FurtherStates::estimates)
+    }
+
+    /// The further states as a part of a stored state. They are no part of [`Self`] there, so that
+    /// the bytes of a filter without them are those of a program that had none.
+    #[cfg(feature = "state")]
+    pub(crate) fn further_part(&self) -> Option<&impl octant_state::State> {
+        self.further.as_ref()
+    }
+
+    /// [`Self::further_part`], to be changed.
+    #[cfg(feature = "state")]
+    pub(crate) fn further_part_mut(&mut self) -> Option<&mut impl octant_state::State> {
+        self.further.as_mut()
+    }
+
+    /// Returns whether every number of the covariance and the further states is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.covariance.is_finite() && self.further.as_ref().is_none_or(FurtherStates::is_finite)
     }
 
     /// Error covariance of all states after the last propagation and measurement.

@@ -22,6 +22,7 @@
 //! | [`error_model`] | growth of errors: phi-angle and psi-angle form (paper, eq. 1 to 3) |
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
 //! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
+//! | [`further`] | errors beside the parameters that the filter can consider or estimate |
 //! | [`drift`] | test whether the parameters are constant while they are estimated |
 //! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
 //! | [`external_turntable`] | the third estimator: an external turntable's angles as reference |
@@ -38,6 +39,7 @@ pub mod drift;
 pub mod error_model;
 pub mod external_turntable;
 pub mod filter;
+pub mod further;
 pub mod inertial_alignment;
 pub mod least_squares;
 pub mod monitor;

@@ -43,6 +43,7 @@ fn kalman() -> Estimator {
         aiding_period_ns: 1_000_000_000,
         sway: SwayNoise::White,
         refuse_above_mean_nis: 1e9,
+        further: Default::default(),
     })
 }
 

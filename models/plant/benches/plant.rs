@@ -20,7 +20,12 @@ fn config(motion: Motion) -> PlantConfig {
         sample_period_ns: 5_000_000,
         seed: 1,
         calibration_samples: u64::MAX,
-        site: PlantSite { latitude_rad: 30.5 * DEG, longitude_rad: 2.0, height_m: 40.0 },
+        site: PlantSite {
+            latitude_rad: 30.5 * DEG,
+            longitude_rad: 2.0,
+            height_m: 40.0,
+            gravity: GravityDisturbance::default(),
+        },
         motion,
         turntable: TurntableConfig {
             rate_radps: 10.0 * DEG,

@@ -79,7 +79,8 @@ impl Case {
                 let heading = libm::sincos(attitude.heading_rad);
                 let pitch = libm::sincos(attitude.pitch_rad);
                 let roll = libm::sincos(attitude.roll_rad);
-                let up = Vector3::new(0.0, 0.0, -earth.gravity_mps2);
+                let up = Vector3::new(0.0, 0.0, -earth.gravity_mps2)
+                    - site.gravity.in_n(earth.gravity_mps2);
                 let motion = CaseMotion {
                     rate: into_case(&earth.earth_rate(), heading, pitch, roll),
                     acceleration: Vector3::zeros(),
@@ -237,7 +238,12 @@ mod tests {
     fn derivatives_agree_with_differences() {
         let mut ship = crate::motion::dockside_default(9);
         ship.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
-        let site = PlantSite { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
+        let site = PlantSite {
+            latitude_rad: 0.9,
+            longitude_rad: 0.2,
+            height_m: 10.0,
+            gravity: Default::default(),
+        };
         let (period_s, h) = (0.1, 1e-3);
         let mut case =
             Case::new(&config::Motion::Dockside(ship), site, period_s, &[(0.05, 0.1)], true);
@@ -277,7 +283,12 @@ mod tests {
         sea.heave = spectrum.components(1, "heave", 30);
         let mut steep = dockside_iso_8728(2);
         steep.roll[0].amplitude = 0.5;
-        let site = PlantSite { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
+        let site = PlantSite {
+            latitude_rad: 0.9,
+            longitude_rad: 0.2,
+            height_m: 10.0,
+            gravity: Default::default(),
+        };
         for (ship, period_ns) in [
             (dockside_default(3), 5_000_000),
             (dockside_iso_8728(4), 1_000_000),

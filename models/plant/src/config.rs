@@ -33,6 +33,33 @@ pub struct PlantSite {
     pub longitude_rad: f64,
     /// Height above the ellipsoid, m.
     pub height_m: f64,
+    /// Difference of true gravity to normal gravity; the same wherever the instrument goes.
+    #[serde(default)]
+    pub gravity: GravityDisturbance,
+}
+
+/// Difference of true gravity to normal gravity. True gravity in n is (−ξ γ, −η γ, γ + Δg), with
+/// normal gravity γ. The default is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GravityDisturbance {
+    /// Deflection of the vertical to the north ξ, rad: positive where the astronomic zenith is north
+    /// of the geodetic one.
+    pub deflection_north_rad: f64,
+    /// Deflection of the vertical to the east η, rad.
+    pub deflection_east_rad: f64,
+    /// Gravity anomaly Δg, m/s², positive where gravity is stronger than normal.
+    pub anomaly_mps2: f64,
+}
+
+impl GravityDisturbance {
+    /// Disturbance in n (north, east, down), m/s².
+    pub(crate) fn in_n(&self, normal_mps2: f64) -> nalgebra::Vector3<f64> {
+        nalgebra::Vector3::new(
+            -self.deflection_north_rad * normal_mps2,
+            -self.deflection_east_rad * normal_mps2,
+            self.anomaly_mps2,
+        )
+    }
 }
 
 /// Mean attitude of the case, `c_nc = Rz(heading) Ry(pitch) Rx(roll)`.
@@ -169,6 +196,17 @@ pub struct Extensions {
     /// Position of each accelerometer's proof mass from the centre of rotation, in b, m (size
     /// effect): row i is that of axis i.
     pub lever_arm_m: [[f64; 3]; 3],
+    /// Asymmetry of the gyros' scale factors a: the reading is too large by a abs(ω).
+    #[serde(default)]
+    pub gyro_asymmetry: [f64; 3],
+    /// Asymmetry of the accelerometers' scale factors a: the reading is too large by a abs(f).
+    #[serde(default)]
+    pub accel_asymmetry: [f64; 3],
+    /// Second-order coefficients k of the accelerometers, 1/(m/s²): the reading is too large by k f².
+    /// As in the asymmetries f is the mean over a sample: vibration faster than the samples isn't
+    /// rectified.
+    #[serde(default)]
+    pub accel_quadratic: [f64; 3],
     /// Stamp minus true time of validity, s, 0 to 1: the gyros and accelerometers lag the gimbal
     /// angles.
     pub time_skew_s: f64,

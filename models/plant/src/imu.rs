@@ -3,11 +3,12 @@
 //! ```text
 //! Δθ̃ = (I + M_g) Δθ + b_g dt + G Δv + noise        Δṽ = (I + M_a) Δv + b_a dt + noise
 //! ```
+//! and, where the sensors are [nonlinear](Nonlinear), `a |Δθ|` and `a |Δv| + k Δv²/dt`.
 //!
 //! Everything is computed in counts of the format; their sizes are powers of two, so that the
 //! conversion changes no digit.
 
-use crate::config::{Imu, Temperature};
+use crate::config::{Extensions, Imu, Temperature};
 use crate::increments::Increments;
 use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
@@ -112,6 +113,32 @@ fn flicker(triad: &str, coefficient: f64, dt: f64, seed: u64) -> Vec<Wander> {
     processes.iter().enumerate().map(wander).collect()
 }
 
+/// Asymmetry and second order, in counts per increment (rad, m/s) and per its square.
+#[derive(Clone, Copy, Debug)]
+struct Nonlinear {
+    gyro_asymmetry: Vector3<f64>,
+    accel_asymmetry: Vector3<f64>,
+    accel_square: Vector3<f64>,
+}
+
+impl Nonlinear {
+    fn new(e: &Extensions, dt: f64) -> Option<Self> {
+        let coefficients = [e.gyro_asymmetry, e.accel_asymmetry, e.accel_quadratic];
+        (coefficients != [[0.0; 3]; 3]).then(|| Self {
+            gyro_asymmetry: Vector3::from(e.gyro_asymmetry) / DELTA_THETA_LSB_RAD,
+            accel_asymmetry: Vector3::from(e.accel_asymmetry) / DELTA_VELOCITY_LSB_MPS,
+            accel_square: Vector3::from(e.accel_quadratic) / (dt * DELTA_VELOCITY_LSB_MPS),
+        })
+    }
+
+    fn add(&self, increments: &Increments, reading: &mut Reading) {
+        let (theta, velocity) = (&increments.delta_theta, &increments.delta_velocity);
+        reading.gyro += self.gyro_asymmetry.component_mul(&theta.abs());
+        reading.accelerometer += self.accel_asymmetry.component_mul(&velocity.abs())
+            + self.accel_square.component_mul(&velocity.component_mul(velocity));
+    }
+}
+
 /// Both triads.
 #[derive(Clone, Debug)]
 pub(crate) struct Sensors {
@@ -121,6 +148,7 @@ pub(crate) struct Sensors {
     gyro_bias: Vector3<f64>,
     accel_matrix: Matrix3<f64>,
     accel_bias: Vector3<f64>,
+    nonlinear: Option<Nonlinear>,
     temperatures: Vec<Warmth>,
     gyro: Triple,
     accelerometer: Triple,
@@ -130,7 +158,7 @@ octant_state::state! {
     Sensors {
         values: temperatures;
         parts: gyro, accelerometer;
-        kept: dt, gyro_matrix, g_matrix, gyro_bias, accel_matrix, accel_bias
+        kept: dt, gyro_matrix, g_matrix, gyro_bias, accel_matrix, accel_bias, nonlinear
     }
 }
 
@@ -172,6 +200,7 @@ impl Sensors {
             gyro_bias: Vector3::from(p.gyro_bias) * dt / rad,
             accel_matrix: (Matrix3::identity() + rows(p.accel_matrix())) / mps,
             accel_bias: Vector3::from(p.accel_bias) * dt / mps,
+            nonlinear: Nonlinear::new(e, dt),
             temperatures: e.temperature.into_iter().map(|t| Warmth::from(None, 0, t)).collect(),
             gyro: triple(
                 rad,
@@ -212,10 +241,14 @@ impl Sensors {
     /// Applies the error model without noise and temperature.
     pub(crate) fn read(&self, increments: &Increments) -> Reading {
         let (theta, velocity) = (&increments.delta_theta, &increments.delta_velocity);
-        Reading {
+        let mut reading = Reading {
             gyro: self.gyro_matrix * theta + self.g_matrix * velocity + self.gyro_bias,
             accelerometer: self.accel_matrix * velocity + self.accel_bias,
+        };
+        if let Some(nonlinear) = &self.nonlinear {
+            nonlinear.add(increments, &mut reading);
         }
+        reading
     }
 
     /// Adds temperature and noise, and digitises. `sample` is the number in the phase from 0,

@@ -230,7 +230,8 @@ impl Ship {
 
         let earth_rate = earth.earth_rate();
         let transport = earth.transport_rate(&velocity);
-        let gravity = Vector3::new(0.0, 0.0, earth.gravity_mps2);
+        let normal = earth.gravity_mps2;
+        let gravity = Vector3::new(0.0, 0.0, normal) + self.site.gravity.in_n(normal);
         let force = acceleration + (earth_rate * 2.0 + transport).cross(&velocity) - gravity;
 
         let navigation_rate = into_case(&(earth_rate + transport), heading, pitch, roll);

@@ -61,6 +61,14 @@ pub(crate) fn validate(config: &PlantConfig) -> Check {
     within("site.latitude_rad", config.site.latitude_rad, 89.9 * DEG, "within ±89.9 deg")?;
     finite("site.longitude_rad", config.site.longitude_rad)?;
     within("site.height_m", config.site.height_m, 1e5, "within ±100 km")?;
+    let gravity = &config.site.gravity;
+    for (field, angle) in [
+        ("site.gravity.deflection_north_rad", gravity.deflection_north_rad),
+        ("site.gravity.deflection_east_rad", gravity.deflection_east_rad),
+    ] {
+        within(field, angle, 0.01, "within ±0.01 rad")?;
+    }
+    within("site.gravity.anomaly_mps2", gravity.anomaly_mps2, 0.1, "within ±0.1 m/s²")?;
     match &config.motion {
         Motion::Static(attitude) => all_finite(
             "motion.attitude",
@@ -195,6 +203,16 @@ fn extensions(e: &Extensions, period_s: f64) -> Check {
         for (column, value) in arm.iter().enumerate() {
             let field = path(&format!("lever_arm_m[{row}][{column}]"));
             within(&field, *value, 10.0, "within ±10 m")?;
+        }
+    }
+    for (name, values, limit) in [
+        ("gyro_asymmetry", &e.gyro_asymmetry, 0.5),
+        ("accel_asymmetry", &e.accel_asymmetry, 0.5),
+        ("accel_quadratic", &e.accel_quadratic, 0.01),
+    ] {
+        for (axis, value) in values.iter().enumerate() {
+            let field = path(&format!("{name}[{axis}]"));
+            within(&field, *value, limit, &format!("within ±{limit}"))?;
         }
     }
     require(

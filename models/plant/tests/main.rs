@@ -7,6 +7,7 @@ mod disturbed_strapdown;
 mod kinds_physics;
 mod kinds_turntable;
 mod noise;
+mod nonlinear;
 mod sensors;
 mod state;
 mod strapdown;

@@ -51,6 +51,7 @@ fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
         }),
         lever_arm_m: [[0.02, 0.0, 0.01], [0.0, -0.03, 0.0], [0.01, 0.0, 0.02]],
         time_skew_s,
+        ..Extensions::default()
     };
     config.aiding =
         AidingSource { kind: AidingKind::Velocity { sigma_mps: 0.001 }, period_ns: 20 * PERIOD_NS };
@@ -287,11 +288,13 @@ fn the_layout_is_the_stored_one() {
 #[test]
 fn a_state_of_an_earlier_version_is_refused_in_words() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
-    let error = Plant::load(&std::fs::read(format!("{folder}/plant-1.bin")).unwrap()).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "the state of a plant has version 1, this program reads version 2"
-    );
+    for version in 1..STATE_FORMAT.version {
+        let stored = std::fs::read(format!("{folder}/plant-{version}.bin")).unwrap();
+        assert_eq!(
+            Plant::load(&stored).unwrap_err().to_string(),
+            format!("the state of a plant has version {version}, this program reads version 3")
+        );
+    }
 }
 
 /// Makes a frame with another payload and the right checksum.

@@ -164,6 +164,7 @@ fn put_kalman(kalman: &Kalman, values: &mut CellValues) {
         aiding_period_ns,
         sway,
         refuse_above_mean_nis,
+        further: _,
     } = kalman;
     let choice = match error_model {
         ErrorModel::Phi => 0,
@@ -223,6 +224,7 @@ fn kalman(values: &CellValues) -> Result<Kalman, CalibratorValueError> {
             _ => return Err(no_item(slot::AIDING_SWAY, values)),
         },
         refuse_above_mean_nis: values.real(slot::REFUSE_ABOVE),
+        further: Default::default(),
     })
 }
 

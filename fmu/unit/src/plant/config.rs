@@ -19,7 +19,7 @@ pub(super) fn put(config: &PlantConfig, values: &mut CellValues) -> Result<(), P
         sample_period_ns,
         seed,
         calibration_samples,
-        site: PlantSite { latitude_rad, longitude_rad, height_m },
+        site: PlantSite { latitude_rad, longitude_rad, height_m, gravity: _ },
         motion,
         turntable,
         imu,
@@ -105,6 +105,7 @@ pub fn config(values: &CellValues) -> Result<PlantConfig, PlantValueError> {
             latitude_rad: values.real(slot::SITE_LATITUDE),
             longitude_rad: values.real(slot::SITE_LONGITUDE),
             height_m: values.real(slot::SITE_HEIGHT),
+            gravity: Default::default(),
         },
         motion: match values.integer(slot::MOTION) {
             0 => Motion::Static(attitude(values)),
@@ -223,6 +224,9 @@ fn put_extensions(extensions: &Extensions, values: &mut CellValues) {
         temperature,
         vibration,
         lever_arm_m,
+        gyro_asymmetry: _,
+        accel_asymmetry: _,
+        accel_quadratic: _,
         time_skew_s,
     } = extensions;
     for (process, slot) in [
@@ -302,6 +306,7 @@ fn extensions(values: &CellValues) -> Extensions {
         }),
         lever_arm_m: core::array::from_fn(|row| values.reals(slot::LEVER_ARM + 3 * row)),
         time_skew_s: values.real(slot::TIME_SKEW),
+        ..Extensions::default()
     }
 }
 

@@ -38,6 +38,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         latitude_rad: keys.site.latitude,
         longitude_rad: keys.site.longitude,
         height_m: keys.site.height,
+        gravity: Default::default(),
     };
     let motion = instrument::motion(&keys.motion);
     let turntable = instrument::turntable(&keys.turntable);

@@ -341,6 +341,7 @@ fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Probl
         aiding_period_ns: aiding.source.period_ns,
         sway: aiding.sway,
         refuse_above_mean_nis: keys.refuse_above_mean_nis,
+        further: Default::default(),
     })
 }
 

@@ -101,6 +101,7 @@ fn breaks(all: &mut Found) -> Result<(), String> {
         aiding_period_ns: 1_000_000_000,
         sway: SwayNoise::White,
         refuse_above_mean_nis: 6.0,
+        further: Default::default(),
     };
     let noise = Noise { angle_random_walk: 3e-7, velocity_random_walk: 6e-4 };
     let turntable = TurntableRates { rate_radps: 0.2, acceleration_radps2: 0.3 };

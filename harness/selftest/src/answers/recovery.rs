@@ -89,6 +89,7 @@ impl Bench {
             aiding_period_ns: 1_000_000_000,
             sway: SwayNoise::White,
             refuse_above_mean_nis: 9.0,
+            further: Default::default(),
         };
         let gate = Gate { nis: 36.0, rejections: REJECTIONS, recovery: Recovery::Widening };
         let screening = Screening {

@@ -26,6 +26,7 @@ fn continuity(base: Base, sample_s: f64) -> Continuity {
         aiding_period_ns: 1_000_000_000,
         sway: SwayNoise::White,
         refuse_above_mean_nis: 9.0,
+        further: Default::default(),
     };
     let noise = Noise { angle_random_walk: WALK, velocity_random_walk: 4.9e-4 };
     let table = TurntableRates { rate_radps: 0.1745, acceleration_radps2: 0.1745 };

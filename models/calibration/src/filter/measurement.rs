@@ -87,6 +87,9 @@ impl CalibrationFilter {
         } else {
             for axis in 0..3 {
                 let innovation = error[axis] - x[first + axis];
+                if let Some(further) = &mut self.further {
+                    further.update(&self.covariance, first + axis, r, innovation, held);
+                }
                 if held {
                     self.covariance.update_moving(first + axis, r, innovation, &mut x);
                 } else {

@@ -1,6 +1,6 @@
 //! Process noise.
 
-use crate::covariance::{Covariance, DV, PHI};
+use crate::covariance::{Covariance, DV, MOVING, PARAMETERS, PHI, Transition};
 use nalgebra::Vector3;
 
 /// Adds the process noise of white gyro and accelerometer noise over `elapsed_s`, in which the
@@ -24,6 +24,22 @@ pub fn add_process_noise(
             covariance.add(DV + i, PHI + j, cross[(i, j)]);
             if j >= i {
                 covariance.add(DV + i, DV + j, square[(i, j)]);
+            }
+        }
+    }
+}
+
+/// Adds the noise of gyro biases that walked by this variance, (rad/s)², evenly over the time of a
+/// transition. The moving states receive half of the biases' effect in it times that, and a third of
+/// its square.
+pub(super) fn add_bias_walk(covariance: &mut Covariance, variance: f64, transition: &Transition) {
+    for bias in PARAMETERS..PARAMETERS + 3 {
+        covariance.add(bias, bias, variance);
+        for i in 0..MOVING {
+            let effect = transition.rows[i][bias];
+            covariance.add(i, bias, 0.5 * variance * effect);
+            for j in i..MOVING {
+                covariance.add(i, j, variance / 3.0 * effect * transition.rows[j][bias]);
             }
         }
     }

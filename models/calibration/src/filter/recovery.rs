@@ -1,9 +1,10 @@
 //! Recovery of the filter after a fault: the estimation goes back, and attitude and velocity open.
 
+use super::noise::add_bias_walk;
 use super::{CalibrationFilter, Stage};
 use crate::config::{AidingMode, Gate, Recovery};
 use crate::continuity::Edge;
-use crate::covariance::{DR, DV, PHI};
+use crate::covariance::{DR, DV, PHI, Transition};
 use crate::strapdown::Strapdown;
 use nalgebra::Vector3;
 use octant_sample::Parameters;
@@ -93,6 +94,9 @@ impl CalibrationFilter {
             newer.time_s = self.time_s;
             newer.parameters = *parameters;
             newer.covariance.clone_from(&self.covariance);
+            if let Some(further) = &mut self.further {
+                further.remember();
+            }
         }
     }
 
@@ -103,6 +107,13 @@ impl CalibrationFilter {
         newer.clone_from(older);
         *parameters = older.parameters;
         self.covariance.clone_from(&older.covariance);
+        if let Some(further) = &mut self.further {
+            further.go_back(&mut self.covariance);
+        }
+        if self.walk_variance_per_s > 0.0 {
+            let variance = self.walk_variance_per_s * (self.time_s - older.time_s);
+            add_bias_walk(&mut self.covariance, variance, &Transition::identity());
+        }
         if let Some(drift) = &mut self.drift {
             drift.go_back(older.time_s);
         }
@@ -189,6 +200,9 @@ impl CalibrationFilter {
             self.covariance.reopen(PHI + axis, attitude_rad[axis]);
             self.covariance.reopen(DV + axis, velocity_mps);
             self.covariance.reopen(DR + axis, position_m);
+        }
+        if let Some(further) = &mut self.further {
+            further.reopen();
         }
         self.reopen_sway();
     }

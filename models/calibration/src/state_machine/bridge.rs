@@ -70,6 +70,17 @@ fn measured(
 }
 
 impl Core {
+    /// Increments that the sensors measure by true ones, with the errors that are compensated.
+    fn measured(&self, theta: &Vector3<f64>, v: &Vector3<f64>, interval_s: f64) -> Increments {
+        match &self.further {
+            None => measured(&self.parameters, theta, v, interval_s),
+            Some((_, further)) => {
+                let (theta, v) = further.distort(&self.strapdown, theta, v, interval_s);
+                measured(&self.parameters, &theta, &v, interval_s)
+            }
+        }
+    }
+
     /// Returns whether the motion is known: in a calibration on a base at rest.
     fn knows_its_motion(&self) -> bool {
         self.mode == Mode::Calibrating && self.config.screening.base == Base::Still
@@ -116,7 +127,7 @@ impl Core {
         let still = self.knows_its_motion();
         let turn = self.gimbals_turned(sample);
         let (theta, v) = self.known_motion(&turn, interval_s);
-        let known = still.then(|| measured(&self.parameters, &theta, &v, interval_s));
+        let known = still.then(|| self.measured(&theta, &v, interval_s));
         let known_counts = known.map(|known| known.counts());
         let found = self.screen.examine(&counts, !standing, known_counts.as_ref(), self.tick);
         self.note_runs();
@@ -265,7 +276,7 @@ impl Core {
             // The attitude is that at the end of these samples, whereas `known_motion` starts from
             // it.
             let v = v + theta.cross(&v);
-            let known = measured(&self.parameters, &theta, &v, late * interval_s);
+            let known = self.measured(&theta, &v, late * interval_s);
             if channel < 3 {
                 taken.delta_theta[axis] += known.delta_theta[axis] - late * raw.delta_theta[axis];
             } else {
@@ -300,7 +311,7 @@ impl Core {
             let (start, end) = (step as f64 / steps as f64, (step + 1) as f64 / steps as f64);
             let turn = share_of_turn(from, to, start, end);
             let (theta, v) = self.known_motion(&turn, interval_s);
-            let known = measured(&self.parameters, &theta, &v, interval_s);
+            let known = self.measured(&theta, &v, interval_s);
             if let Some(filter) = self.filter_mut() {
                 filter.bridge(channels);
             }

@@ -1,6 +1,9 @@
 //! Checks of a configuration before a core is made from it.
 
-use crate::config::{AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator, SwayNoise};
+use crate::config::{
+    AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator, Further, SwayNoise,
+};
+use crate::further::FurtherGroup;
 
 use crate::inertial_alignment::SHORTEST_S;
 use crate::schedule::DoesNotFit;
@@ -71,6 +74,9 @@ pub enum CoreConfigError {
     /// A coloured sway without the reference that shows it.
     #[error("the sway is coloured and the reference a velocity, a position is expected")]
     SwayWithoutPosition,
+    /// A coloured sway beside further states.
+    #[error("the sway is coloured and further states are on, one of the two is expected")]
+    SwayWithFurther,
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::AdjustmentRefusal),
@@ -93,6 +99,31 @@ pub enum CoreConfigError {
     Nothing,
 }
 
+fn positive(field: &'static str, found: f64) -> Result<(), CoreConfigError> {
+    if found > 0.0 && found.is_finite() {
+        Ok(())
+    } else {
+        Err(CoreConfigError::NotPositive { field, found })
+    }
+}
+
+/// Checks the further states: those that are on need a prior, and a process its time.
+fn check_further(further: &Further) -> Result<(), CoreConfigError> {
+    for group in FurtherGroup::ALL {
+        if let Some(sigma) = further.of(group).sigma() {
+            positive("prior of a further state", sigma)?;
+        }
+    }
+    if further.of(FurtherGroup::GyroGaussMarkov).sigma().is_some() {
+        positive("correlation time of the gyros", further.gyro_correlation_time_s)?;
+    }
+    if further.of(FurtherGroup::AccelGaussMarkov).sigma().is_some() {
+        positive("correlation time of the accelerometers", further.accel_correlation_time_s)?;
+    }
+    let walk = further.gyro_rate_random_walk;
+    if walk == 0.0 { Ok(()) } else { positive("rate random walk of the gyros", walk) }
+}
+
 pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
     let period_ns = config.sample_period_ns;
     if period_ns == 0 || period_ns > 1_000_000_000 {
@@ -105,13 +136,6 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
     if !(config.site.latitude_rad.abs() <= 1.56) {
         return Err(CoreConfigError::Latitude { found_rad: config.site.latitude_rad });
     }
-    let positive = |field, found: f64| {
-        if found > 0.0 && found.is_finite() {
-            Ok(())
-        } else {
-            Err(CoreConfigError::NotPositive { field, found })
-        }
-    };
     let finite = |field, found: f64| {
         if found.is_finite() { Ok(()) } else { Err(CoreConfigError::NotFinite { field, found }) }
     };
@@ -181,7 +205,11 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
             let (AidingMode::Velocity { sigma_mps: sigma }
             | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
             positive("aiding sigma", sigma)?;
+            check_further(&kalman.further)?;
             if kalman.sway == SwayNoise::Coloured {
+                if kalman.further.has_states() {
+                    return Err(CoreConfigError::SwayWithFurther);
+                }
                 if !matches!(kalman.aiding, AidingMode::Position { .. }) {
                     return Err(CoreConfigError::SwayWithoutPosition);
                 }

@@ -210,7 +210,12 @@ impl Core {
         self.compensation = crate::compensation::Compensation::new(&self.parameters);
         self.revision = self.revision.saturating_add(1);
         if let Some(filter) = self.filter() {
+            let further = filter.further();
             self.sigma = filter.parameter_sigmas();
+            if let (Some(found), Some((estimates, compensation))) = (further, &mut self.further) {
+                *estimates = found;
+                compensation.set(&found.value);
+            }
         }
     }
 }

@@ -137,7 +137,7 @@ pub(super) fn judge(
 ) -> Result<Quality, CalibrationRefusal> {
     let (tally, quality) = (filter.tally(), quality_of(filter));
     let total = tally.used + tally.rejected;
-    if !filter.covariance().is_finite() {
+    if !filter.is_finite() {
         return Err(CalibrationRefusal::Numeric);
     }
     let estimating = tally.used - tally.held;

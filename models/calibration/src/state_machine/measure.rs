@@ -62,7 +62,11 @@ impl Core {
         let measured = aiding.and_then(|aiding| {
             filter.measure(&aiding.reference, &mut self.strapdown, &mut self.parameters)
         });
-        if !self.parameters.to_array().iter().all(|value| value.is_finite()) {
+        let further = filter.further();
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        if !finite(&self.parameters.to_array())
+            || further.as_ref().is_some_and(|further| !finite(&further.value))
+        {
             self.parameters = before;
             self.refuse(CalibrationRefusal::Numeric);
             *health |= Health::NUMERIC;
@@ -77,6 +81,11 @@ impl Core {
             } else {
                 self.compensation = Compensation::new(&self.parameters);
                 self.sigma = filter.parameter_sigmas();
+                if let (Some(found), Some((estimates, compensation))) = (further, &mut self.further)
+                {
+                    *estimates = found;
+                    compensation.set(&found.value);
+                }
                 self.revision = self.revision.saturating_add(1);
             }
             if measured.turned_rad > CORRECTION_RAD

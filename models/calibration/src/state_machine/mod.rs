@@ -29,6 +29,8 @@ use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, Navig
 use crate::continuity::{Continuity, POINTS, block_ticks};
 use crate::covariance::SolutionCovariance;
 use crate::filter::CalibrationFilter;
+use crate::further::FurtherEstimates;
+use crate::further::compensation::FurtherCompensation;
 use crate::monitor::{Monitor, MonitorTally};
 use crate::schedule::{Cursor, dwell_s};
 use crate::screen::Screen;
@@ -110,6 +112,8 @@ pub struct Core {
     sigma: [f64; PARAMETER_COUNT],
     revision: u32,
     compensation: Compensation,
+    /// Estimates of the further states, and their compensation, if the filter has any.
+    further: Option<(FurtherEstimates, FurtherCompensation)>,
     strapdown: Strapdown,
     last_measured_tick: u64,
     /// Earliest tick at which aiding is due again; kept because division is slow for every sample.
@@ -206,6 +210,7 @@ impl Core {
             sigma: [0.0; PARAMETER_COUNT],
             revision: 0,
             compensation: Compensation::new(&config.initial_parameters),
+            further: None,
             strapdown: strapdown_at(&config.site, &q_nb, velocity),
             last_measured_tick: 0,
             due_tick: 0,
@@ -269,6 +274,10 @@ impl Core {
         self.estimation = Estimation::new(&self.config, calibration)?;
         if let Estimation::Kalman(filter) = &self.estimation {
             self.sigma = filter.parameter_sigmas();
+            self.further = filter.further().zip(
+                kalman_of(&self.config)
+                    .and_then(|kalman| FurtherCompensation::new(&kalman.further, self.sample_s)),
+            );
             self.start_edges();
         }
         Ok(())
@@ -375,6 +384,13 @@ impl Core {
     #[must_use]
     pub fn sigma(&self) -> &[f64; PARAMETER_COUNT] {
         &self.sigma
+    }
+
+    /// Estimates of the further states with their standard deviations, as after the last
+    /// measurement; `None` if the calibration has none. Navigation compensates them too.
+    #[must_use]
+    pub fn further(&self) -> Option<&FurtherEstimates> {
+        self.further.as_ref().map(|(estimates, _)| estimates)
     }
 
     /// The finished calibration, once it has been accepted.

@@ -96,6 +96,7 @@ impl State for Core {
             sigma,
             revision,
             compensation,
+            further,
             strapdown,
             last_measured_tick,
             due_tick,
@@ -148,6 +149,12 @@ impl State for Core {
         to.value("table", table);
         to.value("gimbals", gimbals);
         to.value("answered", answered);
+        // Last, and nothing without further states: then the bytes are those of a core that never
+        // had any.
+        if let Some((estimates, compensation)) = further {
+            to.value("further", estimates);
+            to.part("further compensation", compensation);
+        }
     }
 
     fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
@@ -203,6 +210,10 @@ impl State for Core {
         self.table = from.value("table")?;
         self.gimbals = from.value("gimbals")?;
         self.answered = from.value("answered")?;
+        if let Some((estimates, compensation)) = &mut self.further {
+            *estimates = from.value("further")?;
+            from.part("further compensation", compensation)?;
+        }
         Ok(())
     }
 }
@@ -211,7 +222,12 @@ impl State for Estimation {
     fn save(&self, to: &mut Writer) {
         match self {
             Self::Idle => {}
-            Self::Kalman(filter) => to.part("filter", filter),
+            Self::Kalman(filter) => {
+                to.part("filter", filter);
+                if let Some(further) = filter.further_part() {
+                    to.part("further states", further);
+                }
+            }
             Self::LeastSquares(estimator) => to.part("least squares", estimator),
             Self::ExternalTurntable(estimator) => to.part("external turntable", estimator),
         }
@@ -220,7 +236,13 @@ impl State for Estimation {
     fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         match self {
             Self::Idle => Ok(()),
-            Self::Kalman(filter) => from.part("filter", filter),
+            Self::Kalman(filter) => {
+                from.part("filter", filter)?;
+                match filter.further_part_mut() {
+                    Some(further) => from.part("further states", further),
+                    None => Ok(()),
+                }
+            }
             Self::LeastSquares(estimator) => from.part("least squares", estimator),
             Self::ExternalTurntable(estimator) => from.part("external turntable", estimator),
         }

@@ -142,7 +142,10 @@ impl Core {
         velocity: &Vector3<f64>,
         interval_s: f64,
     ) {
-        let (dtheta, dv) = self.compensation.apply(theta, velocity, interval_s);
+        let (mut dtheta, mut dv) = self.compensation.apply(theta, velocity, interval_s);
+        if let Some((_, further)) = &mut self.further {
+            (dtheta, dv) = further.apply(&self.strapdown, &dtheta, &dv, interval_s);
+        }
         self.strapdown.step(&dtheta, &dv, interval_s);
         if let Estimation::Kalman(filter) = &mut self.estimation {
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);

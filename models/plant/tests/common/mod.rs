@@ -21,7 +21,12 @@ pub(crate) fn perfect() -> PlantConfig {
         sample_period_ns: PERIOD_NS,
         seed: 1,
         calibration_samples: u64::MAX,
-        site: PlantSite { latitude_rad: LATITUDE, longitude_rad: 114.3 * DEG, height_m: 40.0 },
+        site: PlantSite {
+            latitude_rad: LATITUDE,
+            longitude_rad: 114.3 * DEG,
+            height_m: 40.0,
+            gravity: GravityDisturbance::default(),
+        },
         motion: Motion::Static(CaseAttitude::default()),
         turntable: TurntableConfig {
             rate_radps: 10.0 * DEG,

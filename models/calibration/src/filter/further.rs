@@ -1,0 +1,381 @@
+//! Further states beside those of the filter, see [`crate::further`]: a border of the covariance.
+//!
+//! A further state drives attitude and velocity and is driven by nothing but its own noise. With the
+//! moving states m, the parameters p and the further states z the transition is
+//! `m ← T (m, p) + D z, p ← p, z ← F z`, F diagonal. The border holds the columns D, the covariance
+//! of z with the 39 states, and its own. All places are there whether their group is on or not: those
+//! of groups that are off stay zero.
+
+mod columns;
+#[cfg(test)]
+mod jacobian;
+#[cfg(test)]
+mod tests;
+
+use crate::config::{Further, FurtherUse, Kalman};
+use crate::covariance::{Covariance, CovarianceRow, MOVING, STATE_COUNT, Transition};
+#[cfg(feature = "state")]
+use crate::covariance::{load_rows, save_rows};
+use crate::error_model::{MotionInterval, advance_columns};
+use crate::further::compensation::FurtherIntegrals;
+use crate::further::size_effect::SizeEffect;
+use crate::further::{FURTHER_COUNT, FurtherEstimates, FurtherGroup};
+use columns::Effects;
+use nalgebra::{Matrix3, Vector3};
+use octant_earth::ellipsoid::Ellipsoid;
+
+/// Row length in memory, a multiple of the vector registers' width.
+const ROW: usize = 28;
+/// One padded row over the further states.
+type FurtherRow = [f64; ROW];
+
+/// Estimates and covariance of the further states at one time.
+#[derive(Clone, Debug)]
+pub(super) struct Border {
+    time_s: f64,
+    value: [f64; FURTHER_COUNT],
+    /// Covariance with the 39 states, a row for each further state.
+    cross: [CovarianceRow; FURTHER_COUNT],
+    own: [FurtherRow; FURTHER_COUNT],
+}
+
+/// A first-order Gauss-Markov process of three further states.
+#[derive(Clone, Copy, Debug)]
+struct Process {
+    group: FurtherGroup,
+    sigma: f64,
+    correlation_time_s: f64,
+}
+
+/// The further states of a filter.
+#[derive(Clone, Debug)]
+pub(super) struct FurtherStates {
+    border: Border,
+    /// D: effect on the moving states since the last propagation.
+    columns: [FurtherRow; MOVING],
+    /// Time since the last propagation up to the open sub-step, s.
+    elapsed_s: f64,
+    integrals: FurtherIntegrals,
+    size_effect: SizeEffect,
+    /// The older and the newer checkpoint.
+    checkpoints: Option<[Border; 2]>,
+    effects: Effects,
+    estimated: [bool; FURTHER_COUNT],
+    processes: [Option<Process>; 2],
+}
+
+impl FurtherStates {
+    /// Makes the further states of a filter with their prior; `None` if all groups are off.
+    pub(super) fn new(kalman: &Kalman, checkpoints: bool) -> Option<Self> {
+        let further = &kalman.further;
+        if !further.has_states() {
+            return None;
+        }
+        let mut border = Border {
+            time_s: 0.0,
+            value: [0.0; FURTHER_COUNT],
+            cross: [[0.0; 40]; FURTHER_COUNT],
+            own: [[0.0; ROW]; FURTHER_COUNT],
+        };
+        let mut estimated = [false; FURTHER_COUNT];
+        for group in FurtherGroup::ALL {
+            let sigma = further.of(group).sigma().unwrap_or(0.0);
+            for k in group.range() {
+                border.own[k][k] = sigma * sigma;
+                estimated[k] = matches!(further.of(group), FurtherUse::Estimated { .. });
+            }
+        }
+        Some(Self {
+            columns: [[0.0; ROW]; MOVING],
+            elapsed_s: 0.0,
+            integrals: FurtherIntegrals::default(),
+            size_effect: SizeEffect::default(),
+            checkpoints: checkpoints.then(|| [border.clone(), border.clone()]),
+            border,
+            effects: Effects::new(further),
+            estimated,
+            processes: processes(further),
+        })
+    }
+
+    /// Adds the compensated increments of an interval.
+    #[inline(never)]
+    pub(super) fn accumulate(&mut self, dtheta: &Vector3<f64>, dv: &Vector3<f64>, interval_s: f64) {
+        let size = if self.effects.on(FurtherGroup::AccelLever) {
+            self.size_effect.step(dtheta, interval_s)
+        } else {
+            Matrix3::zeros()
+        };
+        self.integrals.add(&size, dtheta, dv, interval_s);
+    }
+
+    /// Advances the columns over a sub-step, with the transition; the flags say which sensors
+    /// measured in it.
+    pub(super) fn advance(
+        &mut self,
+        kalman_model: crate::config::ErrorModel,
+        interval: &MotionInterval,
+        earth: &Ellipsoid,
+        gyros_used: [bool; 3],
+        accelerometers_used: bool,
+    ) {
+        let integrals = core::mem::take(&mut self.integrals);
+        let middle_s = self.elapsed_s + 0.5 * interval.interval_s;
+        self.elapsed_s += interval.interval_s;
+        let mut decay = [1.0; 2];
+        for (decay, process) in decay.iter_mut().zip(&self.processes) {
+            if let Some(process) = process {
+                *decay = libm::exp(-middle_s / process.correlation_time_s);
+            }
+        }
+        let input = self.effects.input(
+            interval,
+            &integrals,
+            earth,
+            (gyros_used, accelerometers_used),
+            decay,
+        );
+        let mut interval = *interval;
+        if !accelerometers_used {
+            // As in `Transition::advance_bridged`.
+            interval.delta_velocity_n = Vector3::zeros();
+        }
+        advance_columns(&mut self.columns, kalman_model, &interval, earth, input, 0..ROW);
+    }
+
+    /// Propagates to the present, after the covariance of the 39 states was by `transition`, and adds
+    /// to that the effect of the further states.
+    pub(super) fn propagate(
+        &mut self,
+        transition: &Transition,
+        elapsed_s: f64,
+        errors: &mut Covariance,
+    ) {
+        let columns = core::mem::replace(&mut self.columns, [[0.0; ROW]; MOVING]);
+        self.elapsed_s = 0.0;
+        let Border { cross, own, .. } = &mut self.border;
+        // Covariance with the moving states: by the transition alone, and with the columns too.
+        let mut carried = [[0.0; ROW]; MOVING];
+        let mut moved = [[0.0; ROW]; MOVING];
+        for i in 0..MOVING {
+            for k in 0..FURTHER_COUNT {
+                carried[i][k] = dot(&transition.rows[i], &cross[k]);
+                moved[i][k] = carried[i][k] + dot(&columns[i], &own[k]);
+            }
+        }
+        for i in 0..MOVING {
+            for j in i..MOVING {
+                let value = dot(&columns[i], &moved[j]) + dot(&carried[i], &columns[j]);
+                errors.add(i, j, value);
+            }
+            let mut with_parameters = [0.0; 40];
+            for (column, row) in columns[i].iter().zip(cross.iter()) {
+                for (out, p) in with_parameters.iter_mut().zip(row) {
+                    *out += column * p;
+                }
+            }
+            for j in MOVING..STATE_COUNT {
+                errors.add(i, j, with_parameters[j]);
+            }
+        }
+        for (k, row) in cross.iter_mut().enumerate() {
+            for i in 0..MOVING {
+                row[i] = moved[i][k];
+            }
+        }
+        self.border.time_s += elapsed_s;
+        for process in self.processes.iter().flatten() {
+            self.border.wander(process, elapsed_s, &columns, errors);
+        }
+    }
+
+    /// Uses one axis of a measurement: state `s` of the 39 with variance `r`, before that updates
+    /// their covariance. `held`: the further states are considered, not estimated, as the parameters
+    /// are.
+    pub(super) fn update(
+        &mut self,
+        errors: &Covariance,
+        s: usize,
+        r: f64,
+        innovation: f64,
+        held: bool,
+    ) {
+        let (row, scale) = errors.gain_row(s, r);
+        let of_errors = row.map(|value| value * scale);
+        let Border { value, cross, own, .. } = &mut self.border;
+        let mut gain = [0.0; ROW];
+        for (gain, row) in gain.iter_mut().zip(cross.iter()) {
+            *gain = row[s] * scale;
+        }
+        for (k, row) in cross.iter_mut().enumerate() {
+            // Two states without a gain keep their covariance (Schmidt).
+            let end = if held { MOVING } else { row.len() };
+            for (p, u) in row[..end].iter_mut().zip(&of_errors) {
+                *p -= gain[k] * u;
+            }
+        }
+        if held {
+            return;
+        }
+        let mut moved = [0.0; ROW];
+        for k in 0..FURTHER_COUNT {
+            if self.estimated[k] {
+                value[k] += gain[k] * (scale * innovation);
+                moved[k] = gain[k];
+            }
+        }
+        for (k, row) in own.iter_mut().enumerate() {
+            let others = if self.estimated[k] { &gain } else { &moved };
+            for (p, u) in row.iter_mut().zip(others) {
+                *p -= gain[k] * u;
+            }
+        }
+    }
+
+    /// Takes out the correlation with the moving states, which are reopened.
+    pub(super) fn reopen(&mut self) {
+        for row in &mut self.border.cross {
+            row[..MOVING].fill(0.0);
+        }
+    }
+
+    /// Keeps the present as the newer checkpoint.
+    pub(super) fn remember(&mut self) {
+        let Some([older, newer]) = &mut self.checkpoints else { return };
+        core::mem::swap(older, newer);
+        newer.clone_from(&self.border);
+    }
+
+    /// Returns to the older checkpoint. Biases that wander have gone on since then.
+    pub(super) fn go_back(&mut self, errors: &mut Covariance) {
+        let Some([older, newer]) = &mut self.checkpoints else { return };
+        newer.clone_from(older);
+        let since_s = self.border.time_s - older.time_s;
+        let time_s = self.border.time_s;
+        self.border.clone_from(older);
+        self.border.time_s = time_s;
+        for process in self.processes.iter().flatten() {
+            self.border.wander(process, since_s, &[[0.0; ROW]; MOVING], errors);
+        }
+    }
+
+    /// Estimates with their standard deviations.
+    pub(super) fn estimates(&self) -> FurtherEstimates {
+        let sigma = |k: usize| libm::sqrt(self.border.own[k][k].max(0.0));
+        FurtherEstimates { value: self.border.value, sigma: core::array::from_fn(sigma) }
+    }
+
+    /// Returns whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        let Border { time_s: _, value, cross, own } = &self.border;
+        value
+            .iter()
+            .chain(cross.iter().flatten())
+            .chain(own.iter().flatten())
+            .all(|x| x.is_finite())
+    }
+}
+
+impl Border {
+    /// Lets a process wander over a time: decay, noise, and the effect of that noise on the moving
+    /// states, whose columns are those of the same time.
+    ///
+    /// All of it is exact for an effect with a constant factor c, of which the column is
+    /// `c τ (1 − e)`, e = exp(−t/τ): the noise in the state has the variance `σ² (1 − e²)`, with the
+    /// moving state the covariance `c σ² τ (1 − e)²`, and in that
+    /// `2 c² σ² τ² (t/τ − 2 (1 − e) + (1 − e²)/2)`.
+    fn wander(
+        &mut self,
+        process: &Process,
+        elapsed_s: f64,
+        columns: &[FurtherRow; MOVING],
+        errors: &mut Covariance,
+    ) {
+        let ratio = elapsed_s / process.correlation_time_s;
+        let decay = libm::exp(-ratio);
+        let lost = -libm::expm1(-ratio);
+        let variance = process.sigma * process.sigma;
+        for k in process.group.range() {
+            self.value[k] *= decay;
+            self.cross[k].iter_mut().for_each(|p| *p *= decay);
+            self.own[k].iter_mut().for_each(|p| *p *= decay);
+            self.own.iter_mut().for_each(|row| row[k] *= decay);
+            self.own[k][k] += variance * lost * (1.0 + decay);
+            for i in 0..MOVING {
+                self.cross[k][i] += variance * lost * columns[i][k];
+                for j in i..MOVING {
+                    let share = columns[i][k] * columns[j][k];
+                    errors.add(i, j, variance * share_of_noise(ratio, lost) * share);
+                }
+            }
+        }
+    }
+}
+
+/// Variance of the integral of a process's noise, by σ² and the square of its column:
+/// `2 (a − x − x²/2)/x²` with a = −ln(1 − x); its series where the difference would cancel.
+fn share_of_noise(ratio: f64, lost: f64) -> f64 {
+    let x = lost;
+    if x < 1e-2 {
+        2.0 * x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x * (1.0 / 6.0 + x / 7.0))))
+    } else {
+        2.0 * (ratio - x - 0.5 * x * x) / (x * x)
+    }
+}
+
+fn processes(further: &Further) -> [Option<Process>; 2] {
+    let process = |group, correlation_time_s| {
+        further.of(group).sigma().map(|sigma| Process { group, sigma, correlation_time_s })
+    };
+    [
+        process(FurtherGroup::GyroGaussMarkov, further.gyro_correlation_time_s),
+        process(FurtherGroup::AccelGaussMarkov, further.accel_correlation_time_s),
+    ]
+}
+
+/// Scalar product in four partial sums: a fixed order that the compiler can vectorize.
+#[inline(always)]
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
+        for lane in 0..4 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+#[cfg(feature = "state")]
+impl octant_state::State for Border {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { time_s, value, cross, own } = self;
+        to.value("time_s", time_s);
+        to.value("value", value);
+        save_rows(cross, to);
+        for row in own {
+            to.value("own", row);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::StateReader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.time_s = from.value("time_s")?;
+        self.value = from.value("value")?;
+        load_rows(&mut self.cross, from)?;
+        for row in &mut self.own {
+            *row = from.value("own")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "state")]
+octant_state::state! {
+    FurtherStates {
+        values: columns, elapsed_s, integrals, size_effect;
+        parts: border, checkpoints;
+        kept: effects, estimated, processes
+    }
+}

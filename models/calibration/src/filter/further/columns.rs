@@ -1,0 +1,88 @@
+//! Effect of the further states on attitude and velocity in one sub-step.
+
+use super::{FurtherRow, ROW};
+use crate::config::{Further, FurtherUse};
+use crate::error_model::MotionInterval;
+use crate::further::FurtherGroup;
+use crate::further::compensation::FurtherIntegrals;
+use octant_earth::ellipsoid::Ellipsoid;
+
+/// Groups that are on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effects([bool; 8]);
+
+impl Effects {
+    pub(super) fn new(further: &Further) -> Self {
+        Self(further.groups.map(|group| group != FurtherUse::Off))
+    }
+
+    pub(super) fn on(&self, group: FurtherGroup) -> bool {
+        self.0[group as usize]
+    }
+
+    /// Contribution of the further states to φ (rows 0 to 2) and δv (rows 3 to 5): `−C ε`, `C ∇` and
+    /// `δg`. `used`: the gyros and the accelerometers that measured; `decay`: of the Gauss-Markov
+    /// biases, from the last propagation to the middle of the sub-step.
+    ///
+    /// The computed gravity lacks the disturbance, so that its error is the negative one:
+    /// `δg = (ξ g, η g, −Δg)`. Where known motion replaced the accelerometers, gravity has no effect.
+    pub(super) fn input(
+        &self,
+        interval: &MotionInterval,
+        integrals: &FurtherIntegrals,
+        earth: &Ellipsoid,
+        used: ([bool; 3], bool),
+        decay: [f64; 2],
+    ) -> [FurtherRow; 6] {
+        let h = interval.interval_s;
+        let mut input = [[0.0; ROW]; 6];
+        for i in 0..3 {
+            let c = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
+            for axis in 0..3 {
+                if used.0[axis] {
+                    let phi = &mut input[i];
+                    if self.on(FurtherGroup::GyroAsymmetry) {
+                        phi[FurtherGroup::GyroAsymmetry.start() + axis] =
+                            -c[axis] * integrals.turned[axis];
+                    }
+                    if self.on(FurtherGroup::GyroGaussMarkov) {
+                        phi[FurtherGroup::GyroGaussMarkov.start() + axis] =
+                            -c[axis] * (h * decay[0]);
+                    }
+                }
+                if !used.1 {
+                    continue;
+                }
+                let dv = &mut input[3 + i];
+                if self.on(FurtherGroup::AccelLever) {
+                    for column in 0..3 {
+                        dv[FurtherGroup::AccelLever.start() + 3 * axis + column] =
+                            c[axis] * integrals.size[(axis, column)];
+                    }
+                }
+                if self.on(FurtherGroup::AccelAsymmetry) {
+                    dv[FurtherGroup::AccelAsymmetry.start() + axis] =
+                        c[axis] * integrals.pushed[axis];
+                }
+                if self.on(FurtherGroup::AccelQuadratic) {
+                    dv[FurtherGroup::AccelQuadratic.start() + axis] =
+                        c[axis] * integrals.squared[axis];
+                }
+                if self.on(FurtherGroup::AccelGaussMarkov) {
+                    dv[FurtherGroup::AccelGaussMarkov.start() + axis] = c[axis] * (h * decay[1]);
+                }
+            }
+        }
+        if used.1 {
+            if self.on(FurtherGroup::Deflection) {
+                let at = FurtherGroup::Deflection.start();
+                input[3][at] = earth.gravity_mps2 * h;
+                input[4][at + 1] = earth.gravity_mps2 * h;
+            }
+            if self.on(FurtherGroup::GravityAnomaly) {
+                input[5][FurtherGroup::GravityAnomaly.start()] = -h;
+            }
+        }
+        input
+    }
+}
