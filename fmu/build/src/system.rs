@@ -34,6 +34,13 @@ impl Configured {
         }
         let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed)
             .map_err(|error| failed(error.to_string()))?;
+        // The parameters of the Calibrator have no place for them.
+        if scenario.has_further_states() {
+            return Err(failed(
+                "procedure.calibration.further is given, and the FMU has no parameters for these states"
+                    .to_owned(),
+            ));
+        }
         let faults: Vec<_> = scenario.faults.iter().map(|fault| fault.spec.clone()).collect();
         let period_s = scenario.sample_period_ns as f64 * 1e-9;
         // One step more than samples: there is no sample before the first step.

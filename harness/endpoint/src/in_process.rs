@@ -1,7 +1,7 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
-use octant_calibration::config::NavigationPlan;
+use octant_calibration::config::{Estimator, FurtherUse, NavigationPlan};
 use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::{Core, CoreConfig};
 use octant_sample::parameters::ParameterEstimate;
@@ -43,6 +43,13 @@ impl InProcess {
         self.core.plan_navigation(navigation.clone())?;
         self.config.navigation = navigation;
         Ok(())
+    }
+
+    /// Returns whether the core estimates further states.
+    fn has_further_estimates(&self) -> bool {
+        let estimator = self.config.calibration.as_ref().map(|calibration| &calibration.estimator);
+        let Some(Estimator::Kalman(kalman)) = estimator else { return false };
+        kalman.further.groups.iter().any(|group| matches!(group, FurtherUse::Estimated { .. }))
     }
 
     /// Returns the core itself, after its last step.
@@ -106,8 +113,11 @@ impl Endpoint for InProcess {
             refused: self.core.refusal().map(ToString::to_string),
             nis_mean: Some(quality.nis_mean),
             measurements: Some(quality.used + quality.rejected),
-            table: self.core.table().cloned(),
+            // A table has the parameters alone: without the further states that were estimated beside them it would
+            // be another compensation.
+            table: self.core.table().filter(|_| !self.has_further_estimates()).cloned(),
             solution: self.core.concluded().copied(),
+            further: self.core.further().copied(),
             events: Vec::new(),
         }
     }

@@ -24,6 +24,7 @@ use octant_link::harness::SessionError;
 use octant_mapping::stepper::UseError;
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::Event;
+use octant_sample::further::FurtherEstimates;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
@@ -161,6 +162,8 @@ pub struct Conclusion {
     pub table: Option<CalibrationTable>,
     /// Covariance of attitude and velocity at the end of the calibration, where there is one.
     pub solution: Option<SolutionCovariance>,
+    /// Further states of the filter, where it has any and no wire is between.
+    pub further: Option<FurtherEstimates>,
     /// Events of the connection to be recorded: frames that a wire carried and lost.
     pub events: Vec<Event>,
 }

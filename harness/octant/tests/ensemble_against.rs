@@ -114,6 +114,7 @@ impl Bench {
                 estimator: "kalman".to_owned(),
                 duration_h: 0.4,
                 parameters: NAMES.map(|name| (name.to_owned(), parameter(name))).into(),
+                further: BTreeMap::new(),
                 nis_mean: Some(3.0),
                 nees: BTreeMap::new(),
                 worst_normalized_error: None,

@@ -95,6 +95,7 @@ fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) 
         nees: parameters::nees(&parameters),
         worst_normalized_error: parameters::worst_normalized_error(&parameters, &[]),
         parameters,
+        further: BTreeMap::new(),
         refused: None,
         health: HealthCounts { measurements: 86_400, ..HealthCounts::default() },
         sigma_hours: Vec::new(),

@@ -48,6 +48,7 @@ fn summary() -> Summary {
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
             parameters: BTreeMap::new(),
+            further: BTreeMap::new(),
             nis_mean: Some(3.01),
             nees: BTreeMap::new(),
             worst_normalized_error: None,

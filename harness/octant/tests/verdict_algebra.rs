@@ -140,6 +140,7 @@ impl Parts {
             estimator: "kalman".to_owned(),
             duration_h: 4.0,
             parameters: BTreeMap::new(),
+            further: BTreeMap::new(),
             nis_mean: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,

@@ -2,8 +2,10 @@
 
 use maud::{Markup, html};
 use octant_base::number;
+use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_score::summary::{CalibrationScore, ParameterScore};
+use std::collections::BTreeMap;
 
 /// Width of the strip in σ on each side.
 const STRIP_SIGMA: f64 = 5.0;
@@ -34,6 +36,9 @@ pub(super) fn table(calibration: &CalibrationScore, baseline: Option<&Calibratio
                 @for group in ParameterGroup::ALL {
                     (group_rows(group, calibration, baseline))
                 }
+                @for group in FurtherGroup::ALL {
+                    (further_rows(group, calibration, baseline))
+                }
             }
         }
     }
@@ -44,23 +49,61 @@ fn group_rows(
     calibration: &CalibrationScore,
     baseline: Option<&CalibrationScore>,
 ) -> Markup {
+    let heading = html! {
+        (title(group)) " " span.soft { (group.unit()) }
+        @if let Some(nees) = calibration.nees.get(group.name()) {
+            span.soft { " · mean (error/σ)² " (number::fixed(*nees, 2)) }
+        }
+    };
     let names = &NAMES[group.range()];
-    let scores: Vec<_> = names.iter().filter_map(|n| calibration.parameters.get(*n)).collect();
+    rows(&heading, names, &calibration.parameters, baseline.map(|other| &other.parameters))
+}
+
+/// Returns the title of a group of further states.
+fn further_title(group: FurtherGroup) -> &'static str {
+    match group {
+        FurtherGroup::AccelLever => "Accelerometer lever arm",
+        FurtherGroup::GyroAsymmetry => "Gyro scale factor asymmetry",
+        FurtherGroup::AccelAsymmetry => "Accelerometer scale factor asymmetry",
+        FurtherGroup::AccelQuadratic => "Accelerometer second order",
+        FurtherGroup::GyroGaussMarkov => "Gyro Gauss-Markov bias",
+        FurtherGroup::AccelGaussMarkov => "Accelerometer Gauss-Markov bias",
+        FurtherGroup::Deflection => "Deflection of the vertical",
+        FurtherGroup::GravityAnomaly => "Gravity anomaly",
+    }
+}
+
+fn further_rows(
+    group: FurtherGroup,
+    calibration: &CalibrationScore,
+    baseline: Option<&CalibrationScore>,
+) -> Markup {
+    let names = &FURTHER_NAMES[group.range()];
+    if names.iter().all(|name| !calibration.further.contains_key(*name)) {
+        return html! {};
+    }
+    let heading = html! { (further_title(group)) " " span.soft { (group.unit()) } };
+    rows(&heading, names, &calibration.further, baseline.map(|other| &other.further))
+}
+
+/// Renders the rows of a group.
+fn rows(
+    heading: &Markup,
+    names: &[&str],
+    scores: &BTreeMap<String, ParameterScore>,
+    baseline: Option<&BTreeMap<String, ParameterScore>>,
+) -> Markup {
+    let found: Vec<_> = names.iter().filter_map(|n| scores.get(*n)).collect();
     // Two digits of the smallest σ, the same for the whole group, so that the columns line up.
-    let smallest = scores.iter().filter_map(|s| s.sigma).reduce(f64::min);
-    let largest = scores.iter().map(|s| s.estimate.abs()).fold(0.0, f64::max);
+    let smallest = found.iter().filter_map(|s| s.sigma).reduce(f64::min);
+    let largest = found.iter().map(|s| s.estimate.abs()).fold(0.0, f64::max);
     let decimals =
         number::decimals_for(smallest.unwrap_or(largest), if smallest.is_some() { 2 } else { 4 });
     html! {
-        tr.group { td colspan="7" {
-            (title(group)) " " span.soft { (group.unit()) }
-            @if let Some(nees) = calibration.nees.get(group.name()) {
-                span.soft { " · mean (error/σ)² " (number::fixed(*nees, 2)) }
-            }
-        } }
+        tr.group { td colspan="7" { (heading) } }
         @for name in names {
-            @if let Some(score) = calibration.parameters.get(*name) {
-                (row(name, score, baseline.and_then(|b| b.parameters.get(*name)), decimals))
+            @if let Some(score) = scores.get(*name) {
+                (row(name, score, baseline.and_then(|all| all.get(*name)), decimals))
             }
         }
     }

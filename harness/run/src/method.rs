@@ -29,7 +29,7 @@ use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{self as scenario, Method, Realtime, Scenario};
-use octant_score::parameters::{nees, score, worst_normalized_error};
+use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
 use octant_score::summary::{
     AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
 };
@@ -414,6 +414,11 @@ pub(super) fn finish(
     }
     .map(|plan| {
         let parameters = score(truth.as_ref(), &estimate.parameters, &estimate.sigma);
+        let further = conclusion.further.as_ref().map(|found| {
+            let of_plant = octant_plant::further::truth;
+            let of_scenario = of_plant(&scenario.imu.extensions, &scenario.site.gravity);
+            score_further(truth.is_some().then_some(&of_scenario), found)
+        });
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
@@ -431,6 +436,7 @@ pub(super) fn finish(
             nees: nees(&parameters),
             worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
             parameters,
+            further: further.unwrap_or_default(),
             refused: refused.clone(),
             health,
             sigma_hours: watcher

@@ -85,6 +85,8 @@ dimensions! {
     SCALE_PER_K = [0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K";
     /// Random walk of an accelerometer bias.
     ACCEL_RANDOM_WALK = [2, -5, 0, 0, 0], "a random walk of acceleration", "1 ug/sqrt(h)", "ug/sqrt(h)", "m/s^2/sqrt(s)";
+    /// Second-order coefficient of an accelerometer.
+    ACCEL_QUADRATIC = [-2, 4, 0, 0, 0], "a second-order coefficient", "10 ug/g^2", "ug/g^2", "s^2/m";
     /// Power spectral density of a vibration.
     ACCELERATION_PSD = [4, -6, 0, 0, 0], "a spectral density of acceleration", "0.01 g^2/Hz", "g^2/Hz", "(m/s^2)^2/Hz";
 }

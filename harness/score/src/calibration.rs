@@ -21,6 +21,10 @@ pub struct CalibrationScore {
     pub solution: Option<SolutionScore>,
     /// Every parameter by its name.
     pub parameters: BTreeMap<String, ParameterScore>,
+    /// Errors beside the parameters that the filter considered or estimated, by their names. Empty where there are
+    /// none, and with a core that isn't called directly.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub further: BTreeMap<String, ParameterScore>,
     /// Mean normalized innovation squared; expected: 3 for three axes.
     pub nis_mean: Option<f64>,
     /// Normalized estimation error squared by group, divided by the size of the group; expected: 1.

@@ -4,6 +4,7 @@
 use super::summary::ParameterScore;
 use nalgebra::{SMatrix, SVector};
 use octant_sample::Parameters;
+use octant_sample::further::{FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup};
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use std::collections::BTreeMap;
 
@@ -34,6 +35,34 @@ pub fn score(
             (NAMES[i].to_owned(), score)
         })
         .collect()
+}
+
+/// Scores the further states that the core has, in the units for users. Those that are considered have an estimate of
+/// zero, and their prior as σ.
+#[must_use]
+pub fn score_further(
+    truth: Option<&[Option<f64>; FURTHER_COUNT]>,
+    found: &FurtherEstimates,
+) -> BTreeMap<String, ParameterScore> {
+    let of = |group: FurtherGroup| {
+        let unit = group.si_per_unit();
+        let score = move |index: usize| {
+            let (estimate, sigma) = (found.value[index], found.sigma[index]);
+            let truth = truth.and_then(|truth| truth[index]);
+            let error = truth.map(|truth| estimate - truth);
+            let score = ParameterScore {
+                r#true: truth.map(|truth| truth / unit),
+                estimate: estimate / unit,
+                sigma: Some(sigma / unit),
+                error: error.map(|error| error / unit),
+                normalized: error.map(|error| error / sigma),
+                unit: group.unit().to_owned(),
+            };
+            (FURTHER_NAMES[index].to_owned(), score)
+        };
+        group.range().filter(|index| found.sigma[*index] > 0.0).map(score)
+    };
+    FurtherGroup::ALL.into_iter().flat_map(of).collect()
 }
 
 /// Mean of e²/σ² over the estimated parameters of each group, by the name of the group: near 1 if the

@@ -28,6 +28,7 @@ fn calibration(estimate: f64, refused: Option<&str>) -> CalibrationScore {
             ("g_xx".to_owned(), score(0.0, None)),
         ]
         .into(),
+        further: BTreeMap::new(),
         nis_mean: None,
         nees: BTreeMap::new(),
         worst_normalized_error: None,

@@ -22,6 +22,7 @@ mod disturbed;
 pub mod draw;
 mod encoder;
 pub mod flicker;
+pub mod further;
 mod gimbal;
 mod imu;
 mod increments;

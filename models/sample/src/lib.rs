@@ -17,6 +17,7 @@ pub mod counts;
 #[cfg(feature = "alloc")]
 pub mod disturbance;
 pub mod epoch;
+pub mod further;
 pub mod gimbal;
 pub mod imu;
 pub mod innovation;

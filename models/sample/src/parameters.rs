@@ -9,7 +9,7 @@
 pub const PARAMETER_COUNT: usize = 30;
 
 /// Standard gravity, the g of "µg" and "per g", m/s².
-const STANDARD_GRAVITY: f64 = 9.806_65;
+pub(crate) const STANDARD_GRAVITY: f64 = 9.806_65;
 const RAD_PER_DEG: f64 = core::f64::consts::PI / 180.0;
 
 /// Parameters in SI, in the order of the filter's states. They are errors: compensation subtracts

@@ -13,18 +13,29 @@ const SEED_EXACT: u64 = 1 << 53;
 /// Sets the parameters to a configuration. Parameters that it doesn't use keep their values.
 ///
 /// # Errors
-/// If a motion of the ship has more sinusoids than there is room for.
+/// If a motion of the ship has more sinusoids than there is room for, or there is no parameter for something.
 pub(super) fn put(config: &PlantConfig, values: &mut CellValues) -> Result<(), PlantValueError> {
     let PlantConfig {
         sample_period_ns,
         seed,
         calibration_samples,
-        site: PlantSite { latitude_rad, longitude_rad, height_m, gravity: _ },
+        site: PlantSite { latitude_rad, longitude_rad, height_m, gravity },
         motion,
         turntable,
         imu,
         aiding,
     } = config;
+    let extensions = &imu.extensions;
+    for (name, has_value) in [
+        ("the gravity disturbance of the site", *gravity != GravityDisturbance::default()),
+        ("the asymmetry of the gyros", extensions.gyro_asymmetry != [0.0; 3]),
+        ("the asymmetry of the accelerometers", extensions.accel_asymmetry != [0.0; 3]),
+        ("the second order of the accelerometers", extensions.accel_quadratic != [0.0; 3]),
+    ] {
+        if has_value {
+            return Err(PlantValueError::NoParameter(name));
+        }
+    }
     values.set_count(slot::PERIOD, *sample_period_ns);
     let (seed, high) =
         if *seed < SEED_EXACT { (*seed, 0) } else { (*seed & 0xFFFF_FFFF, *seed >> 32) };
@@ -224,6 +235,7 @@ fn put_extensions(extensions: &Extensions, values: &mut CellValues) {
         temperature,
         vibration,
         lever_arm_m,
+        // Zero: there are no parameters for them.
         gyro_asymmetry: _,
         accel_asymmetry: _,
         accel_quadratic: _,

@@ -15,6 +15,9 @@ pub enum PlantValueError {
         /// Value found.
         found: i32,
     },
+    /// An error of the sensors or of gravity for which there is no parameter.
+    #[error("{0} is not zero, and the FMU has no parameter for it")]
+    NoParameter(&'static str),
     /// The number of sinusoids is out of range.
     #[error("{label} is {found}, 0 to {SINUSOIDS_MAX} is expected")]
     Sinusoids {

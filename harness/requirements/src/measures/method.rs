@@ -1,7 +1,7 @@
 //! Measures of one method: alignment, calibration, navigation.
 
 use super::need::MeasureNeed::{
-    Calibration, Day, Navigation, SchulerPeriod, Sigma, ThreeDays, Truth,
+    Calibration, Day, Further, Navigation, SchulerPeriod, Sigma, ThreeDays, Truth,
 };
 use super::place::{
     ARCMIN, DEG, HOUR, Keys, MPS, NMI, Names, Place, SECOND, Unit, count, magnitude, signed, table,
@@ -49,6 +49,10 @@ pub(super) const CALIBRATION: Place = table(
         (
             "parameters",
             Place::Each { meaning: "", needs: &[], names: Names::Parameters, of: &PARAMETER },
+        ),
+        (
+            "further",
+            Place::Each { meaning: "", needs: &[Further], names: Names::Further, of: &PARAMETER },
         ),
         (
             "nis_mean",

@@ -10,6 +10,7 @@ mod tree;
 
 pub use need::MeasureNeed;
 
+use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use place::{Names, Number, Place, Unit};
 use serde::Serialize;
@@ -45,8 +46,8 @@ pub struct PathError {
 /// Number at the end of a path.
 struct Found {
     number: &'static Number,
-    /// Parameter on the way to it.
-    parameter: Option<usize>,
+    /// Unit of the parameter on the way to it.
+    parameter: Option<&'static str>,
 }
 
 /// Checks that a run can have the measure at this path (without bars).
@@ -73,9 +74,7 @@ fn walk(path: &str) -> Result<Found, PathError> {
         at = match at {
             Place::Table { keys, .. } => &keys[index].1,
             Place::Each { names, of, .. } => {
-                if let Names::Parameters = names {
-                    parameter = Some(index);
-                }
+                parameter = names.unit(index).or(parameter);
                 of
             }
             // A number has no keys.
@@ -95,6 +94,7 @@ fn keys(place: &Place) -> Vec<&'static str> {
         Place::Number(_) => Vec::new(),
         Place::Table { keys, .. } => keys.iter().map(|(key, _)| *key).collect(),
         Place::Each { names: Names::Parameters, .. } => NAMES.to_vec(),
+        Place::Each { names: Names::Further, .. } => FURTHER_NAMES.to_vec(),
         Place::Each { names: Names::Groups, .. } => {
             ParameterGroup::ALL.map(ParameterGroup::name).to_vec()
         }
@@ -109,11 +109,22 @@ pub fn unit(path: &str) -> Option<&'static str> {
     unit_of(number, parameter)
 }
 
-fn unit_of(number: &Number, parameter: Option<usize>) -> Option<&'static str> {
+impl Names {
+    /// Unit of the quantity with this index in the set.
+    fn unit(self, index: usize) -> Option<&'static str> {
+        match self {
+            Self::Parameters => Some(ParameterGroup::of(index).unit()),
+            Self::Further => FurtherGroup::of(index).map(FurtherGroup::unit),
+            Self::Groups => None,
+        }
+    }
+}
+
+fn unit_of(number: &Number, parameter: Option<&'static str>) -> Option<&'static str> {
     match number.unit {
         Unit::One | Unit::Sigma => None,
         Unit::Named(unit) => Some(unit),
-        Unit::Parameter => parameter.map(|index| ParameterGroup::of(index).unit()),
+        Unit::Parameter => parameter,
     }
 }
 
@@ -141,7 +152,7 @@ pub fn all() -> Vec<MeasureEntry> {
 #[derive(Clone, Default)]
 struct Walked {
     path: Vec<&'static str>,
-    parameter: Option<usize>,
+    parameter: Option<&'static str>,
     meaning: Vec<&'static str>,
     needs: Vec<MeasureNeed>,
 }
@@ -187,9 +198,7 @@ fn collect(place: &'static Place, walked: &Walked, found: &mut Vec<MeasureEntry>
             let walked = walked.with(meaning, needs);
             for (index, key) in keys(place).into_iter().enumerate() {
                 let mut next = walked.to(key).with(key, &[]);
-                if let Names::Parameters = names {
-                    next.parameter = Some(index);
-                }
+                next.parameter = names.unit(index).or(next.parameter);
                 collect(of, &next, found);
             }
         }

@@ -7,6 +7,8 @@ use serde::{Serialize, Serializer};
 pub enum MeasureNeed {
     /// A calibration.
     Calibration,
+    /// States of the filter beside the parameters.
+    Further,
     /// A navigation.
     Navigation,
     /// Truth to compare with.
@@ -31,8 +33,9 @@ pub enum MeasureNeed {
 
 impl MeasureNeed {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Calibration,
+        Self::Further,
         Self::Navigation,
         Self::Truth,
         Self::Sigma,
@@ -50,6 +53,7 @@ impl MeasureNeed {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Calibration => "calibration",
+            Self::Further => "further",
             Self::Navigation => "navigation",
             Self::Truth => "truth",
             Self::Sigma => "sigma",
@@ -68,6 +72,9 @@ impl MeasureNeed {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Calibration => "a calibration: [procedure.calibration]",
+            Self::Further => {
+                "errors beside the parameters in the filter: [procedure.calibration.further]"
+            }
             Self::Navigation => "a navigation: [procedure.navigation]",
             Self::Truth => "truth to compare with: a simulated source, or one that delivers truth",
             Self::Sigma => {

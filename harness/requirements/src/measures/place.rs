@@ -41,7 +41,7 @@ pub(super) enum Unit {
     Sigma,
     /// This unit.
     Named(&'static str),
-    /// Unit of the parameter on the way to the number.
+    /// Unit of the parameter, or of the further state, on the way to the number.
     Parameter,
 }
 
@@ -49,6 +49,7 @@ pub(super) enum Unit {
 #[derive(Clone, Copy)]
 pub(super) enum Names {
     Parameters,
+    Further,
     Groups,
 }
 

@@ -1,6 +1,7 @@
 //! Keys of the procedure: alignment, calibration, navigation, screening, baseline.
 
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
+use super::further::FurtherKeys;
 use super::table::{
     At, Keys, Of, Value, boolean, choice, integer, keys, number, si, si_array, si_list, table,
     tables, text, time, within,
@@ -182,6 +183,8 @@ keys! {
             "Further parameter groups that the filter does not estimate.";
         refuse_above_mean_nis: f64 = number(Bounds::Positive), "9.0",
             "Mean normalized innovation squared (three axes) above which the calibration is refused.";
+        further: At<Option<FurtherKeys>> = table::<FurtherKeys>(), absent("none"),
+            "Errors beside the thirty parameters that the filter considers or estimates.";
         prior: PriorKeys = table(), section, "Standard deviations that the filter starts from.";
         aiding: AidingKeys = table(), section, "The reference that the filter measures against.";
         least_squares: LeastSquaresKeys = table(), section,
@@ -349,4 +352,8 @@ pub(super) static BASELINE: Section = section(&[
     as_primary("error_model", "Form of the filter's system error model."),
     as_primary("g_states", "Whether the filter estimates the g-dependent biases."),
     as_primary("not_estimated", "Further groups that the filter does not estimate."),
+    as_primary(
+        "further",
+        "Errors beside the thirty parameters that this filter considers or estimates; {} for none.",
+    ),
 ]);

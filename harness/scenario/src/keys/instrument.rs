@@ -109,6 +109,13 @@ keys! {
             "Sinusoidal vibration of the sensor block, felt alike by gyros and accelerometers.";
         lever_arm: LeverArmKeys = table(), section,
             "Position of each accelerometer from the centre of rotation (size effect).";
+        gyro_asymmetry: [f64; 3] = si_array(UnitDimension::RATIO), RATIOS,
+            "Asymmetry of the gyros' scale factors a, x, y, z: a reading is too large by a |rate|.";
+        accel_asymmetry: [f64; 3] = si_array(UnitDimension::RATIO), RATIOS,
+            "Asymmetry of the accelerometers' scale factors a, x, y, z: a reading is too large by a |specific force|.";
+        accel_quadratic: [f64; 3]
+            = si_array(UnitDimension::ACCEL_QUADRATIC), r#"["0 ug/g^2", "0 ug/g^2", "0 ug/g^2"]"#,
+            "Second-order coefficients of the accelerometers (K2), x, y, z.";
         time_skew: f64 = time(-1.0, 1.0, "within ±1 s"), "0 s",
             "Stamp minus true time of validity of the inertial data, against the gimbal angles.";
     }
@@ -170,6 +177,7 @@ keys! {
     }
 }
 
+const RATIOS: &str = r#"["0 ppm", "0 ppm", "0 ppm"]"#;
 const ARM: &str = r#"["0 m", "0 m", "0 m"]"#;
 
 keys! {

@@ -13,6 +13,7 @@ mod definition;
 mod drive;
 mod faults;
 mod fmu;
+mod further;
 mod instrument;
 mod link;
 mod run;
@@ -37,6 +38,7 @@ pub(crate) use drive::DriveKeys;
 pub use faults::dimension as fault_dimension;
 pub(crate) use faults::{Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
+pub(crate) use further::FurtherKeys;
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;
 pub(crate) use run::{

@@ -98,6 +98,15 @@ keys! {
             "Longitude, east positive.";
         height: f64 = within(&[UnitDimension::LENGTH], -10e3, 100e3, "from -10 km to 100 km"), "0 m",
             "Height above the ellipsoid.";
+        deflection_north: f64
+            = within(&[UnitDimension::SMALL_ANGLE], -0.1 * DEG, 0.1 * DEG, "within ±6 arcmin"), "0 arcsec",
+            "Deflection of the vertical to the north (ξ): positive where the astronomic zenith is north of the geodetic one.";
+        deflection_east: f64
+            = within(&[UnitDimension::SMALL_ANGLE], -0.1 * DEG, 0.1 * DEG, "within ±6 arcmin"), "0 arcsec",
+            "Deflection of the vertical to the east (η).";
+        gravity_anomaly: f64
+            = within(&[UnitDimension::ACCEL_BIAS], -0.01, 0.01, "within ±0.01 m/s^2 (1000 mGal)"), "0 ug",
+            "True minus normal gravity.";
     }
 }
 

@@ -162,6 +162,15 @@ fn known_faults(id: &str, known: &[String]) -> String {
 }
 
 impl Scenario {
+    /// Returns whether a filter of the scenario considers or estimates errors beside the parameters.
+    #[must_use]
+    pub fn has_further_states(&self) -> bool {
+        let filters = [&self.calibration, &self.baseline].into_iter().flatten();
+        filters.map(|calibration| &calibration.estimator).any(|estimator| {
+            matches!(estimator, core::Estimator::Kalman(of) if of.further != core::Further::default())
+        })
+    }
+
     /// Makes the same scenario without its faults.
     #[must_use]
     pub fn without_faults(&self) -> Self {

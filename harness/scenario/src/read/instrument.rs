@@ -60,7 +60,9 @@ pub(super) fn imu(imu: &ImuKeys) -> Result<plant::Imu, Problem> {
             }),
             lever_arm_m: [more.lever_arm.x, more.lever_arm.y, more.lever_arm.z],
             time_skew_s: more.time_skew,
-            ..plant::Extensions::default()
+            gyro_asymmetry: more.gyro_asymmetry,
+            accel_asymmetry: more.accel_asymmetry,
+            accel_quadratic: more.accel_quadratic,
         },
     })
 }

@@ -4,6 +4,7 @@
 mod drive;
 pub mod faults;
 mod fmu;
+mod further;
 mod instrument;
 mod instrument_port;
 mod live;
@@ -38,7 +39,11 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         latitude_rad: keys.site.latitude,
         longitude_rad: keys.site.longitude,
         height_m: keys.site.height,
-        gravity: Default::default(),
+        gravity: plant::GravityDisturbance {
+            deflection_north_rad: keys.site.deflection_north,
+            deflection_east_rad: keys.site.deflection_east,
+            anomaly_mps2: keys.site.gravity_anomaly,
+        },
     };
     let motion = instrument::motion(&keys.motion);
     let turntable = instrument::turntable(&keys.turntable);
@@ -90,6 +95,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
     let reference = reference::read(&keys, &scenario)?;
     let scenario = Scenario { reference, ..scenario };
     check_once(&keys, &scenario)?;
+    further::check_endpoint(&keys.endpoint.uri, &scenario)?;
     trajectory::check(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {
         drive::check_reach(keys, &scenario)?;

@@ -1,5 +1,6 @@
 //! The core's procedure: alignment, the methods of calibration, navigation, screening.
 
+use super::further::further;
 use super::reader::Reader;
 use super::sequence::{self, from_degrees, stops};
 use crate::document::{DocumentNode, DocumentTable, DocumentValue};
@@ -189,8 +190,9 @@ fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibrat
         return Err(not_whole(&keys.duration, setting));
     }
     let aiding = aiding(&keys.aiding, setting)?;
+    let further = further(keys)?;
     let estimator = match *keys.estimator {
-        EstimatorName::Kalman => core::Estimator::Kalman(kalman(keys, &aiding)?),
+        EstimatorName::Kalman => core::Estimator::Kalman(kalman(keys, &aiding, further)?),
         EstimatorName::LeastSquares => {
             core::Estimator::LeastSquares(least_squares(&keys.least_squares))
         }
@@ -311,7 +313,11 @@ fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
     Ok(Aiding { source: plant::AidingSource { kind, period_ns }, mode, sway: *keys.sway })
 }
 
-fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Problem> {
+fn kalman(
+    keys: &CalibrationKeys,
+    aiding: &Aiding,
+    further: core::Further,
+) -> Result<core::Kalman, Problem> {
     let prior = &keys.prior;
     let estimated = ParameterGroup::ALL.map(|group| {
         !keys.not_estimated.iter().any(|name| name == group.name())
@@ -341,7 +347,7 @@ fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Probl
         aiding_period_ns: aiding.source.period_ns,
         sway: aiding.sway,
         refuse_above_mean_nis: keys.refuse_above_mean_nis,
-        further: Default::default(),
+        further,
     })
 }
 

@@ -1,0 +1,65 @@
+//! Keys of the errors that a filter can take into account beside the thirty parameters.
+
+use super::definition::Bounds;
+use super::table::{keys, si, table};
+use crate::quantity::UnitDimension;
+use octant_calibration::config::FurtherUse;
+
+/// Keys of one group: its treatment, with the standard deviation that it starts from.
+macro_rules! group {
+    ($name:ident, $dimension:expr) => {
+        keys! {
+            /// A group of errors.
+            pub(crate) one of $name {
+                estimated: Option<f64> = si(&[$dimension], Bounds::Positive),
+                    "The filter estimates and compensates them, from this standard deviation.";
+                considered: Option<f64> = si(&[$dimension], Bounds::Positive),
+                    "Their uncertainty of this standard deviation counts, and they are never moved (Schmidt).";
+            }
+        }
+
+        impl $name {
+            /// Treatment of the group.
+            pub(crate) fn treatment(&self) -> FurtherUse {
+                let estimated = self.estimated.map(|sigma| FurtherUse::Estimated { sigma });
+                let considered = self.considered.map(|sigma| FurtherUse::Considered { sigma });
+                estimated.or(considered).unwrap_or_default()
+            }
+        }
+    };
+}
+group!(LeverUse, UnitDimension::LENGTH);
+group!(RatioUse, UnitDimension::RATIO);
+group!(QuadraticUse, UnitDimension::ACCEL_QUADRATIC);
+group!(GyroUse, UnitDimension::GYRO_BIAS);
+group!(AccelUse, UnitDimension::ACCEL_BIAS);
+group!(AngleUse, UnitDimension::SMALL_ANGLE);
+
+keys! {
+    /// `[procedure.calibration.further]`.
+    pub(crate) struct FurtherKeys {
+        accel_lever: Option<LeverUse> = table::<LeverUse>(), absent("off"),
+            "Positions of the accelerometers' proof masses from the centre of rotation (size effect), nine.";
+        gyro_asymmetry: Option<RatioUse> = table::<RatioUse>(), absent("off"),
+            "Difference of the gyros' scale factors by the sign of the rate, of which this is half, three.";
+        accel_asymmetry: Option<RatioUse> = table::<RatioUse>(), absent("off"),
+            "The same of the accelerometers, three.";
+        accel_quadratic: Option<QuadraticUse> = table::<QuadraticUse>(), absent("off"),
+            "Second-order coefficients of the accelerometers (K2), three.";
+        gyro_gauss_markov: Option<GyroUse> = table::<GyroUse>(), absent("off"),
+            "First-order Gauss-Markov biases of the gyros, three.";
+        gyro_correlation_time: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 h",
+            "Correlation time of gyro_gauss_markov.";
+        accel_gauss_markov: Option<AccelUse> = table::<AccelUse>(), absent("off"),
+            "First-order Gauss-Markov biases of the accelerometers, three.";
+        accel_correlation_time: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "1 h",
+            "Correlation time of accel_gauss_markov.";
+        gyro_rate_random_walk: f64
+            = si(&[UnitDimension::RATE_RANDOM_WALK], Bounds::NotNegative), "0 deg/h/sqrt(h)",
+            "Rate random walk of the gyros: process noise of their biases. With it the biases are no constants, and the drift test is off.";
+        deflection: Option<AngleUse> = table::<AngleUse>(), absent("off"),
+            "Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be considered.";
+        gravity_anomaly: Option<AccelUse> = table::<AccelUse>(), absent("off"),
+            "True minus normal gravity. On a base at rest it can't be told from a common scale factor of the accelerometers: to be considered.";
+    }
+}

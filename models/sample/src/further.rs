@@ -1,0 +1,169 @@
+//! Further states of a calibration: errors beside the thirty parameters. What each of them is stands in the core's
+//! module of the same name.
+
+use crate::parameters::{ParameterGroup, STANDARD_GRAVITY};
+use core::ops::Range;
+
+/// Number of further states.
+pub const FURTHER_COUNT: usize = 27;
+
+/// Names of the further states, in the order in which they are stored.
+pub const FURTHER_NAMES: [&str; FURTHER_COUNT] = [
+    "accel_lever_xx",
+    "accel_lever_xy",
+    "accel_lever_xz",
+    "accel_lever_yx",
+    "accel_lever_yy",
+    "accel_lever_yz",
+    "accel_lever_zx",
+    "accel_lever_zy",
+    "accel_lever_zz",
+    "gyro_asymmetry_x",
+    "gyro_asymmetry_y",
+    "gyro_asymmetry_z",
+    "accel_asymmetry_x",
+    "accel_asymmetry_y",
+    "accel_asymmetry_z",
+    "accel_quadratic_x",
+    "accel_quadratic_y",
+    "accel_quadratic_z",
+    "gyro_gauss_markov_x",
+    "gyro_gauss_markov_y",
+    "gyro_gauss_markov_z",
+    "accel_gauss_markov_x",
+    "accel_gauss_markov_y",
+    "accel_gauss_markov_z",
+    "deflection_north",
+    "deflection_east",
+    "gravity_anomaly",
+];
+
+/// Group of further states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FurtherGroup {
+    /// Inner lever arms of the accelerometers, m: row i is the position of proof mass i.
+    AccelLever,
+    /// Asymmetry of the gyros' scale factors.
+    GyroAsymmetry,
+    /// Asymmetry of the accelerometers' scale factors.
+    AccelAsymmetry,
+    /// Second-order coefficients of the accelerometers, 1/(m/s²).
+    AccelQuadratic,
+    /// Gauss-Markov biases of the gyros, rad/s.
+    GyroGaussMarkov,
+    /// Gauss-Markov biases of the accelerometers, m/s².
+    AccelGaussMarkov,
+    /// Deflection of the vertical, north (ξ) and east (η), rad.
+    Deflection,
+    /// Gravity anomaly, m/s²: true minus normal gravity.
+    GravityAnomaly,
+}
+
+impl FurtherGroup {
+    /// All groups, in the order in which they are stored.
+    pub const ALL: [Self; 8] = [
+        Self::AccelLever,
+        Self::GyroAsymmetry,
+        Self::AccelAsymmetry,
+        Self::AccelQuadratic,
+        Self::GyroGaussMarkov,
+        Self::AccelGaussMarkov,
+        Self::Deflection,
+        Self::GravityAnomaly,
+    ];
+
+    /// Place among the further states.
+    #[must_use]
+    pub const fn range(self) -> Range<usize> {
+        match self {
+            Self::AccelLever => 0..9,
+            Self::GyroAsymmetry => 9..12,
+            Self::AccelAsymmetry => 12..15,
+            Self::AccelQuadratic => 15..18,
+            Self::GyroGaussMarkov => 18..21,
+            Self::AccelGaussMarkov => 21..24,
+            Self::Deflection => 24..26,
+            Self::GravityAnomaly => 26..27,
+        }
+    }
+
+    /// First place among the further states.
+    #[must_use]
+    pub const fn start(self) -> usize {
+        self.range().start
+    }
+
+    /// Group of the further state at this place; `None` beyond the last.
+    #[must_use]
+    pub fn of(index: usize) -> Option<Self> {
+        Self::ALL.into_iter().find(|group| group.range().contains(&index))
+    }
+
+    /// Unit shown to users.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::AccelLever => "mm",
+            Self::GyroAsymmetry | Self::AccelAsymmetry => "ppm",
+            Self::AccelQuadratic => "ug/g^2",
+            Self::GyroGaussMarkov => "deg/h",
+            Self::AccelGaussMarkov | Self::GravityAnomaly => "ug",
+            Self::Deflection => "arcsec",
+        }
+    }
+
+    /// SI value of one unit shown to users.
+    #[must_use]
+    pub const fn si_per_unit(self) -> f64 {
+        match self {
+            Self::AccelLever => 1e-3,
+            Self::GyroAsymmetry | Self::AccelAsymmetry => 1e-6,
+            Self::AccelQuadratic => 1e-6 / STANDARD_GRAVITY,
+            Self::GyroGaussMarkov => ParameterGroup::GyroBias.si_per_unit(),
+            Self::AccelGaussMarkov | Self::GravityAnomaly => {
+                ParameterGroup::AccelBias.si_per_unit()
+            }
+            Self::Deflection => ParameterGroup::GyroMisalignment.si_per_unit(),
+        }
+    }
+
+    /// Name, as in a scenario.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AccelLever => "accel_lever",
+            Self::GyroAsymmetry => "gyro_asymmetry",
+            Self::AccelAsymmetry => "accel_asymmetry",
+            Self::AccelQuadratic => "accel_quadratic",
+            Self::GyroGaussMarkov => "gyro_gauss_markov",
+            Self::AccelGaussMarkov => "accel_gauss_markov",
+            Self::Deflection => "deflection",
+            Self::GravityAnomaly => "gravity_anomaly",
+        }
+    }
+}
+
+/// Estimates of all further states with their standard deviations, SI, in the order of
+/// [`FURTHER_NAMES`]. Those of a group that is off are zero; of one that is considered, the estimates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FurtherEstimates {
+    /// Estimates: zero where a group isn't estimated.
+    pub value: [f64; FURTHER_COUNT],
+    /// Standard deviations: zero where a group is off.
+    pub sigma: [f64; FURTHER_COUNT],
+}
+
+impl FurtherEstimates {
+    /// Estimates of a group.
+    #[must_use]
+    pub fn value_of(&self, group: FurtherGroup) -> &[f64] {
+        &self.value[group.range()]
+    }
+
+    /// Standard deviations of a group.
+    #[must_use]
+    pub fn sigma_of(&self, group: FurtherGroup) -> &[f64] {
+        &self.sigma[group.range()]
+    }
+}
