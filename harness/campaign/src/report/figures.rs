@@ -297,8 +297,11 @@ pub(super) fn envelope_in(
 
 /// Collects the largest errors of attitude and velocity that every navigating case has.
 fn solution(sample: &Sample<'_>) -> BTreeMap<String, Spread> {
-    let all = sample.drifts().flat_map(|drift| drift.solution);
-    let names: BTreeSet<(&str, &str)> = all.map(|(name, unit, _)| (name, unit)).collect();
+    // One by one: a set that is collected sorts a list of all first, with every case's names.
+    let mut names: BTreeSet<(&str, &str)> = BTreeSet::new();
+    sample.drifts().flat_map(|drift| drift.solution).for_each(|(name, unit, _)| {
+        names.insert((name, unit));
+    });
     let of = |(name, unit): (&str, &str)| {
         let get = |drift: &CaseDrift| {
             let mut all = drift.solution.iter();
