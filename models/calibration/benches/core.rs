@@ -2,6 +2,7 @@
 //!
 //! - `navigation`: free inertial, rotating by the sixteen moves.
 //! - `calibration`: eight positions, 39 states, one measurement a second.
+//! - `calibration, further`: the same with all further states estimated, 66 in all.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
@@ -17,7 +18,17 @@ const PERIOD_NS: u64 = 5_000_000;
 const SECOND: usize = 200;
 const LATITUDE_RAD: f64 = 30.5 * DEG;
 
-fn config(calibration: bool) -> CoreConfig {
+/// All groups of further states, estimated.
+fn all_further() -> Further {
+    Further {
+        groups: [FurtherUse::Estimated { sigma: 1e-5 }; 8],
+        gyro_correlation_time_s: 300.0,
+        accel_correlation_time_s: 300.0,
+        gyro_rate_random_walk: 1e-12,
+    }
+}
+
+fn config(calibration: bool, further: Further) -> CoreConfig {
     CoreConfig {
         sample_period_ns: PERIOD_NS,
         site: Site { latitude_rad: LATITUDE_RAD, longitude_rad: 0.0, height_m: 0.0 },
@@ -49,7 +60,7 @@ fn config(calibration: bool) -> CoreConfig {
                 aiding_period_ns: 1_000_000_000,
                 sway: SwayNoise::White,
                 refuse_above_mean_nis: 9.0,
-                further: Default::default(),
+                further,
             }),
         }),
         navigation: Some(NavigationPlan {
@@ -102,8 +113,12 @@ fn bench(criterion: &mut Criterion) {
     let second = second();
     let mut group = criterion.benchmark_group("core");
     group.throughput(Throughput::Elements(60 * SECOND as u64));
-    for (name, calibration) in [("navigation", false), ("calibration", true)] {
-        let core = Core::new(&config(calibration)).unwrap();
+    for (name, calibration, further) in [
+        ("navigation", false, Further::default()),
+        ("calibration", true, Further::default()),
+        ("calibration, further", true, all_further()),
+    ] {
+        let core = Core::new(&config(calibration, further)).unwrap();
         group.bench_function(name, |bencher| {
             bencher.iter_batched_ref(
                 || core.clone(),

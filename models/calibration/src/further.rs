@@ -15,20 +15,18 @@
 //! | [`GravityAnomaly`](FurtherGroup::GravityAnomaly) | gravity in n is (0, 0, g + Δg), g normal gravity | m/s² |
 //!
 //! Sign of the deflection of the vertical: ξ is positive where the astronomic zenith is north of the
-//! geodetic one, η where it is east (Torge, *Geodesy*, 6.7). The plumb line then points to the south
+//! geodetic one, η where it is east (Torge, *Geodesy*). The plumb line then points to the south
 //! and west.
 //!
 //! Only some of them can be observed on two gimbals over a base at rest:
 //!
-//! - Size effect: with the rate about one axis at a time, the accelerometers feel `−ω²` along and
-//!   `±ω̇` across the axis. A rate about body z (azimuth) shows r_xx, r_xy, r_yx, r_yy, and one about
-//!   an axis across it (roll, at azimuths of 0° and 90°) the elements with z and r_zz. But the centre
-//!   of rotation is a point that the gimbals define: the sensor triad's position relative to it
-//!   matters only through the motion of the point to which velocity refers. A zero velocity is that
-//!   of the gimbals' crossing point, which rests, so that all nine are observable in principle. A
-//!   turntable whose axes don't cross would move that point, and only the six differences r_i − r_x
-//!   would be left, the number that the literature gives. The nine remain states: a combination that
-//!   the motion doesn't show keeps its prior and its correlations.
+//! - Size effect: all nine. A turn about body z (azimuth) shows r_xx and r_yy by `−ω²` and r_xy and
+//!   r_yx by `±ω̇`; one about an axis across it (roll, at azimuths of 0° and 90°) shows the others. A
+//!   zero velocity is that of the point where the gimbals' axes cross, which rests, and the arms
+//!   count from there: one hour through the eight positions brings each from 30 mm to 2 mm (1σ). The
+//!   six that the literature counts are those of an instrument whose own point is that of one of its
+//!   accelerometers, r_x = 0. Then, or where the axes don't cross, three combinations are the place of
+//!   that point. The nine remain states: a combination that the motion doesn't show keeps its prior.
 //! - Asymmetry: on positions with both signs of an axis it is separated from the scale factor.
 //! - Deflection: at rest it is inseparable from a tilt of the whole attitude, and the anomaly from a
 //!   common scale factor of the accelerometers. Both are there to be considered.

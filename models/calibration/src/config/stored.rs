@@ -5,6 +5,7 @@ use super::{AidingMode, ErrorModel, ExternalTurntable, Further, LeastSquares, Pr
 
 /// [`super::Estimator`].
 #[derive(serde::Serialize, serde::Deserialize)]
+#[allow(clippy::large_enum_variant, reason = "no_std without alloc: there is no box to put it in")]
 pub(super) enum Estimator {
     Kalman(Kalman),
     LeastSquares(LeastSquares),
