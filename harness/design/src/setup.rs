@@ -4,7 +4,9 @@ use super::evaluate::{AidingReference, Conditions, PART_S};
 use super::navigation::{Drift, drift};
 use super::platform::{Platform, TURNING_S};
 use nalgebra::Matrix3;
-use octant_calibration::config::{AidingMode, CoreConfig, Estimator, NavigationPlan, SwayNoise};
+use octant_calibration::config::{
+    AidingMode, CoreConfig, Estimator, Further, NavigationPlan, SwayNoise,
+};
 use octant_calibration::covariance::{Covariance, DR, DV, STATE_COUNT};
 use octant_calibration::positions;
 use octant_calibration::schedule::DoesNotFit;
@@ -136,6 +138,9 @@ impl DesignSetup {
         }
         if kalman.sway != SwayNoise::White {
             return not_built("procedure.calibration.aiding.sway", "\"coloured\"", "\"white\"");
+        }
+        if kalman.further != Further::default() {
+            return not_built("procedure.calibration.further", "further states", "none");
         }
         let Some((plan, navigation_s)) =
             config.navigation.as_ref().and_then(|plan| Some((plan, plan.duration_s?)))

@@ -10,7 +10,7 @@ use super::platform::{Platform, SAMPLE_S};
 use super::truth::{EnsembleTruth, TrueErrors, Unseen};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{
-    AidingMode, CoreConfig, ErrorModel, Estimator, Kalman, SwayNoise,
+    AidingMode, CoreConfig, ErrorModel, Estimator, Further, Kalman, SwayNoise,
 };
 use octant_calibration::covariance::{
     Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
@@ -115,6 +115,12 @@ pub enum AnalysisError {
          linear, expected \"white\""
     )]
     ColouredSway,
+    /// The filter has states beside the 39, which the prediction doesn't have.
+    #[error(
+        "predict the covariance: found procedure.calibration.further, whose states the prediction doesn't have; \
+         octant observe without --ensemble shows their σ"
+    )]
+    Further,
     /// The sequence doesn't fit.
     #[error("plan the calibration: {0}")]
     DoesNotFit(#[from] octant_calibration::schedule::DoesNotFit),
@@ -191,6 +197,9 @@ pub fn reach(
     };
     if kalman.sway != SwayNoise::White {
         return Err(AnalysisError::ColouredSway);
+    }
+    if kalman.further != Further::default() {
+        return Err(AnalysisError::Further);
     }
     let rates = config.turntable;
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;

@@ -414,7 +414,7 @@ fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let dockside = matches!(scenario.motion, MotionSpec::Dockside(_));
     let quantized =
         extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
-    let all: [(bool, &str); 12] = [
+    let all: [(bool, &str); 15] = [
         (true, "nonlinear effects: products of errors, and screens and gates that reject samples"),
         (
             even,
@@ -427,6 +427,15 @@ fn not_modelled(scenario: &Scenario) -> Vec<String> {
         (quantized, "quantization"),
         (extensions.vibration.is_some(), "vibration"),
         (extensions.lever_arm_m != [[0.0; 3]; 3], "lever arms of the accelerometers"),
+        (
+            extensions.gyro_asymmetry != [0.0; 3] || extensions.accel_asymmetry != [0.0; 3],
+            "the asymmetry of scale factors",
+        ),
+        (extensions.accel_quadratic != [0.0; 3], "the second order of the accelerometers"),
+        (
+            scenario.site.gravity != octant_plant::config::GravityDisturbance::default(),
+            "the disturbance of gravity",
+        ),
         (extensions.time_skew_s != 0.0, "the time skew of the inertial unit"),
         (scenario.turntable.backlash_rad != 0.0, "backlash of the gears"),
         (dockside, "the ship's roll, pitch and yaw: only the displacement of its motion enters"),

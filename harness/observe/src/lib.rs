@@ -1,11 +1,13 @@
 //! Observability of a position sequence, and the predicted result, without a run.
 //!
 //! [`static_rank`](mod@static_rank) is the algebra of static positions, [`covariance`] predicts the
-//! result of one configuration, [`ensemble`] that of a scenario's draws.
+//! result of one configuration, [`ensemble`] that of a scenario's draws, [`perfect`] what a filter with further states
+//! sees.
 
 mod bands;
 pub mod covariance;
 pub mod ensemble;
+pub mod perfect;
 mod platform;
 pub mod static_rank;
 pub mod truth;

@@ -14,8 +14,10 @@ use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
 use octant_observe::covariance::{AnalysisError, PredictedDrift, predict, state_name};
 use octant_observe::ensemble::state_unit;
+use octant_observe::perfect::{self, PerfectError};
 use octant_observe::static_rank;
 use octant_requirements::Verdict;
+use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_source::configure::configurations;
@@ -63,8 +65,8 @@ struct State {
     prior: f64,
     /// σ that the filter will believe; null where the state is not estimated.
     believed: Option<f64>,
-    /// σ that it will achieve.
-    achieved: f64,
+    /// σ that it will achieve; null with further states, of which the filter's own belief alone is known.
+    achieved: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -126,6 +128,10 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
     let truth = true_sigmas(scenario, &config);
     let c = c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad);
     let (states, drift) = match predict(&config, &c, &truth) {
+        Err(AnalysisError::Further) => {
+            let states = with_further(scenario, method, &config, &truth);
+            (states.map_err(|error| Failure::input(format!("failed to {error}")))?, Vec::new())
+        }
         Ok(prediction) => {
             let estimated = |state: usize| match &calibration.estimator {
                 Estimator::Kalman(kalman) => {
@@ -142,7 +148,7 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
                         unit,
                         prior: truth[state] / si,
                         believed: estimated(state).then(|| prediction.believed.sigma(state) / si),
-                        achieved: prediction.achieved.sigma(state) / si,
+                        achieved: Some(prediction.achieved.sigma(state) / si),
                     }
                 })
                 .collect();
@@ -162,6 +168,44 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
         states,
         drift,
     })
+}
+
+/// States of a filter with further ones: what it believes at the end of its calibration.
+fn with_further(
+    scenario: &Scenario,
+    method: Method,
+    config: &CoreConfig,
+    truth: &[f64; STATE_COUNT],
+) -> Result<Vec<State>, PerfectError> {
+    let found = perfect::run(scenario, method)?;
+    let estimator = config.calibration.as_ref().map(|calibration| &calibration.estimator);
+    let Some(Estimator::Kalman(kalman)) = estimator else { return Ok(Vec::new()) };
+    let parameters = (PARAMETERS..STATE_COUNT).map(|state| {
+        let (unit, si) = state_unit(state);
+        let index = state - PARAMETERS;
+        let is_estimated = kalman.estimated[ParameterGroup::of(index) as usize];
+        State {
+            name: state_name(state),
+            unit,
+            prior: truth[state] / si,
+            believed: is_estimated.then(|| found.parameters[index] / si),
+            achieved: None,
+        }
+    });
+    let further = FurtherGroup::ALL.into_iter().flat_map(|group| {
+        let prior = kalman.further.of(group).sigma();
+        let sigmas = prior.zip(found.further).map(|(prior, found)| {
+            group.range().map(move |index| State {
+                name: FURTHER_NAMES[index].to_owned(),
+                unit: group.unit(),
+                prior: prior / group.si_per_unit(),
+                believed: Some(found.sigma[index] / group.si_per_unit()),
+                achieved: None,
+            })
+        });
+        sigmas.into_iter().flatten()
+    });
+    Ok(parameters.chain(further).collect())
 }
 
 fn row(drift: &PredictedDrift) -> DriftRow {
@@ -231,13 +275,14 @@ fn text(observation: &Observation, units: &DisplayUnits) -> String {
     for state in &observation.states {
         let figure = |value: f64| significant(value, 4);
         let believed = state.believed.map_or("-".to_owned(), figure);
+        let achieved = state.achieved.map_or("-".to_owned(), figure);
         let _ = writeln!(
             out,
             "  {:24} {:>12} {:>12} {:>12}  {}",
             state.name,
             figure(state.prior),
             believed,
-            figure(state.achieved),
+            achieved,
             state.unit
         );
     }

@@ -59,6 +59,7 @@ mod fmu_process;
 #[cfg(target_os = "linux")]
 mod fmu_source;
 mod formats;
+mod further_states;
 mod fuzz_corpus;
 #[cfg(target_os = "linux")]
 mod generated;

@@ -20,16 +20,172 @@ class Section(MutableMapping[str, Any]):
     def describe(self, key: str = "") -> str:
         """Meaning of a key, what it takes, and its default, in a line; of the table itself without a key."""
 
+class BaselineFurtherAccelAsymmetry(Section):
+    """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a ratio
+    such as "30 ppm". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
+    Left out: another is given."""
+
+class BaselineFurtherAccelGaussMarkov(Section):
+    """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    acceleration such as "100 ug". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an acceleration such as
+    "100 ug". Left out: another is given."""
+
+class BaselineFurtherAccelLever(Section):
+    """Positions of the accelerometers' proof masses from the centre of rotation (size effect), nine. Takes a
+    table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a length
+    such as "0.15 m". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a length such as "0.15 m".
+    Left out: another is given."""
+
+class BaselineFurtherAccelQuadratic(Section):
+    """Second-order coefficients of the accelerometers (K2), three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a second-
+    order coefficient such as "10 ug/g^2". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a second-order coefficient
+    such as "10 ug/g^2". Left out: another is given."""
+
+class BaselineFurtherDeflection(Section):
+    """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
+    considered. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class BaselineFurtherGravityAnomaly(Section):
+    """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
+    accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    acceleration such as "100 ug". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an acceleration such as
+    "100 ug". Left out: another is given."""
+
+class BaselineFurtherGyroAsymmetry(Section):
+    """Difference of the gyros' scale factors by the sign of the rate, of which this is half, three. Takes a
+    table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a ratio
+    such as "30 ppm". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
+    Left out: another is given."""
+
+class BaselineFurtherGyroGaussMarkov(Section):
+    """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered. Left
+    out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angular
+    rate such as "0.005 deg/h". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angular rate such as
+    "0.005 deg/h". Left out: another is given."""
+
+class BaselineFurther(Section):
+    """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a table
+    with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
+    gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
+    gravity_anomaly. Left out: as in procedure.calibration."""
+
+    @property
+    def accel_asymmetry(self) -> BaselineFurtherAccelAsymmetry:
+        """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
+    @accel_asymmetry.setter
+    def accel_asymmetry(self, value: BaselineFurtherAccelAsymmetry | Mapping[str, Any]) -> None: ...
+    accel_correlation_time: str
+    """Correlation time of accel_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
+    @property
+    def accel_gauss_markov(self) -> BaselineFurtherAccelGaussMarkov:
+        """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_gauss_markov.setter
+    def accel_gauss_markov(self, value: BaselineFurtherAccelGaussMarkov | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_lever(self) -> BaselineFurtherAccelLever:
+        """Positions of the accelerometers' proof masses from the centre of rotation (size effect), nine. Takes a
+        table with one of estimated, considered. Left out: off."""
+    @accel_lever.setter
+    def accel_lever(self, value: BaselineFurtherAccelLever | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_quadratic(self) -> BaselineFurtherAccelQuadratic:
+        """Second-order coefficients of the accelerometers (K2), three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_quadratic.setter
+    def accel_quadratic(self, value: BaselineFurtherAccelQuadratic | Mapping[str, Any]) -> None: ...
+    @property
+    def deflection(self) -> BaselineFurtherDeflection:
+        """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
+        considered. Takes a table with one of estimated, considered. Left out: off."""
+    @deflection.setter
+    def deflection(self, value: BaselineFurtherDeflection | Mapping[str, Any]) -> None: ...
+    @property
+    def gravity_anomaly(self) -> BaselineFurtherGravityAnomaly:
+        """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
+        accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
+    @gravity_anomaly.setter
+    def gravity_anomaly(self, value: BaselineFurtherGravityAnomaly | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_asymmetry(self) -> BaselineFurtherGyroAsymmetry:
+        """Difference of the gyros' scale factors by the sign of the rate, of which this is half, three. Takes a
+        table with one of estimated, considered. Left out: off."""
+    @gyro_asymmetry.setter
+    def gyro_asymmetry(self, value: BaselineFurtherGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    gyro_correlation_time: str
+    """Correlation time of gyro_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
+    @property
+    def gyro_gauss_markov(self) -> BaselineFurtherGyroGaussMarkov:
+        """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered.
+        Left out: off."""
+    @gyro_gauss_markov.setter
+    def gyro_gauss_markov(self, value: BaselineFurtherGyroGaussMarkov | Mapping[str, Any]) -> None: ...
+    gyro_rate_random_walk: str
+    """Rate random walk of the gyros: process noise of their biases. With it the biases are no constants, and the
+    drift test is off. Takes a rate random walk such as "0.0001 deg/h/sqrt(h)". Default: "0 deg/h/sqrt(h)"."""
+
 class Baseline(Section):
     """A second method, run on the same seed and noise and compared: what it does differently. Takes a table with
-    positions, stops, name, passes, estimator, error_model, g_states, not_estimated. Left out: no second
-    method."""
+    positions, stops, name, passes, estimator, error_model, g_states, not_estimated, further. Left out: no
+    second method."""
 
     error_model: Literal["phi", "psi"]
     """Form of the filter's system error model. Takes one of "phi", "psi". Left out: as in procedure.calibration."""
     estimator: Literal["kalman", "least-squares", "external-turntable"]
     """How the parameters are estimated. Takes one of "kalman", "least-squares", "external-turntable". Left out:
     as in procedure.calibration."""
+    @property
+    def further(self) -> BaselineFurther:
+        """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a
+        table with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
+        gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
+        gravity_anomaly. Left out: as in procedure.calibration."""
+    @further.setter
+    def further(self, value: BaselineFurther | Mapping[str, Any]) -> None: ...
     g_states: bool
     """Whether the filter estimates the g-dependent biases. Takes true or false. Left out: as in
     procedure.calibration."""
@@ -584,8 +740,11 @@ class ImuExtensions(Section):
     """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
     accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
     gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
-    time_skew."""
+    gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew."""
 
+    accel_asymmetry: Sequence[str]
+    """Asymmetry of the accelerometers' scale factors a, x, y, z: a reading is too large by a |specific force|.
+    Takes an array of 3, each a ratio such as "30 ppm". Default: ["0 ppm", "0 ppm", "0 ppm"]."""
     accel_bias_instability: str
     """Bias instability (1/f noise) of each accelerometer: coefficient B, the floor of the Allan deviation
     divided by 0.664. Takes an acceleration such as "100 ug". Default: "0 ug"."""
@@ -595,12 +754,18 @@ class ImuExtensions(Section):
         none."""
     @accel_gauss_markov.setter
     def accel_gauss_markov(self, value: ImuExtensionsAccelGaussMarkov | Mapping[str, Any]) -> None: ...
+    accel_quadratic: Sequence[str]
+    """Second-order coefficients of the accelerometers (K2), x, y, z. Takes an array of 3, each a second-order
+    coefficient such as "10 ug/g^2". Default: ["0 ug/g^2", "0 ug/g^2", "0 ug/g^2"]."""
     accel_quantization: str
     """Velocity of one accelerometer count, where coarser than the format's 1e-9 m/s; 0: none. Takes a velocity
     such as "1 mm/s". Default: "0 m/s"."""
     accel_range: str
     """Specific force at which the accelerometers saturate; 0: the format's own range. Takes an acceleration such
     as "9.81 m/s^2". Default: "40 g"."""
+    gyro_asymmetry: Sequence[str]
+    """Asymmetry of the gyros' scale factors a, x, y, z: a reading is too large by a |rate|. Takes an array of 3,
+    each a ratio such as "30 ppm". Default: ["0 ppm", "0 ppm", "0 ppm"]."""
     gyro_bias_instability: str
     """Bias instability (1/f noise) of each gyro: coefficient B of IEEE Std 952, the floor of the Allan deviation
     divided by 0.664. Takes an angular rate such as "0.005 deg/h". Default: "0 deg/h"."""
@@ -726,7 +891,7 @@ class Imu(Section):
         """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
         accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
         gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
-        time_skew."""
+        gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew."""
     @extensions.setter
     def extensions(self, value: ImuExtensions | Mapping[str, Any]) -> None: ...
     @property
@@ -881,6 +1046,154 @@ class ProcedureCalibrationAiding(Section):
     sway: Literal["white", "coloured"]
     """What the sway of the ship is to the filter. Takes one of "white", "coloured". Default: "white"."""
 
+class ProcedureCalibrationFurtherAccelAsymmetry(Section):
+    """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a ratio
+    such as "30 ppm". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
+    Left out: another is given."""
+
+class ProcedureCalibrationFurtherAccelGaussMarkov(Section):
+    """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    acceleration such as "100 ug". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an acceleration such as
+    "100 ug". Left out: another is given."""
+
+class ProcedureCalibrationFurtherAccelLever(Section):
+    """Positions of the accelerometers' proof masses from the centre of rotation (size effect), nine. Takes a
+    table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a length
+    such as "0.15 m". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a length such as "0.15 m".
+    Left out: another is given."""
+
+class ProcedureCalibrationFurtherAccelQuadratic(Section):
+    """Second-order coefficients of the accelerometers (K2), three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a second-
+    order coefficient such as "10 ug/g^2". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a second-order coefficient
+    such as "10 ug/g^2". Left out: another is given."""
+
+class ProcedureCalibrationFurtherDeflection(Section):
+    """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
+    considered. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class ProcedureCalibrationFurtherGravityAnomaly(Section):
+    """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
+    accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    acceleration such as "100 ug". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an acceleration such as
+    "100 ug". Left out: another is given."""
+
+class ProcedureCalibrationFurtherGyroAsymmetry(Section):
+    """Difference of the gyros' scale factors by the sign of the rate, of which this is half, three. Takes a
+    table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a ratio
+    such as "30 ppm". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
+    Left out: another is given."""
+
+class ProcedureCalibrationFurtherGyroGaussMarkov(Section):
+    """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered. Left
+    out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angular
+    rate such as "0.005 deg/h". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angular rate such as
+    "0.005 deg/h". Left out: another is given."""
+
+class ProcedureCalibrationFurther(Section):
+    """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
+    accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov, gyro_correlation_time,
+    accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection, gravity_anomaly. Left out:
+    none."""
+
+    @property
+    def accel_asymmetry(self) -> ProcedureCalibrationFurtherAccelAsymmetry:
+        """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
+    @accel_asymmetry.setter
+    def accel_asymmetry(self, value: ProcedureCalibrationFurtherAccelAsymmetry | Mapping[str, Any]) -> None: ...
+    accel_correlation_time: str
+    """Correlation time of accel_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
+    @property
+    def accel_gauss_markov(self) -> ProcedureCalibrationFurtherAccelGaussMarkov:
+        """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_gauss_markov.setter
+    def accel_gauss_markov(self, value: ProcedureCalibrationFurtherAccelGaussMarkov | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_lever(self) -> ProcedureCalibrationFurtherAccelLever:
+        """Positions of the accelerometers' proof masses from the centre of rotation (size effect), nine. Takes a
+        table with one of estimated, considered. Left out: off."""
+    @accel_lever.setter
+    def accel_lever(self, value: ProcedureCalibrationFurtherAccelLever | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_quadratic(self) -> ProcedureCalibrationFurtherAccelQuadratic:
+        """Second-order coefficients of the accelerometers (K2), three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_quadratic.setter
+    def accel_quadratic(self, value: ProcedureCalibrationFurtherAccelQuadratic | Mapping[str, Any]) -> None: ...
+    @property
+    def deflection(self) -> ProcedureCalibrationFurtherDeflection:
+        """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
+        considered. Takes a table with one of estimated, considered. Left out: off."""
+    @deflection.setter
+    def deflection(self, value: ProcedureCalibrationFurtherDeflection | Mapping[str, Any]) -> None: ...
+    @property
+    def gravity_anomaly(self) -> ProcedureCalibrationFurtherGravityAnomaly:
+        """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
+        accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
+    @gravity_anomaly.setter
+    def gravity_anomaly(self, value: ProcedureCalibrationFurtherGravityAnomaly | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_asymmetry(self) -> ProcedureCalibrationFurtherGyroAsymmetry:
+        """Difference of the gyros' scale factors by the sign of the rate, of which this is half, three. Takes a
+        table with one of estimated, considered. Left out: off."""
+    @gyro_asymmetry.setter
+    def gyro_asymmetry(self, value: ProcedureCalibrationFurtherGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    gyro_correlation_time: str
+    """Correlation time of gyro_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
+    @property
+    def gyro_gauss_markov(self) -> ProcedureCalibrationFurtherGyroGaussMarkov:
+        """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered.
+        Left out: off."""
+    @gyro_gauss_markov.setter
+    def gyro_gauss_markov(self, value: ProcedureCalibrationFurtherGyroGaussMarkov | Mapping[str, Any]) -> None: ...
+    gyro_rate_random_walk: str
+    """Rate random walk of the gyros: process noise of their biases. With it the biases are no constants, and the
+    drift test is off. Takes a rate random walk such as "0.0001 deg/h/sqrt(h)". Default: "0 deg/h/sqrt(h)"."""
+
 class ProcedureCalibrationLeastSquares(Section):
     """Settings of the least-squares estimator. Takes a table with gravity, gyro, intervals, initial, window,
     threshold, shortest."""
@@ -929,8 +1242,8 @@ class ProcedureCalibrationPrior(Section):
 
 class ProcedureCalibration(Section):
     """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops, name,
-    passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior, aiding,
-    least_squares. Left out: no calibration: navigate at once."""
+    passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, further, prior,
+    aiding, least_squares. Left out: no calibration: navigate at once."""
 
     @property
     def aiding(self) -> ProcedureCalibrationAiding:
@@ -945,6 +1258,14 @@ class ProcedureCalibration(Section):
     estimator: Literal["kalman", "least-squares", "external-turntable"]
     """How the parameters are estimated. Takes one of "kalman", "least-squares", "external-turntable". Default:
     "kalman"."""
+    @property
+    def further(self) -> ProcedureCalibrationFurther:
+        """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
+        accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
+        gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
+        gravity_anomaly. Left out: none."""
+    @further.setter
+    def further(self, value: ProcedureCalibrationFurther | Mapping[str, Any]) -> None: ...
     g_states: bool
     """Whether the filter estimates the g-dependent biases. Takes true or false. Default: true."""
     @property
@@ -1025,8 +1346,8 @@ class Procedure(Section):
     @property
     def calibration(self) -> ProcedureCalibration:
         """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops,
-        name, passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, prior,
-        aiding, least_squares. Left out: no calibration: navigate at once."""
+        name, passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis,
+        further, prior, aiding, least_squares. Left out: no calibration: navigate at once."""
     @calibration.setter
     def calibration(self, value: ProcedureCalibration | Mapping[str, Any]) -> None: ...
     @property
@@ -1120,8 +1441,16 @@ class Screening(Section):
     Default: 8."""
 
 class Site(Section):
-    """Where the instrument stands. Takes a table with latitude, longitude, height."""
+    """Where the instrument stands. Takes a table with latitude, longitude, height, deflection_north,
+    deflection_east, gravity_anomaly."""
 
+    deflection_east: str
+    """Deflection of the vertical to the east (η). Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    deflection_north: str
+    """Deflection of the vertical to the north (ξ): positive where the astronomic zenith is north of the geodetic
+    one. Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    gravity_anomaly: str
+    """True minus normal gravity. Takes an acceleration such as "100 ug". Default: "0 ug"."""
     height: str
     """Height above the ellipsoid. Takes a length such as "0.15 m". Default: "0 m"."""
     latitude: str
@@ -1922,8 +2251,8 @@ class Scenario(Section):
     @property
     def baseline(self) -> Baseline:
         """A second method, run on the same seed and noise and compared: what it does differently. Takes a table
-        with positions, stops, name, passes, estimator, error_model, g_states, not_estimated. Left out: no
-        second method."""
+        with positions, stops, name, passes, estimator, error_model, g_states, not_estimated, further. Left
+        out: no second method."""
     @baseline.setter
     def baseline(self, value: Baseline | Mapping[str, Any]) -> None: ...
     @property
@@ -1994,7 +2323,8 @@ class Scenario(Section):
     1."""
     @property
     def site(self) -> Site:
-        """Where the instrument stands. Takes a table with latitude, longitude, height."""
+        """Where the instrument stands. Takes a table with latitude, longitude, height, deflection_north,
+        deflection_east, gravity_anomaly."""
     @site.setter
     def site(self, value: Site | Mapping[str, Any]) -> None: ...
     @property

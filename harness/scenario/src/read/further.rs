@@ -51,10 +51,15 @@ fn of(keys: &FurtherKeys) -> core::Further {
             keys.gravity_anomaly.as_ref().map_or(off, |of| of.treatment())
         }
     });
+    // A time without its process is none, so that a table without groups is as good as no table.
+    let time = |is_there: bool, time_s| if is_there { time_s } else { 0.0 };
     core::Further {
         groups,
-        gyro_correlation_time_s: keys.gyro_correlation_time,
-        accel_correlation_time_s: keys.accel_correlation_time,
+        gyro_correlation_time_s: time(keys.gyro_gauss_markov.is_some(), keys.gyro_correlation_time),
+        accel_correlation_time_s: time(
+            keys.accel_gauss_markov.is_some(),
+            keys.accel_correlation_time,
+        ),
         gyro_rate_random_walk: keys.gyro_rate_random_walk,
     }
 }

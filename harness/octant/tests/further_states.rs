@@ -1,0 +1,155 @@
+//! Further states of the filter, from the scenario to the summary.
+
+use crate::common::program::program;
+use octant_observe::perfect;
+use octant_sample::further::FURTHER_NAMES;
+use octant_scenario::{Method, Scenario};
+use serde_json::Value;
+use std::path::Path;
+
+/// A short calibration of an instrument whose proof masses sit apart.
+const LEVER: &str = r#"schema = 1
+title = "size effect"
+seed = 3
+
+[imu]
+rate = "50 Hz"
+
+[imu.extensions.lever_arm]
+x = ["3 cm", "-4 cm", "2 cm"]
+y = ["-2 cm", "3 cm", "4 cm"]
+z = ["1 cm", "5 cm", "-3 cm"]
+
+[screening]
+gate = "off"
+drift = "off"
+
+[procedure.calibration]
+duration = "1 h"
+
+[procedure.calibration.further]
+accel_lever = { estimated = "5 cm" }
+gravity_anomaly = { considered = "30 ug" }
+
+[baseline]
+further = {}
+"#;
+
+fn summary(text: &str) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    let mut run = program(&["run", "s.toml", "--out", "out", "--json"]);
+    let output = run.current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {said}"))
+}
+
+fn refused(text: &str) -> String {
+    Scenario::parse(text, "s.toml", Path::new("."), &[]).unwrap_err().to_string()
+}
+
+#[test]
+fn estimated_lever_arms_are_in_the_summary_and_right() {
+    let summary = summary(LEVER);
+    let calibration = &summary["calibration"];
+    let further = calibration["further"].as_object().unwrap();
+    let names: Vec<&str> = further.keys().map(String::as_str).collect();
+    let mut expected: Vec<&str> = FURTHER_NAMES[..9].to_vec();
+    expected.push("gravity_anomaly");
+    assert_eq!(names, expected);
+    let truth = [30.0, -40.0, 20.0, -20.0, 30.0, 40.0, 10.0, 50.0, -30.0];
+    for (name, truth) in FURTHER_NAMES.iter().zip(truth) {
+        let score = &further[*name];
+        assert_eq!((score["true"].as_f64(), score["unit"].as_str()), (Some(truth), Some("mm")));
+        // Four σ of each, and a σ that is far below the prior.
+        assert!(score["normalized"].as_f64().unwrap().abs() < 4.0, "{name}: {score}");
+        assert!(score["sigma"].as_f64().unwrap() < 10.0, "{name}: {score}");
+    }
+    let anomaly = &further["gravity_anomaly"];
+    assert_eq!(anomaly["estimate"].as_f64(), Some(0.0));
+    assert!((anomaly["sigma"].as_f64().unwrap() - 30.0).abs() < 1e-9, "{anomaly}");
+    // The same instrument to a filter that doesn't know of them: every centimetre is somebody else's error.
+    let worst = |of: &Value| of["worst_normalized_error"].as_f64().unwrap();
+    let ignored = &summary["baseline"]["calibration"];
+    assert!(ignored.get("further").is_none());
+    assert!(worst(calibration) < 4.5, "{}", worst(calibration));
+    assert!(worst(ignored) > 2.0 * worst(calibration), "{}", worst(ignored));
+}
+
+#[test]
+fn what_is_observed_before_a_run_is_the_sigma_after_it() {
+    let scenario = Scenario::parse(LEVER, "s.toml", Path::new("."), &[]).unwrap();
+    let found = perfect::run(&scenario, Method::Primary).unwrap();
+    let summary = summary(LEVER);
+    let sigma = |of: &str, name: &str| summary["calibration"][of][name]["sigma"].as_f64().unwrap();
+    for (index, name) in FURTHER_NAMES[..9].iter().enumerate() {
+        let before = found.further.unwrap().sigma[index] * 1e3;
+        assert!((before / sigma("further", name) - 1.0).abs() < 0.01, "{name}: {before}");
+    }
+    for (index, name) in octant_sample::parameters::NAMES.iter().enumerate() {
+        let unit = octant_sample::parameters::ParameterGroup::of(index).si_per_unit();
+        let before = found.parameters[index] / unit;
+        assert!((before / sigma("parameters", name) - 1.0).abs() < 0.01, "{name}: {before}");
+    }
+}
+
+#[test]
+fn a_requirement_can_be_on_a_further_state() {
+    let with = |limit: &str| {
+        format!(
+            "{LEVER}\n[[requirements]]\nid = \"L\"\ntext = \"The place of the proof mass is known.\"\n\
+             measure = \"|calibration.further.accel_lever_zz.error|\"\nlimit = \"{limit}\"\n"
+        )
+    };
+    assert_eq!(summary(&with("4 cm"))["requirements"][0]["verdict"], "pass");
+    assert_eq!(summary(&with("1 um"))["requirements"][0]["verdict"], "fail");
+    // Without the state there is no such number, which is never a pass.
+    let without = with("4 cm").replace("accel_lever = { estimated = \"5 cm\" }\n", "");
+    assert_eq!(summary(&without)["requirements"][0]["verdict"], "inconclusive");
+}
+
+#[test]
+fn what_has_no_place_for_further_states_refuses_them() {
+    let other =
+        LEVER.replace("duration = \"1 h\"", "duration = \"1 h\"\nestimator = \"least-squares\"");
+    let message = refused(&other);
+    assert!(
+        message.contains("procedure.calibration.further") && message.contains("\"kalman\""),
+        "{message}"
+    );
+    let fmu = format!("{LEVER}\n[endpoint]\nuri = \"fmu:calibrator.fmu\"\n");
+    let message = refused(&fmu);
+    assert!(message.contains("endpoint.uri") && message.contains("\"in-process\""), "{message}");
+    let both = LEVER
+        .replace("{ estimated = \"5 cm\" }", "{ estimated = \"5 cm\", considered = \"1 cm\" }");
+    assert!(refused(&both).contains("accel_lever"), "{}", refused(&both));
+    let zero = LEVER.replace("{ estimated = \"5 cm\" }", "{ estimated = \"0 cm\" }");
+    assert!(refused(&zero).contains("accel_lever.estimated"), "{}", refused(&zero));
+    let swaying = LEVER.replace("[screening]", "[motion]\nkind = \"dockside\"\n\n[screening]").replace(
+        "[procedure.calibration.further]",
+        "[procedure.calibration.aiding]\nsway = \"coloured\"\n\n[procedure.calibration.further]",
+    );
+    assert!(refused(&swaying).contains("sway"), "{}", refused(&swaying));
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), LEVER).unwrap();
+    for (arguments, said) in [
+        (vec!["observe", "s.toml", "--ensemble"], "procedure.calibration.further"),
+        (vec!["fmu", "build", "--scenario", "s.toml", "--out", "f"], "further"),
+    ] {
+        let output = program(&arguments).current_dir(folder.path()).output().unwrap();
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(said), "{arguments:?}: {message}");
+    }
+    // Errors for which the Plant has no parameter.
+    let plant = LEVER
+        .replace("[procedure.calibration.further]\naccel_lever = { estimated = \"5 cm\" }\ngravity_anomaly = { considered = \"30 ug\" }\n", "")
+        .replace("further = {}", "g_states = false")
+        .replace("[imu]", "[site]\ndeflection_north = \"5 arcsec\"\n\n[imu]");
+    std::fs::write(folder.path().join("s.toml"), plant).unwrap();
+    let mut build = program(&["fmu", "build", "--scenario", "s.toml", "--out", "f"]);
+    let output = build.current_dir(folder.path()).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("gravity disturbance"), "{message}");
+}
