@@ -17,7 +17,12 @@ const MARKS: [u64; 5] = [400, 1100, 1600, 2100, 2600];
 const LEANING: CaseAttitude = CaseAttitude { heading_rad: 1.1, pitch_rad: 0.03, roll_rad: -0.02 };
 
 pub(super) fn site(latitude_deg: f64, longitude_deg: f64, height_m: f64) -> PlantSite {
-    PlantSite { latitude_rad: latitude_deg * DEG, longitude_rad: longitude_deg * DEG, height_m, gravity: Default::default() }
+    PlantSite {
+        latitude_rad: latitude_deg * DEG,
+        longitude_rad: longitude_deg * DEG,
+        height_m,
+        gravity: Default::default(),
+    }
 }
 
 /// Interpolates the tenth power, of which ten nodes leave a known error.
