@@ -301,7 +301,7 @@ fn estimated_lever_arms_leave_less_than_a_tenth_of_the_size_effect() {
 #[ignore = "minutes: run by tests/run"]
 fn a_rate_random_walk_is_modelled() {
     let seeds: Vec<u64> = (1..=draws(40, 16)).collect();
-    let walk = 0.02 * DEG_PER_HOUR / 60.0;
+    let walk = 0.003 * DEG_PER_HOUR / 60.0;
     let [ignored, modelled] = [0.0, walk].map(|modelled| {
         on_two_threads(&seeds, |seed| {
             let further = Further { gyro_rate_random_walk: modelled, ..off() };
