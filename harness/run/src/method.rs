@@ -414,11 +414,9 @@ pub(super) fn finish(
     }
     .map(|plan| {
         let parameters = score(truth.as_ref(), &estimate.parameters, &estimate.sigma);
-        let further = conclusion.further.as_ref().map(|found| {
-            let of_plant = octant_plant::further::truth;
-            let of_scenario = of_plant(&scenario.imu.extensions, &scenario.site.gravity);
-            score_further(truth.is_some().then_some(&of_scenario), found)
-        });
+        let all = octant_plant::further::truth(&scenario.imu.extensions, &scenario.site.gravity);
+        let known = truth.is_some().then_some(&all);
+        let further = conclusion.further.as_ref().map(|found| score_further(known, found));
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());

@@ -4,7 +4,7 @@
 use octant_instruments::Reading;
 
 /// Number of intervals that are looked at.
-const INTERVALS: usize = 100;
+const INTERVALS: usize = 50;
 /// Number of intervals that a shorter source has to have.
 const INTERVALS_MIN: usize = 10;
 /// Largest difference from the period, as a share of it.

@@ -96,8 +96,6 @@ pub struct Calibration {
 
 /// Method of estimating the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "state", serde(from = "stored::Estimator", into = "stored::Estimator"))]
 #[allow(clippy::large_enum_variant, reason = "no_std without alloc: there is no box to put it in")]
 pub enum Estimator {
     /// 39-state error-state Kalman filter, closed loop.

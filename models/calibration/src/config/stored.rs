@@ -2,11 +2,12 @@
 //! were any, so that the bytes of earlier programs remain readable and the same.
 
 use super::{AidingMode, ErrorModel, ExternalTurntable, Further, LeastSquares, Prior, SwayNoise};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// [`super::Estimator`].
-#[derive(serde::Serialize, serde::Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[allow(clippy::large_enum_variant, reason = "no_std without alloc: there is no box to put it in")]
-pub(super) enum Estimator {
+enum Estimator {
     Kalman(Kalman),
     LeastSquares(LeastSquares),
     ExternalTurntable(ExternalTurntable),
@@ -14,8 +15,8 @@ pub(super) enum Estimator {
 }
 
 /// [`super::Kalman`] without its further states.
-#[derive(serde::Serialize, serde::Deserialize)]
-pub(super) struct Kalman {
+#[derive(Serialize, Deserialize)]
+struct Kalman {
     error_model: ErrorModel,
     estimated: [bool; 7],
     prior: Prior,
@@ -83,6 +84,18 @@ impl From<super::Estimator> for Estimator {
             super::Estimator::LeastSquares(settings) => Self::LeastSquares(settings),
             super::Estimator::ExternalTurntable(settings) => Self::ExternalTurntable(settings),
         }
+    }
+}
+
+impl Serialize for super::Estimator {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Estimator::from(*self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for super::Estimator {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Estimator::deserialize(deserializer).map(Self::from)
     }
 }
 

@@ -20,14 +20,9 @@ use crate::error_model::{MotionInterval, advance_columns};
 use crate::further::compensation::FurtherIntegrals;
 use crate::further::size_effect::SizeEffect;
 use crate::further::{FURTHER_COUNT, FurtherEstimates, FurtherGroup};
-use columns::Effects;
+use columns::{Effects, FurtherRow, ROW};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
-
-/// Row length in memory, a multiple of the vector registers' width.
-const ROW: usize = 28;
-/// One padded row over the further states.
-type FurtherRow = [f64; ROW];
 
 /// Estimates and covariance of the further states at one time.
 #[derive(Clone, Debug)]

@@ -1,11 +1,15 @@
 //! Effect of the further states on attitude and velocity in one sub-step.
 
-use super::{FurtherRow, ROW};
 use crate::config::{Further, FurtherUse};
 use crate::error_model::MotionInterval;
 use crate::further::FurtherGroup;
 use crate::further::compensation::FurtherIntegrals;
 use octant_earth::ellipsoid::Ellipsoid;
+
+/// Row length in memory, a multiple of the vector registers' width.
+pub(super) const ROW: usize = 28;
+/// One padded row over the further states.
+pub(super) type FurtherRow = [f64; ROW];
 
 /// Groups that are on.
 #[derive(Clone, Copy, Debug)]
