@@ -231,7 +231,7 @@ fn all_groups_at_once_are_consistent() {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn estimated_errors_cost_least_and_considered_ones_are_told() {
-    let seeds: Vec<u64> = (1..=draws(40, 16)).collect();
+    let seeds: Vec<u64> = (1..=draws(50, 16)).collect();
     let reference = on_two_threads(&seeds, |seed| calibrate(*seed, &[], off(), false));
     println!("error in σ of an instrument without it; in brackets the normalized square");
     println!(
@@ -252,7 +252,7 @@ fn estimated_errors_cost_least_and_considered_ones_are_told() {
         // NaN where the plant doesn't tell the truth.
         let own = if is_constant(group) { further_nees(&ways[2].2, group) } else { f64::NAN };
         println!("{:20} {:>16} {:>16} {:>16} {own:>8.2}", group.name(), of(0), of(1), of(2));
-        // Pooled over thirty parameters that correlate: 10 % over 40 seeds.
+        // Pooled over thirty parameters that correlate: 10 % over 50 seeds.
         for way in [1, 2] {
             assert!((0.8..1.2).contains(&ways[way].1), "{}: {}", group.name(), ways[way].1);
         }
@@ -301,7 +301,7 @@ fn estimated_lever_arms_leave_less_than_a_tenth_of_the_size_effect() {
 #[ignore = "minutes: run by tests/run"]
 fn a_rate_random_walk_is_modelled() {
     let seeds: Vec<u64> = (1..=draws(40, 16)).collect();
-    let walk = 0.003 * DEG_PER_HOUR / 60.0;
+    let walk = 0.02 * DEG_PER_HOUR / 60.0;
     let [ignored, modelled] = [0.0, walk].map(|modelled| {
         on_two_threads(&seeds, |seed| {
             let further = Further { gyro_rate_random_walk: modelled, ..off() };
@@ -319,7 +319,7 @@ fn a_rate_random_walk_is_modelled() {
     let (ignored, modelled) = (mean(ignored.into_iter()), mean(modelled.into_iter()));
     println!("rate random walk: normalized square {ignored:.2} ignored, {modelled:.2} modelled");
     assert!((0.8..1.2).contains(&modelled), "{modelled}");
-    assert!(ignored > modelled);
+    assert!(ignored > 1.3, "{ignored}");
 }
 
 /// A gap, a stuck channel and a jump that opens the gate: the filter with all further states comes

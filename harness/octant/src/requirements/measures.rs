@@ -1,6 +1,7 @@
 //! `octant requirements measures`: every measure that a requirement can have.
 
 use octant_requirements::measures::{MeasureEntry, MeasureNeed, all};
+use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,6 +55,11 @@ pub(super) fn text() -> String {
     for group in ParameterGroup::ALL {
         let _ = writeln!(text, "  {:9} {}", group.unit(), NAMES[group.range()].join(", "));
     }
+    let _ = writeln!(text, "FURTHER, by unit:");
+    for group in FurtherGroup::ALL {
+        let names = FURTHER_NAMES[group.range()].join(", ");
+        let _ = writeln!(text, "  {:9} {names}", group.unit());
+    }
     let groups = ParameterGroup::ALL.map(ParameterGroup::name).join(", ");
     let _ = writeln!(text, "GROUP: {groups}");
     let _ = writeln!(text, "\nneeds:");
@@ -85,13 +91,21 @@ fn row(entry: &MeasureEntry) -> [String; 3] {
         .iter()
         .map(|part| match *part {
             part if NAMES.contains(&part) => "NAME",
+            part if FURTHER_NAMES.contains(&part) => "FURTHER",
             part if group(part) => "GROUP",
             part => part,
         })
         .collect();
-    let unit = if is_parameter && entry.unit != "1" { "of NAME" } else { entry.unit };
+    let is_further = parts.iter().any(|part| FURTHER_NAMES.contains(part));
+    let unit = match entry.unit {
+        "1" => "1",
+        _ if is_parameter => "of NAME",
+        _ if is_further => "of FURTHER",
+        unit => unit,
+    };
     // The name stands in the meaning as it does in the path.
-    let is_name = |part: &&str| !(NAMES.contains(part) || group(part));
+    let is_name =
+        |part: &&str| !(NAMES.contains(part) || FURTHER_NAMES.contains(part) || group(part));
     let meaning: Vec<&str> = entry.meaning.split(": ").filter(is_name).collect();
     let mut about = meaning.join(": ");
     if entry.signed {
