@@ -18,9 +18,9 @@ use octant_source::configure::configurations;
 /// σ of a filter at the end of its calibration, SI.
 #[derive(Clone, Copy, Debug)]
 pub struct FilterSigmas {
-    /// Of the parameters.
+    /// σ of the parameters, in their order.
     pub parameters: [f64; PARAMETER_COUNT],
-    /// Of the further states.
+    /// Further states with their σ; `None` without any.
     pub further: Option<FurtherEstimates>,
 }
 

@@ -60,8 +60,8 @@ fn asymmetry_and_second_order_add_to_readings_of_both_signs() {
     assert!((up[2] + g - of_force[2] * g - square[2] * g * g).abs() <= 2.0 * FORCE_RESOLUTION);
 }
 
-/// There and back a symmetric gyro has turned by nothing but the Earth; an asymmetric one shows twice
-/// the angle times its coefficient.
+/// After a turn and its return a symmetric gyro shows Earth rate alone. An asymmetric one also shows
+/// twice the angle times its coefficient.
 #[test]
 fn an_asymmetric_gyro_gains_by_a_turn_and_back() {
     let mut config = perfect();
