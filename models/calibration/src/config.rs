@@ -119,6 +119,7 @@ pub enum ErrorModel {
 
 /// Tuning of the Kalman filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Kalman {
     /// Form of the error model.
     pub error_model: ErrorModel,
@@ -135,7 +136,9 @@ pub struct Kalman {
     pub sway: SwayNoise,
     /// Mean NIS (three axes) above which the calibration is refused.
     pub refuse_above_mean_nis: f64,
-    /// Errors beside the parameters that the filter takes into account.
+    /// Errors beside the parameters that the filter takes into account. An estimator is stored with
+    /// them: see `stored`.
+    #[cfg_attr(feature = "state", serde(skip))]
     pub further: Further,
 }
 
