@@ -11,11 +11,23 @@ use std::path::{Path, PathBuf};
 /// Number of characters of a checksum.
 const CHECKSUM: usize = 32;
 
+/// A file whose lock ends with it. The lock belongs to the open file, which a process that is being started shares until
+/// it executes its program: without these words the lock would outlast the file here.
+#[derive(Debug)]
+struct LockedFile(File);
+
+impl Drop for LockedFile {
+    fn drop(&mut self) {
+        // Where this fails, closing the file ends the lock.
+        let _ = self.0.unlock();
+    }
+}
+
 /// A locked file of chained lines.
 #[derive(Debug)]
 pub struct ChainedLines {
     path: PathBuf,
-    file: File,
+    file: LockedFile,
     /// Checksum of the last line.
     chained: String,
 }
@@ -74,8 +86,9 @@ impl ChainedLines {
             |line, problem| ChainedLinesError::Line { path: path.to_owned(), line, problem };
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(path).map_err(failed("open"))?;
+        let file = options.open(path).map_err(failed("open"))?;
         file.try_lock().map_err(|error| failed("lock")(error.into()))?;
+        let mut file = LockedFile(file);
         let bytes = std::fs::read(path).map_err(failed("read"))?;
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let whole = std::str::from_utf8(&bytes[..end])
@@ -97,8 +110,8 @@ impl ChainedLines {
                 each(text).map_err(|problem| refused(index + 1, problem))?;
             }
         }
-        file.set_len(end as u64).map_err(failed("cut"))?;
-        file.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
+        file.0.set_len(end as u64).map_err(failed("cut"))?;
+        file.0.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
         let mut lines = Self { path: path.to_owned(), file, chained };
         if end == 0 {
             lines.append([first.to_owned()])?;
@@ -125,7 +138,7 @@ impl ChainedLines {
             self.chained = chain(&self.chained, &text);
             all += &format!("{} {text}\n", self.chained);
         }
-        let written = self.file.write_all(all.as_bytes()).and_then(|()| self.file.sync_data());
+        let written = self.file.0.write_all(all.as_bytes()).and_then(|()| self.file.0.sync_data());
         written.map_err(|source| self.failed("write", source))
     }
 
@@ -139,8 +152,8 @@ impl ChainedLines {
         let length = kept.iter().map(|line| line.len()).sum::<usize>() as u64;
         let checksum = kept.last().and_then(|line| line.get(..CHECKSUM)).unwrap_or_default();
         self.chained = String::from_utf8_lossy(checksum).into_owned();
-        let cut = self.file.set_len(length);
-        let cut = cut.and_then(|()| self.file.seek(SeekFrom::Start(length)).map(drop));
+        let cut = self.file.0.set_len(length);
+        let cut = cut.and_then(|()| self.file.0.seek(SeekFrom::Start(length)).map(drop));
         cut.map_err(|source| self.failed("cut", source))
     }
 
@@ -186,6 +199,17 @@ mod tests {
         lines.append(["e".to_owned()]).unwrap();
         drop(lines);
         assert_eq!(open(&path).unwrap().1, ["a b", "e"]);
+    }
+
+    /// A copy of the open file, as a process has it that is being started, doesn't keep the lock.
+    #[test]
+    fn lock_ends_with_the_lines() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lines");
+        let (lines, _) = open(&path).unwrap();
+        let _copy = lines.file.0.try_clone().unwrap();
+        drop(lines);
+        open(&path).unwrap();
     }
 
     #[test]
