@@ -10,6 +10,7 @@ mod core_consistency;
 mod core_faults;
 mod core_hardened;
 mod core_spikes;
+mod drift_power;
 mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;

@@ -2,13 +2,14 @@
 //!
 //! [`static_rank`](mod@static_rank) is the algebra of static positions, [`covariance`] predicts the
 //! result of one configuration, [`ensemble`] that of a scenario's draws, [`perfect`] what a filter with further states
-//! sees.
+//! sees, [`mod@protection`] what its test for drifts doesn't.
 
 mod bands;
 pub mod covariance;
 pub mod ensemble;
 pub mod perfect;
 mod platform;
+pub mod protection;
 pub mod static_rank;
 pub mod truth;
 

@@ -47,6 +47,32 @@ pub enum PerfectError {
 /// # Errors
 /// If a configuration contradicts itself, or the core refuses its calibration.
 pub fn run(scenario: &Scenario, method: Method) -> Result<FilterSigmas, PerfectError> {
+    let (mut plant, mut core, _) = perfect_instrument(scenario, method, |screening| Screening {
+        base: screening.base,
+        ..Screening::none()
+    })?;
+    let mut command = GimbalCommand::default();
+    loop {
+        let step = plant.step(&command);
+        let output = core.step(&step.sample, step.aiding.as_ref());
+        command = output.gimbal_command;
+        if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
+            break;
+        }
+    }
+    if let Some(refusal) = core.refusal() {
+        return Err(PerfectError::Refused(refusal.to_string()));
+    }
+    Ok(FilterSigmas { parameters: *core.sigma(), further: core.further().copied() })
+}
+
+/// An instrument without errors and noise in a case that stands still, and the core of a scenario's method with the
+/// screens that `screening` makes of its own; and the configuration of that core.
+pub(crate) fn perfect_instrument(
+    scenario: &Scenario,
+    method: Method,
+    screening: impl FnOnce(&Screening) -> Screening,
+) -> Result<(Plant, Core, CoreConfig), PerfectError> {
     let (mut plant, config, _) = configurations(scenario, method, scenario.seed)?;
     plant.motion = Motion::Static(match &scenario.motion {
         MotionSpec::Static(mean) => *mean,
@@ -65,28 +91,16 @@ pub fn run(scenario: &Scenario, method: Method) -> Result<FilterSigmas, PerfectE
         AidingKind::Velocity { .. } => AidingKind::Velocity { sigma_mps: 0.0 },
         AidingKind::DockPosition { .. } => AidingKind::DockPosition { sigma_m: 0.0 },
     };
-    let mut plant = Plant::new(&plant)?;
+    let plant = Plant::new(&plant)?;
     let [w, x, y, z] = plant.truth().q_nb;
     let q_nb = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
     let config = CoreConfig {
         alignment: Alignment::Given { q_nb, velocity_mps: Vector3::zeros() },
         navigation: None,
         initial_parameters: Parameters::default(),
-        screening: Screening { base: config.screening.base, ..Screening::none() },
+        screening: screening(&config.screening),
         ..config
     };
-    let mut core = Core::new(&config)?;
-    let mut command = GimbalCommand::default();
-    loop {
-        let step = plant.step(&command);
-        let output = core.step(&step.sample, step.aiding.as_ref());
-        command = output.gimbal_command;
-        if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
-            break;
-        }
-    }
-    if let Some(refusal) = core.refusal() {
-        return Err(PerfectError::Refused(refusal.to_string()));
-    }
-    Ok(FilterSigmas { parameters: *core.sigma(), further: core.further().copied() })
+    let core = Core::new(&config)?;
+    Ok((plant, core, config))
 }

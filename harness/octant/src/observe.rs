@@ -1,6 +1,7 @@
 //! `octant observe`: rank, null space, posterior σ and predicted drift, before anything is run.
 
 mod ensemble;
+mod protection;
 
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
@@ -34,6 +35,9 @@ pub(super) struct Arguments {
     /// Compare the ensemble with the cases of this scenario in the folder of a campaign.
     #[arg(long, value_name = "DIR", requires = "ensemble")]
     against: Option<PathBuf>,
+    /// Largest shift of each published parameter by a jump that the drift test doesn't notice.
+    #[arg(long, conflicts_with_all = ["ensemble", "units"])]
+    protection: bool,
     /// Units of errors in the tables: of position (arcmin, nmi, m, km), attitude (arcmin, deg, arcsec,
     /// mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
     #[arg(long, value_name = "UNIT,UNIT")]
@@ -84,6 +88,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             arguments.units.unwrap_or_default(),
             arguments.json,
         );
+    }
+    if arguments.protection {
+        return protection::command(&arguments.scenario, arguments.json);
     }
     let scenario = load(&arguments.scenario, &[])?;
     let methods = std::iter::once(Method::Primary)

@@ -373,6 +373,12 @@ impl CalibrationFilter {
         &self.tally
     }
 
+    /// Time since the filter began to measure, at its last propagation, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
     /// Drift test, if there is one.
     #[must_use]
     pub fn drift(&self) -> Option<&DriftTest> {
