@@ -14,7 +14,7 @@ use crate::perfect::{PerfectError, perfect_instrument};
 use nalgebra::SMatrix;
 use octant_calibration::config::{Estimator, Screening};
 use octant_calibration::covariance::{Covariance, PARAMETERS};
-use octant_calibration::drift::{DriftTest, is_tested};
+use octant_calibration::drift::{DriftTest, DriftWeights, is_tested};
 use octant_calibration::filter::prior_sigmas;
 use octant_sample::Mode;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -85,7 +85,7 @@ pub fn protection(scenario: &Scenario, method: Method) -> Result<Protection, Pro
     };
     let sigmas = prior_sigmas(kalman);
     let prior: [f64; PARAMETER_COUNT] = core::array::from_fn(|i| sigmas[PARAMETERS + i]);
-    let (mut all, mut last, mut kept) = (Vec::new(), None, Vec::new());
+    let (mut all, mut last, mut kept, mut weights) = (Vec::new(), None, Vec::new(), None);
     let mut command = octant_sample::GimbalCommand::default();
     loop {
         let step = plant.step(&command);
@@ -99,6 +99,7 @@ pub fn protection(scenario: &Scenario, method: Method) -> Result<Protection, Pro
             continue;
         }
         let drift: &DriftTest = filter.drift().ok_or(ProtectionError::NoTest)?;
+        weights = Some(drift.weights());
         let newest_s = drift.marks_s().last();
         let now = || in_units(filter.covariance(), &prior);
         if newest_s.is_some() && newest_s != all.last().map(|at: &At| at.time_s) {
@@ -112,7 +113,8 @@ pub fn protection(scenario: &Scenario, method: Method) -> Result<Protection, Pro
     }
     all.retain(|at| kept.contains(&at.time_s));
     all.extend(last);
-    Ok(Protection { limit_sigmas, sigma: *core.sigma(), worst: worst(&all, &prior) })
+    let weights = weights.ok_or(ProtectionError::NoTest)?;
+    Ok(Protection { limit_sigmas, sigma: *core.sigma(), worst: worst(&all, weights, &prior) })
 }
 
 fn in_units(covariance: &Covariance, prior: &[f64; PARAMETER_COUNT]) -> Square {
@@ -123,29 +125,38 @@ fn in_units(covariance: &Covariance, prior: &[f64; PARAMETER_COUNT]) -> Square {
 }
 
 /// Makes z of each parameter of a correction between two marks; zero for one that isn't tested.
-fn statistics(before: &At, inverse: &Square, after: &At) -> Square {
-    let gained = before.covariance - after.covariance;
-    let response = gained * inverse;
+fn statistics(before: &At, weights: &Square, after: &At) -> Square {
+    let response = (before.covariance - after.covariance) * weights;
     let mut rows = Square::zeros();
     for i in 0..PARAMETER_COUNT {
-        let variance = inverse.column(i).dot(&response.column(i));
+        let variance = weights.column(i).dot(&response.column(i));
         if is_tested(before.covariance[(i, i)], after.covariance[(i, i)]) && variance > 0.0 {
-            rows.set_row(i, &(inverse.column(i) / variance.sqrt()).transpose());
+            rows.set_row(i, &(weights.column(i) / variance.sqrt()).transpose());
         }
     }
     rows
 }
 
 /// The worst jumps between any two of these times; the last one is the end.
-fn worst(all: &[At], prior: &[f64; PARAMETER_COUNT]) -> [Option<UnnoticedJump>; PARAMETER_COUNT] {
+fn worst(
+    all: &[At],
+    weights: DriftWeights,
+    prior: &[f64; PARAMETER_COUNT],
+) -> [Option<UnnoticedJump>; PARAMETER_COUNT] {
     let mut worst = [None::<UnnoticedJump>; PARAMETER_COUNT];
     let inverses: Option<Vec<Square>> =
         all.iter().map(|at| Some(at.covariance.cholesky()?.inverse())).collect();
     let Some(inverses) = inverses else { return worst };
     let pairs: Vec<(usize, usize)> =
         (0..all.len()).flat_map(|n| (0..n).map(move |m| (m, n))).collect();
-    let tests: Vec<Square> =
-        pairs.iter().map(|&(a, b)| statistics(&all[a], &inverses[a], &all[b])).collect();
+    let test = |&(a, b): &(usize, usize)| {
+        let weights = match weights {
+            DriftWeights::Likelihood => inverses[a],
+            DriftWeights::Own => Square::identity(),
+        };
+        statistics(&all[a], &weights, &all[b])
+    };
+    let tests: Vec<Square> = pairs.iter().map(test).collect();
     for &(m, n) in &pairs {
         // Columns: shift of the estimate at each mark by a jump of each parameter.
         let shifts: Vec<Square> = (0..all.len())

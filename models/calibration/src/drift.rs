@@ -33,7 +33,8 @@ use octant_sample::parameters::PARAMETER_COUNT;
 /// Corrections above this many standard deviations are a drift. Of 3000 clean calibrations of 4 h one is above it, of 1000 of
 /// half an hour one.
 pub const LIMIT_SIGMAS: f64 = 5.0;
-/// The same on a ship, whose sway the filter assumes to be white noise, which it isn't: tails are longer.
+/// The same on a ship, with [`DriftWeights::Own`]: its sway isn't the white noise that the filter assumes, and tails are
+/// longer. The largest of twenty clean calibrations of 4 h is 5.0.
 pub const LIMIT_MOVING_SIGMAS: f64 = 8.0;
 
 /// Number of marks kept; when they are full, every other one is dropped.
@@ -45,6 +46,16 @@ const SPACING_S: f64 = 150.0;
 const GAIN_MIN: f64 = 0.01;
 /// Share of the prior variance below which a parameter is tested.
 const KNOWN: f64 = 0.25;
+
+/// Weights of the test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriftWeights {
+    /// Those of the likelihood ratio: the covariance is that of the errors.
+    Likelihood,
+    /// The parameter's own correction alone. On a ship the filter takes the sway for white noise, and what it knows best it
+    /// knows worse than it believes; weights by P⁻¹ rest on just that.
+    Own,
+}
 
 /// A value for each parameter.
 type All = [f64; PARAMETER_COUNT];
@@ -83,6 +94,7 @@ pub struct Largest {
 #[derive(Clone, Debug)]
 pub struct DriftTest {
     limit_sigmas: f64,
+    weights: DriftWeights,
     /// Standard deviations of the prior.
     prior: All,
     marks: [Mark; MARKS],
@@ -95,7 +107,8 @@ pub struct DriftTest {
 #[cfg(feature = "state")]
 impl octant_state::State for DriftTest {
     fn save(&self, to: &mut octant_state::Writer) {
-        let Self { limit_sigmas: _, prior: _, marks, len, spacing_s, next_s, largest } = self;
+        let Self { limit_sigmas: _, weights: _, prior: _, marks, len, spacing_s, next_s, largest } =
+            self;
         to.value("spacing_s", spacing_s);
         to.value("next_s", next_s);
         to.value("largest", largest);
@@ -192,9 +205,10 @@ impl Mark {
 impl DriftTest {
     /// Makes a test that starts with the prior.
     #[must_use]
-    pub fn new(limit_sigmas: f64, prior: &Covariance) -> Self {
+    pub fn new(limit_sigmas: f64, weights: DriftWeights, prior: &Covariance) -> Self {
         Self {
             limit_sigmas,
+            weights,
             prior: core::array::from_fn(|i| prior.sigma(PARAMETERS + i)),
             marks: [Mark::NONE; MARKS],
             len: 0,
@@ -228,8 +242,10 @@ impl DriftTest {
         let mark = &mut self.marks[self.len];
         (mark.time_s, mark.parameters) = (time_s, parameters);
         mark.variances = core::array::from_fn(|i| now[(i, i)]);
-        mark.weights = weights(&now);
-        mark.spread = core::array::from_fn(|i| square(&now, &row(&mark.weights, i)));
+        if self.weights == DriftWeights::Likelihood {
+            mark.weights = weights(&now);
+            mark.spread = core::array::from_fn(|i| square(&now, &row(&mark.weights, i)));
+        }
         self.len += 1;
         self.next_s = time_s + self.spacing_s;
     }
@@ -246,9 +262,14 @@ impl DriftTest {
                 if !is_tested(mark.variances[i], variance) {
                     continue;
                 }
-                let w = row(&mark.weights, i);
-                let expected = mark.spread[i] - square(now, &w);
-                let sigmas = dot(&w, &corrections).abs() / libm::sqrt(expected);
+                let (correction, expected) = match self.weights {
+                    DriftWeights::Own => (corrections[i], mark.variances[i] - variance),
+                    DriftWeights::Likelihood => {
+                        let w = row(&mark.weights, i);
+                        (dot(&w, &corrections), mark.spread[i] - square(now, &w))
+                    }
+                };
+                let sigmas = correction.abs() / libm::sqrt(expected);
                 // Rounding can make the expectation of a small one negative, and NaN is no drift.
                 if sigmas > self.largest.sigmas && expected > 0.0 {
                     let between_s = (mark.time_s, time_s);
@@ -269,6 +290,12 @@ impl DriftTest {
     /// Compares the estimate at the end of the calibration.
     pub fn finish(&mut self, time_s: f64, parameters: &Parameters, covariance: &Covariance) {
         self.compare(time_s, &parameters.to_array(), &in_units(covariance, &self.prior));
+    }
+
+    /// The weights.
+    #[must_use]
+    pub fn weights(&self) -> DriftWeights {
+        self.weights
     }
 
     /// Times of the marks that are kept, s of filter time.
@@ -301,7 +328,7 @@ mod tests {
         let mut sigmas = [1e-3; STATE_COUNT];
         sigmas[PARAMETERS + 4] = 10.0;
         let mut covariance = Covariance::from_sigmas(&sigmas);
-        let mut drift = DriftTest::new(LIMIT_SIGMAS, &covariance);
+        let mut drift = DriftTest::new(LIMIT_SIGMAS, DriftWeights::Likelihood, &covariance);
         let mut all = [0.0; PARAMETER_COUNT];
         for k in 1..=1440u64 {
             let truth = if k > 720 { 2.0 + step } else { 2.0 };
@@ -356,7 +383,7 @@ mod tests {
         let mut sigmas = [1e-3; STATE_COUNT];
         (sigmas[first], sigmas[second]) = (1e4, 1e4);
         let mut covariance = Covariance::from_sigmas(&sigmas);
-        let mut drift = DriftTest::new(LIMIT_SIGMAS, &covariance);
+        let mut drift = DriftTest::new(LIMIT_SIGMAS, DriftWeights::Likelihood, &covariance);
         let mut all = [0.0; PARAMETER_COUNT];
         let mut means = [0.0; 4];
         let noise = normal(7);

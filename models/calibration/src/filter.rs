@@ -19,9 +19,11 @@ use noise::add_bias_walk;
 pub use noise::add_process_noise;
 pub use sub_step::{SensorIntegrals, sub_step_samples};
 
-use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Screening, Site, SwayNoise};
+use crate::config::{
+    AidingMode, Base, ErrorModel, Gate, Kalman, Noise, Screening, Site, SwayNoise,
+};
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
-use crate::drift::DriftTest;
+use crate::drift::{DriftTest, DriftWeights};
 use crate::error_model::MotionInterval;
 use crate::further::FurtherEstimates;
 use crate::screen::ACCELEROMETERS;
@@ -151,7 +153,11 @@ impl CalibrationFilter {
         let walk = kalman.further.gyro_rate_random_walk;
         let drift = match screening.drift_sigmas {
             Some(limit) if kalman.estimated == [true; 7] && walk == 0.0 => {
-                Some(DriftTest::new(limit, &covariance))
+                let weights = match screening.base {
+                    Base::Still => DriftWeights::Likelihood,
+                    Base::Moving(_) => DriftWeights::Own,
+                };
+                Some(DriftTest::new(limit, weights, &covariance))
             }
             _ => None,
         };
