@@ -178,6 +178,7 @@ pub fn dockside(case: &InstrumentCase) -> (plant::PlantConfig, CoreConfig) {
     let (mut plant, mut core) = (case.plant(), case.core());
     let ship = octant_plant::motion::dockside_default(case.seed);
     core.screening.base = base_of(&ship);
+    core.screening.drift_sigmas = Some(octant_calibration::drift::LIMIT_MOVING_SIGMAS);
     plant.motion = plant::Motion::Dockside(ship);
     plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
     let truth = octant_plant::Plant::new(&plant).unwrap().truth();

@@ -58,6 +58,9 @@ pub fn in_words(c: &Counterfactual) -> String {
         );
     }
     text += match (c.missed, c.harmful, c.refused) {
+        _ if c.unended => {
+            "The calibration was begun anew and not ended: it is none of the procedure."
+        }
         (true, ..) => "The fault did harm, nothing was noticed, and the calibration was published.",
         (_, _, true) => "The core refused the calibration: nothing wrong was published.",
         (_, true, false) => {

@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 /// Parameter shift, in posterior σ of the twin, from which a fault counts as harmful: an error that the
 /// parameter's own σ makes unlikely.
 pub const HARMFUL_SHIFT_SIGMA: f64 = 3.0;
+/// Share of the twin's calibration below which one isn't whole.
+const WHOLE: f64 = 0.99;
 /// Time within which the same report in both runs is not attributed to the fault, ns.
 const SAME_NS: u64 = 5_000_000_000;
 /// Most rows of the difference in the summary.
@@ -43,6 +45,10 @@ pub struct Counterfactual {
     pub detection_delay_max_s: Option<f64>,
     /// True if the calibration was refused, and that of the twin wasn't.
     pub refused: bool,
+    /// True if the calibration is shorter than that of the twin: the unit began it anew, and the stream ended before it. It
+    /// is no calibration of the procedure, whatever its σ.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unended: bool,
     /// True for a significant effect: a parameter shifted by 3 σ or more, or the largest difference of
     /// position exceeds the twin's largest radial error.
     pub harmful: bool,
@@ -141,7 +147,11 @@ pub fn counterfactual(
         .is_some_and(|n: &DriftDifference| n.radial_max_nmi > n.twin_radial_max_nmi);
     let harmful = shifted || drifted;
     let new = new_episodes(faulted.episodes, twin.episodes);
-    let stands = !refused && !shifted;
+    let unended = match (faulted.calibration, twin.calibration) {
+        (Some(faulted), Some(twin)) => faulted.duration_h < WHOLE * twin.duration_h && !refused,
+        _ => false,
+    };
+    let stands = !refused && !unended && !shifted;
     let faults: Vec<Noticed> = onsets
         .iter()
         .map(|(id, onset_s)| noticed(id, *onset_s, &new, faulted.elapsed_s, stands))
@@ -163,8 +173,9 @@ pub fn counterfactual(
         detection_delay_max_s: faults.iter().filter_map(|f| f.delay_s).reduce(f64::max),
         faults,
         refused,
+        unended,
         harmful,
-        missed: harmful && !refused && unnoticed,
+        missed: harmful && !refused && !unended && unnoticed,
         false_alarms: twin.episodes.len() as u64,
         twin_stream_hash: twin.stream_hash.to_owned(),
     }

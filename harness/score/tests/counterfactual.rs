@@ -108,6 +108,19 @@ fn a_refused_calibration_is_not_missed() {
 }
 
 #[test]
+fn a_calibration_that_is_too_short_is_none() {
+    let (mut faulted, twin) = (calibration(9.0, None), calibration(1.0, None));
+    let c = compare((&faulted, &[]), (&twin, &[]), Some(100.0));
+    assert!(c.missed && !c.unended);
+    faulted.duration_h = 0.9 * twin.duration_h;
+    let c = compare((&faulted, &[]), (&twin, &[]), Some(100.0));
+    assert!(c.unended && c.harmful && !c.missed && !c.faults[0].recovered);
+    assert_eq!(c.undetected, 1);
+    faulted.refused = Some("no".to_owned());
+    assert!(!compare((&faulted, &[]), (&twin, &[]), Some(100.0)).unended);
+}
+
+#[test]
 fn a_fault_that_never_fired_is_noticed_by_nobody() {
     let (faulted, twin) = (calibration(1.0, None), calibration(1.0, None));
     let stuck = [episode(Health::GYRO_STUCK, 130, 160)];

@@ -58,8 +58,10 @@ impl TrialEffect {
         let found = between(scenario, run, twin)?;
         let refused = run.calibration.as_ref().and_then(|c| c.refused.clone());
         let report = found.faults.iter().find_map(|fault| fault.noticed_by.clone());
-        let absent =
-            || run.calibration.is_none().then(|| "no calibration was published".to_owned());
+        let absent = || {
+            let is_absent = run.calibration.is_none() || found.unended;
+            is_absent.then(|| "no calibration was published".to_owned())
+        };
         let noticed_by =
             report.or_else(|| refused.map(|why| format!("refused: {why}"))).or_else(absent);
         let shifts = |found: &Counterfactual| {
