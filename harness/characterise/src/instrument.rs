@@ -149,8 +149,8 @@ fn temperature(text: &mut String, warmth: &TemperatureDependence, left_out: &mut
          # accel_bias. A channel that shows no coefficient has 0.\n[imu.extensions.temperature]"
     );
     let per_hour = change_k / time_s * 3600.0;
-    let _ = writeln!(text, "ramp = \"{} K/h\"", octant_base::number::plain(per_hour, 5));
-    let _ = writeln!(text, "plateau = \"{} K\"", octant_base::number::plain(change_k, 5));
+    let _ = writeln!(text, "ramp = \"{}\"", number(per_hour, "K/h"));
+    let _ = writeln!(text, "plateau = \"{}\"", number(change_k, "K"));
     let triads = [
         ("gyro_bias", UnitDimension::GYRO_BIAS_PER_K),
         ("accel_bias", UnitDimension::ACCEL_BIAS_PER_K),
@@ -169,5 +169,10 @@ fn temperature(text: &mut String, warmth: &TemperatureDependence, left_out: &mut
 fn quantity(dimension: UnitDimension, value: f64) -> String {
     let unit = dimension.unit;
     let size = octant_scenario::quantity_of(&format!("1 {unit}")).map_or(1.0, |one| one.si);
-    format!("{} {unit}", octant_base::number::plain(value / size, 5))
+    number(value / size, unit)
+}
+
+/// Writes a number with five digits as a scenario reads it, which has a hyphen for minus.
+fn number(value: f64, unit: &str) -> String {
+    format!("{} {unit}", octant_base::number::plain(value, 5).replace('\u{2212}', "-"))
 }

@@ -5,7 +5,7 @@ use crate::deviations::RateChannels;
 
 /// Part of the rates that is linear in a smooth temperature.
 ///
-/// The temperature goes straight from the middle of a block to that of the next: the noise and the steps of a
+/// The temperature is the parabola with the means of a block and its neighbours: the noise and the steps of a
 /// thermometer would come into the rates with the temperature of each sample.
 #[derive(Clone, Debug)]
 pub struct TemperatureCorrection {
@@ -38,10 +38,14 @@ impl TemperatureCorrection {
         if !blocks.is_usable() {
             return self.mean_warmer_k(stretch);
         }
-        let place = (sample as f64 + 0.5) / self.samples as f64 - 0.5;
-        let before = (place.max(0.0) as usize).min(means.len() - 2);
-        let slope = means[before + 1] - means[before];
-        means[before] + (place - before as f64) * slope - self.reference_c
+        // In blocks from the beginning; the rest behind the last block is extrapolated by half a block at most.
+        let place = ((sample as f64 + 0.5) / self.samples as f64).min(means.len() as f64 + 0.5);
+        let first = (place as usize).saturating_sub(1).min(means.len().saturating_sub(3));
+        let u = place - first as f64;
+        let [a, b] = [means[first], means[first + 1]];
+        let curved = means.get(first + 2).map_or(0.0, |c| c - 2.0 * b + a);
+        // Derivative of the cubic through the sums of the means at the four edges, in Newton's form.
+        a + (b - a) * (u - 0.5) + curved * (0.5 * u * u - u + 1.0 / 3.0) - self.reference_c
     }
 
     /// Mean temperature of a stretch against the reference, K; 0 where it isn't known.

@@ -33,7 +33,7 @@ const STEP: f64 = 2.5;
 /// Largest ratio: white noise is a thousandth of the walk from block to block.
 const MOST: f64 = 1e3;
 /// Weight of a part of the mixture, against the largest, below which it is left out.
-const NEGLIGIBLE: f64 = 1e-7;
+const NEGLIGIBLE: f64 = 1e-12;
 /// Fewest differences.
 pub const DIFFERENCES_MIN: usize = 5;
 
