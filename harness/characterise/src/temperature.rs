@@ -2,7 +2,7 @@
 //!
 //! Every stretch at rest has an offset of its own, which takes gravity, Earth's rate and the bias at the reference
 //! temperature: only changes within a stretch count. [`regression`] has the interval. A thermometer's own noise makes a
-//! coefficient too small; [`dependence`] tells none where that could be more than [`TOO_SMALL`].
+//! coefficient too small: the outer end of the interval is as much further out, and none is told above [`TOO_SMALL`].
 
 pub mod blocks;
 pub mod correction;
@@ -22,17 +22,19 @@ use serde::Serialize;
 /// between two places of a case wanders by a tenth of it.
 pub const SPAN_MIN_K: f64 = 0.5;
 /// Part by which the noise of the thermometer may make a coefficient too small.
-pub const TOO_SMALL: f64 = 0.02;
+pub const TOO_SMALL: f64 = 0.1;
 /// Part of the temperature's change that may be steady in time before it is told.
 pub const STEADY: f64 = 0.9;
 
 /// Coefficient of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TemperatureFit {
-    /// Bias per kelvin, rad/s/K or m/s²/K; `None`: its interval has zero.
+    /// Bias per kelvin, rad/s/K or m/s²/K; `None`: its interval has zero, or it isn't told.
     pub per_k: Option<f64>,
-    /// Interval of 95 %.
-    pub interval: [f64; 2],
+    /// Interval of 95 %; `None`: not told, as the thermometer is too noisy.
+    pub interval: Option<[f64; 2]>,
+    /// Part by which the thermometer's noise makes it too small.
+    pub too_small: f64,
 }
 
 /// A block as the page shows it.
@@ -143,7 +145,7 @@ pub fn dependence(
         ));
     }
     let span_k = usable.iter().map(|(_, stretch)| span(&stretch.temperature_c)).fold(0.0, f64::max);
-    let (noise_k, attenuation) = noise(&usable);
+    let noise_k = noise(&usable);
     let mut found = TemperatureDependence {
         range_c: Some(range_c),
         reference_c: Some(blocks.mean_c()),
@@ -163,18 +165,6 @@ pub fn dependence(
         ));
         return found;
     }
-    if attenuation > TOO_SMALL {
-        found.reason = Some(format!(
-            "the temperature changes by {} K, and its noise of {} K in blocks of {} s would make a coefficient too small by \
-             {} %, expected {} % at most",
-            significant(span_k, 2),
-            significant(noise_k, 2),
-            plain(block_s, 4),
-            significant(100.0 * attenuation, 2),
-            plain(100.0 * TOO_SMALL, 2)
-        ));
-        return found;
-    }
     let lengths: Vec<usize> = usable.iter().map(|(_, s)| s.temperature_c.len() - 1).collect();
     let steps =
         |values: &[f64]| values.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>();
@@ -185,24 +175,44 @@ pub fn dependence(
     };
     let responses: Vec<Vec<f64>> = (0..CHANNELS).map(response).collect();
     let fits: Option<Vec<Coefficient>> =
-        regress(&lengths, &regressor, &responses).into_iter().collect();
+        regress(&lengths, (&regressor, noise_k), &responses).into_iter().collect();
     let Some(fits) = fits else {
         found.reason =
             Some("a channel has the same mean in every block, expected noise".to_owned());
         return found;
     };
-    let shown = |fit: &Coefficient| fit.interval[0] > 0.0 || fit.interval[1] < 0.0;
-    found.channels = fits
-        .iter()
-        .map(|fit| TemperatureFit {
-            per_k: shown(fit).then_some(fit.value),
-            interval: fit.interval,
-        })
-        .collect();
+    found.channels = fits.iter().map(told).collect();
+    if found.channels.iter().all(|fit| fit.interval.is_none()) {
+        let least = fits.iter().map(|fit| fit.too_small).fold(f64::INFINITY, f64::min);
+        found.channels.clear();
+        found.reason = Some(format!(
+            "the temperature changes by {} K, and its noise of {} K in blocks of {} s would make a coefficient too small by \
+             {} %, expected {} % at most",
+            significant(span_k, 2),
+            significant(noise_k, 2),
+            plain(block_s, 4),
+            significant(100.0 * least, 2),
+            plain(100.0 * TOO_SMALL, 2)
+        ));
+        return found;
+    }
     let per_k = core::array::from_fn(|c| found.channels[c].per_k.unwrap_or(0.0));
     found.means = means(&usable, &per_k, blocks.mean_c());
     found.correction = found.is_shown().then(|| TemperatureCorrection::new(per_k, blocks));
     found
+}
+
+/// A coefficient with the interval as far out as the thermometer's noise may have brought it in.
+fn told(fit: &Coefficient) -> TemperatureFit {
+    let Coefficient { value, interval: [low, high], too_small } = *fit;
+    if too_small > TOO_SMALL {
+        return TemperatureFit { per_k: None, interval: None, too_small };
+    }
+    let further = 1.0 / (1.0 - too_small);
+    let low = if low < 0.0 { low * further } else { low };
+    let high = if high > 0.0 { high * further } else { high };
+    let shown = low > 0.0 || high < 0.0;
+    TemperatureFit { per_k: shown.then_some(value), interval: Some([low, high]), too_small }
 }
 
 /// Largest minus smallest value.
@@ -211,26 +221,18 @@ fn span(values: &[f64]) -> f64 {
     most - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Standard deviation of the thermometer in a block, K, and the part by which it makes a coefficient too small.
+/// Standard deviation of the thermometer in a block, K.
 ///
-/// Second differences of the means have six times its variance, and nearly nothing of a temperature that is smooth.
-/// Without three neighbours anywhere it isn't known, and counts as none.
-fn noise(usable: &[(f64, &StretchBlocks)]) -> (f64, f64) {
-    let (mut rough, mut count, mut spread, mut freedom) = (0.0, 0.0, 0.0, 0.0);
-    for (_, stretch) in usable {
-        let means = &stretch.temperature_c;
-        for three in means.windows(3) {
-            let second = three[0] - 2.0 * three[1] + three[2];
-            rough += second * second;
-            count += 6.0;
-        }
-        let mean = means.iter().sum::<f64>() / means.len() as f64;
-        spread += means.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>();
-        freedom += means.len() as f64 - 1.0;
+/// Third differences of the means have twenty times its variance, and nearly nothing of a temperature that is smooth.
+/// Without four neighbours anywhere it isn't known, and counts as none.
+fn noise(usable: &[(f64, &StretchBlocks)]) -> f64 {
+    let (mut rough, mut count) = (0.0, 0.0);
+    for four in usable.iter().flat_map(|(_, stretch)| stretch.temperature_c.windows(4)) {
+        let third = four[0] - 3.0 * four[1] + 3.0 * four[2] - four[3];
+        rough += third * third;
+        count += 20.0;
     }
-    let variance = if count > 0.0 { rough / count } else { 0.0 };
-    let attenuation = if spread > 0.0 { variance * freedom / spread } else { 1.0 };
-    (libm::sqrt(variance), attenuation)
+    if count > 0.0 { libm::sqrt(rough / count) } else { 0.0 }
 }
 
 /// Part of the change of the temperature that is steady in time, with one rate for all stretches.

@@ -223,11 +223,12 @@ pub fn unit_per_k(is_gyro: bool) -> (&'static str, f64) {
     (dimension.unit, one.map_or(1.0, |quantity| quantity.si))
 }
 
-/// A coefficient of temperature with its interval, or the interval alone where it has zero.
+/// A coefficient of temperature with its interval, or the interval alone where it has zero; "not told" without one.
 #[must_use]
 pub fn per_k(fit: &TemperatureFit, size: f64) -> String {
     let digits = |value: f64| significant(value / size, 3);
-    let interval = format!("[{}, {}]", digits(fit.interval[0]), digits(fit.interval[1]));
+    let Some([low, high]) = fit.interval else { return "not told".to_owned() };
+    let interval = format!("[{}, {}]", digits(low), digits(high));
     fit.per_k.map_or_else(|| interval.clone(), |value| format!("{} {interval}", digits(value)))
 }
 

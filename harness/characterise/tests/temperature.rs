@@ -46,7 +46,7 @@ fn intervals_are_those_of_an_independent_program() {
         let stretches = series(&blocks, number("walk"), number("coefficient"));
         let lengths: Vec<usize> = blocks.iter().map(|length| length - 1).collect();
         let of = |which: usize| stretches.iter().flat_map(|s| steps(&s[which])).collect::<Vec<_>>();
-        let found = regress(&lengths, &of(0), &[of(1)])[0].unwrap();
+        let found = regress(&lengths, (&of(0), 0.0), &[of(1)])[0].unwrap();
         let near = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-9, "{row}: found {found}, expected {expected}");
         };
@@ -64,19 +64,22 @@ fn a_temperature_that_is_one_sine_has_the_projection_on_it() {
         (1..=9).map(|k| (f64::from(k) * 2.0 * std::f64::consts::PI / 10.0).sin()).collect();
     let y: Vec<f64> = (1..=9).map(|k| f64::from(k * k % 7) - 3.0).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let found = regress(&lengths, &t, std::slice::from_ref(&y))[0].unwrap();
+    let found = regress(&lengths, (&t, 0.1), std::slice::from_ref(&y))[0].unwrap();
     let expected = dot(&t, &y) / dot(&t, &t);
     assert!((found.value - expected).abs() < 1e-12, "{found:?}, expected {expected}");
+    // White noise of the regressor in a block has the variance 2 − 2 cos θ in this sine: the part of it is the same too.
+    let rough = 0.01 * (2.0 - 2.0 * (2.0 * std::f64::consts::PI / 10.0).cos());
+    assert!(found.too_small > rough / dot(&t, &t), "{found:?}");
     let [below, above] = [found.value - found.interval[0], found.interval[1] - found.value];
     assert!(below > 0.0 && (below / above - 1.0).abs() < 1e-9, "{found:?}");
 }
 
 #[test]
 fn data_that_tell_nothing_have_no_coefficient() {
-    assert_eq!(regress(&[4], &[1.0; 4], &[vec![1.0; 4]]), [None]);
-    assert_eq!(regress(&[6], &[0.0; 6], &[vec![1.0; 6]]), [None]);
+    assert_eq!(regress(&[4], (&[1.0; 4], 0.0), &[vec![1.0; 4]]), [None]);
+    assert_eq!(regress(&[6], (&[0.0; 6], 0.0), &[vec![1.0; 6]]), [None]);
     assert_eq!(
-        regress(&[6], &[1.0; 6], &[vec![0.0; 6], vec![f64::NAN; 6], vec![1.0; 5]]),
+        regress(&[6], (&[1.0; 6], 0.0), &[vec![0.0; 6], vec![f64::NAN; 6], vec![1.0; 5]]),
         [None; 3]
     );
 }
@@ -110,7 +113,8 @@ fn places_leave_nothing_in_a_coefficient() {
     for fit in &found.channels {
         let value = fit.per_k.unwrap();
         assert!((value - 3e-3).abs() < 1e-6, "{fit:?}");
-        assert!(fit.interval[0] < 3e-3 && 3e-3 < fit.interval[1], "{fit:?}");
+        let [low, high] = fit.interval.unwrap();
+        assert!(low < 3e-3 && 3e-3 < high, "{fit:?}");
     }
     // What is taken off leaves the place alone: its mean, and no change within the stretch.
     let correction = found.correction().unwrap();
@@ -136,6 +140,25 @@ fn a_temperature_that_tells_too_little_is_a_reason() {
     blocks.end_stretch();
     let said = dependence(&blocks, &[0.0], DT).reason.unwrap();
     assert!(said.contains("pairs of neighbouring blocks"), "{said}");
+}
+
+#[test]
+fn a_noisy_thermometer_moves_the_outer_end_of_the_interval() {
+    // Of 200 thermometers with a noise of 0.4 K against a change of ±3 K in white noise.
+    let (lengths, blocks) = ([63], 64);
+    let mut sums = [0.0; 2];
+    for seed in 0..200 {
+        let noises = octant_random::stream::Triad::new(seed, "thermometer");
+        let at = |k: usize| noises.at(k as u64);
+        let warm = |k: usize| 3.0 * (TAU * k as f64 / 24.0).sin();
+        let t: Vec<f64> = (0..blocks).map(|k| warm(k) + 0.4 * at(k)[0]).collect();
+        let y: Vec<f64> = (0..blocks).map(|k| warm(k) + 0.05 * at(k)[1]).collect();
+        let found = regress(&lengths, (&steps(&t), 0.4), &[steps(&y)])[0].unwrap();
+        sums[0] += found.value / 200.0;
+        sums[1] += found.too_small / 200.0;
+    }
+    let [value, too_small] = sums;
+    assert!(value < 0.99 && (value - (1.0 - too_small)).abs() < 0.02, "{value} {too_small}");
 }
 
 #[test]
@@ -204,7 +227,7 @@ fn fits(of: &Coefficients, seeds: u64, samples: u64) -> Vec<Vec<Coefficient>> {
     regressors
         .iter()
         .zip(&responses)
-        .map(|(t, y)| regress(&[t.len()], t, y).into_iter().map(Option::unwrap).collect())
+        .map(|(t, y)| regress(&[t.len()], (t, 0.0), y).into_iter().map(Option::unwrap).collect())
         .collect()
 }
 

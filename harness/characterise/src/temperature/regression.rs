@@ -22,6 +22,9 @@
 //! prior of c). A random walk that the record can't exclude is in the interval, which then is wider than one for
 //! white noise.
 //!
+//! Noise of the regressor itself, white from block to block, is a part of tᵀV⁻¹t and makes ĉ too small by that part:
+//! more where the noise of the rates wanders, as differences then weigh more than the whole change.
+//!
 //! Assumed: the noise is Gaussian; what isn't white wanders as a random walk does, or less; and the rate follows the
 //! temperature at once and linearly.
 
@@ -44,6 +47,8 @@ pub struct Coefficient {
     pub value: f64,
     /// Interval of 95 %.
     pub interval: [f64; 2],
+    /// Part by which the regressor's own noise makes it too small.
+    pub too_small: f64,
 }
 
 /// One part of the mixture.
@@ -53,6 +58,7 @@ struct Part {
     weight: f64,
     centre: f64,
     scale: f64,
+    too_small: f64,
 }
 
 /// Variances of the sine transforms: of white noise and of a random walk.
@@ -82,11 +88,12 @@ fn transformed(lengths: &[usize], values: &[f64]) -> Vec<f64> {
 
 /// Fits the coefficient of a regressor to responses. All are differences of neighbouring block means, those of the
 /// first stretch first; `lengths` has the number of differences of each stretch. `None` for a response that is all
-/// zero or not finite, and for all where there are too few differences or the regressor is zero.
+/// zero or not finite, and for all where there are too few differences or the regressor is zero. The regressor comes with
+/// the standard deviation of its own noise in a block.
 #[must_use]
 pub fn regress(
     lengths: &[usize],
-    regressor: &[f64],
+    (regressor, noise): (&[f64], f64),
     responses: &[Vec<f64>],
 ) -> Vec<Option<Coefficient>> {
     let count: usize = lengths.iter().sum();
@@ -99,7 +106,7 @@ pub fn regress(
     let ratios = ratios(count);
     let of = |response: &Vec<f64>| {
         let y = transformed(lengths, response);
-        let parts = ratios.iter().map(|ratio| under(*ratio, &variances, &t, &y)).collect();
+        let parts = ratios.iter().map(|ratio| under(*ratio, &variances, (&t, noise), &y)).collect();
         (response.len() == count).then(|| mixed(parts, (count - 1) as f64)).flatten()
     };
     responses.iter().map(of).collect()
@@ -114,10 +121,10 @@ fn ratios(count: usize) -> Vec<f64> {
 }
 
 /// Part of the mixture under a ratio.
-fn under(ratio: f64, variances: &[[f64; 2]], t: &[f64], y: &[f64]) -> Part {
+fn under(ratio: f64, variances: &[[f64; 2]], (t, noise): (&[f64], f64), y: &[f64]) -> Part {
     let (mut log_determinant, mut weight, mut both, mut squares) = (0.0, 0.0, 0.0, 0.0);
     // With V′ the derivative of V by ln r: traces of V⁻¹V′ and of its square, and tᵀV⁻¹V′V⁻¹t and tᵀV⁻¹V′V⁻¹V′V⁻¹t.
-    let (mut traces, mut turned) = ([0.0; 2], [0.0; 2]);
+    let (mut traces, mut turned, mut rough) = ([0.0; 2], [0.0; 2], 0.0);
     for (([white, walk], t), y) in variances.iter().zip(t).zip(y) {
         let variance = white + ratio * walk;
         let part = ratio * walk / variance;
@@ -125,6 +132,7 @@ fn under(ratio: f64, variances: &[[f64; 2]], t: &[f64], y: &[f64]) -> Part {
         weight += t * t / variance;
         both += t * y / variance;
         squares += y * y / variance;
+        rough += noise * noise * white / variance;
         traces[0] += part;
         traces[1] += part * part;
         turned[0] += t * t / variance * part;
@@ -140,7 +148,12 @@ fn under(ratio: f64, variances: &[[f64; 2]], t: &[f64], y: &[f64]) -> Part {
     // Of data without noise rounding alone is left.
     let left = (squares - both * centre).max(f64::EPSILON * squares);
     let log_likelihood = -0.5 * (log_determinant + libm::log(weight) + freedom * libm::log(left));
-    Part { weight: log_prior + log_likelihood, centre, scale: libm::sqrt(left / freedom / weight) }
+    Part {
+        weight: log_prior + log_likelihood,
+        centre,
+        scale: libm::sqrt(left / freedom / weight),
+        too_small: rough / weight,
+    }
 }
 
 /// Median and interval of a mixture of Student's distributions.
