@@ -182,6 +182,9 @@ fn mixed(parts: Vec<Part>, freedom: f64) -> Option<Coefficient> {
         }
         0.5 * (low + high)
     };
-    (!parts.is_empty())
-        .then(|| Coefficient { value: quantile(0.5), interval: [quantile(0.025), quantile(0.975)] })
+    (!parts.is_empty()).then(|| Coefficient {
+        value: quantile(0.5),
+        interval: [quantile(0.025), quantile(0.975)],
+        too_small: parts.iter().map(|part| part.weight * part.too_small).sum::<f64>() / total,
+    })
 }
