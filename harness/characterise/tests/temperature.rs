@@ -179,8 +179,10 @@ fn the_temperature_that_is_taken_off_is_exact_for_parabolas() {
     assert_eq!(correction.taken_off(&[3.0; CHANNELS], 2.0), [1.0; CHANNELS]);
 }
 
-/// Courses of a temperature over a record of length 1.
-const COURSES: [(&str, fn(f64) -> f64); 3] = [
+/// Name of a course of the temperature, and its values over a record of length 1.
+type Course = (&'static str, fn(f64) -> f64);
+
+const COURSES: [Course; 3] = [
     ("three cycles in a chamber", |x| 20.0 + 10.0 * (3.2 * TAU * x).sin()),
     ("warming up, then two cycles", |x| {
         20.0 + 15.0 * (1.0 - (-4.0 * x).exp()) + 3.0 * (2.3 * TAU * x).sin()
