@@ -238,7 +238,7 @@ fn a_temperature_in_messages_is_read_where_it_is_asked_for() {
     let said = source.temperature_c().unwrap_err().to_string();
     assert!(
         said.contains(
-            "warm.mcap: message 3 on /imu/data: field warm: temperature 360 K, 61.85 K from"
+            "warm.mcap: message 3 on /imu/data: field warm: temperature 360 K, 61.9 K from"
         ),
         "{said}"
     );
