@@ -7,7 +7,8 @@ use super::fit::{NoiseFitter, RandomTermsFit};
 use super::freedom::{VarianceKind, degrees_of_freedom, interval};
 use super::recording::RestingRecording;
 use super::spectrum::{SpectrumLine, WelchSpectrum};
-use super::survey::{RestStretch, RestSurvey};
+use super::survey::RestSurvey;
+use super::temperature::correction::TemperatureCorrection;
 use serde::Serialize;
 
 /// Values of a channel that are kept for its histogram.
@@ -62,7 +63,7 @@ pub struct ChannelAnalysis {
     pub name: &'static str,
     /// Unit of its rates: rad/s or m/s².
     pub unit: &'static str,
-    /// Mean over all stretches.
+    /// Mean over all stretches, at the mean temperature.
     pub mean: f64,
     /// Deviations by averaging time.
     pub deviations: Vec<DeviationRow>,
@@ -227,30 +228,28 @@ fn bands(spectrum: &WelchSpectrum, channel: usize) -> Vec<SpectrumBand> {
     if spectrum.segments() == 0 { Vec::new() } else { bands.iter().map(band).collect() }
 }
 
-/// Analyses the stretches at rest of a recording.
+/// Analyses the stretches at rest of a recording, without the part that the temperature explains.
 ///
 /// # Errors
 /// If it can't be read.
 pub fn analyse(
     recording: &RestingRecording,
     survey: &RestSurvey,
+    correction: Option<&TemperatureCorrection>,
 ) -> Result<RestAnalysis, CharacteriseError> {
     let lengths: Vec<u64> = survey.stretches.iter().map(|stretch| stretch.samples).collect();
     let mut taker = RestTaker::new(recording.period_s(), &lengths);
-    let mut stretches = survey.stretches.iter();
-    let mut present: Option<&RestStretch> = stretches.next();
-    let mut number = 0;
-    recording.read(|sample| {
-        if let Some(stretch) = present
-            && number >= stretch.first
-        {
-            taker.push(&sample.rates);
-            if number + 1 == stretch.first + stretch.samples {
-                taker.end_stretch();
-                present = stretches.next();
+    survey.read(recording, |sample, place| {
+        match correction {
+            None => taker.push(&sample.rates),
+            Some(correction) => {
+                let warmer_k = correction.warmer_k(place.stretch, place.sample);
+                taker.push(&correction.taken_off(&sample.rates, warmer_k));
             }
         }
-        number += 1;
+        if place.is_last {
+            taker.end_stretch();
+        }
     })?;
     Ok(taker.finish())
 }

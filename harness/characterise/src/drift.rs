@@ -18,7 +18,7 @@ const BLOCKS: u64 = 128;
 pub struct RampEstimate {
     /// Change, rad/s² or m/s³; `None`: its interval has zero.
     pub value: Option<f64>,
-    /// Interval of 95 %; without a value that of the size, from 0 to an upper limit of 95 %.
+    /// Interval of 95 %; without a value that of the size, from 0 to the upper end of the interval.
     pub interval: [f64; 2],
 }
 
@@ -119,7 +119,8 @@ impl BlockMeans {
         Some(if shown {
             RampEstimate { value: Some(value), interval: [value - half, value + half] }
         } else {
-            RampEstimate { value: None, interval: [0.0, value.abs() + student.inverse_cdf(0.95)] }
+            // The two-sided end: whether a ramp is shown is told by the same data, and each end may miss 2.5 % in all.
+            RampEstimate { value: None, interval: [0.0, value.abs() + half] }
         })
     }
 }

@@ -2,9 +2,11 @@
 //!
 //! A scenario has one value for the three axes of a triad: the root of the mean square of the axes, where an axis that
 //! doesn't show a term counts as none of it. The correlation time is the geometric mean of the axes that show it.
+//! Coefficients of temperature are those of each axis.
 
 use super::analysis::{ChannelAnalysis, RestAnalysis};
 use super::kernel::RandomTerm;
+use super::temperature::{TemperatureDependence, TemperatureFit};
 use octant_scenario::UnitDimension;
 use std::fmt::Write as _;
 
@@ -38,9 +40,13 @@ fn correlation_time_s(channels: &[ChannelAnalysis]) -> Option<f64> {
         .then(|| libm::exp(times.iter().map(|time| libm::log(*time)).sum::<f64>() / count))
 }
 
-/// Writes the scenario of an instrument.
+/// Writes the scenario of an instrument; without a temperature its biases stay as they are.
 #[must_use]
-pub fn instrument_file(analysis: &RestAnalysis, period_ns: u64, name: &str) -> InstrumentFile {
+pub fn instrument_file(
+    analysis: &RestAnalysis,
+    (period_ns, name): (u64, &str),
+    warmth: Option<&TemperatureDependence>,
+) -> InstrumentFile {
     let (gyros, accelerometers) = analysis.channels.split_at(3.min(analysis.channels.len()));
     let mut left_out = Vec::new();
     let mut text = String::new();
@@ -82,6 +88,9 @@ pub fn instrument_file(analysis: &RestAnalysis, period_ns: u64, name: &str) -> I
             "{}: a line of a sensor alone isn't modelled",
             octant_base::number::counted(lines as u64, "spectral line", "spectral lines")
         ));
+    }
+    if let Some(warmth) = warmth {
+        temperature(&mut text, warmth, &mut left_out);
     }
     // A procedure, so that the file can be run as it is.
     let _ = writeln!(text, "\n[procedure.calibration]");
@@ -130,9 +139,40 @@ fn extensions(
     slow.is_some() && process.is_some()
 }
 
+/// Writes the coefficients of temperature, where there are any.
+fn temperature(text: &mut String, warmth: &TemperatureDependence, left_out: &mut Vec<String>) {
+    let (true, Some([change_k, time_s])) = (warmth.is_shown(), warmth.change) else { return };
+    let _ = writeln!(
+        text,
+        "\n# Ramp and plateau are the largest change of the temperature from its first value, in the time that it took:\n\
+         # the plant has no other course. Coefficients of scale factors are not seen at rest: times gravity they are in\n\
+         # accel_bias. A channel that shows no coefficient has 0.\n[imu.extensions.temperature]"
+    );
+    let per_hour = change_k / time_s * 3600.0;
+    let _ = writeln!(text, "ramp = \"{}\"", number(per_hour, "K/h"));
+    let _ = writeln!(text, "plateau = \"{}\"", number(change_k, "K"));
+    let triads = [
+        ("gyro_bias", UnitDimension::GYRO_BIAS_PER_K),
+        ("accel_bias", UnitDimension::ACCEL_BIAS_PER_K),
+    ];
+    for ((key, dimension), fits) in triads.into_iter().zip(warmth.channels.chunks(3)) {
+        let of =
+            |fit: &TemperatureFit| format!("\"{}\"", quantity(dimension, fit.per_k.unwrap_or(0.0)));
+        let _ = writeln!(text, "{key} = [{}]", fits.iter().map(of).collect::<Vec<_>>().join(", "));
+    }
+    left_out.push(
+        "the course of the temperature: the plant has a ramp that ends at a plateau".to_owned(),
+    );
+}
+
 /// Writes a quantity with five digits, in the unit of its dimension.
 fn quantity(dimension: UnitDimension, value: f64) -> String {
     let unit = dimension.unit;
     let size = octant_scenario::quantity_of(&format!("1 {unit}")).map_or(1.0, |one| one.si);
-    format!("{} {unit}", octant_base::number::plain(value / size, 5))
+    number(value / size, unit)
+}
+
+/// Writes a number with five digits as a scenario reads it, which has a hyphen for minus.
+fn number(value: f64, unit: &str) -> String {
+    format!("{} {unit}", octant_base::number::plain(value, 5).replace('\u{2212}', "-"))
 }

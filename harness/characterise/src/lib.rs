@@ -7,6 +7,7 @@
 //! - [`spectrum`] has the spectral density and its lines
 //! - [`recording`] reads any source of samples, [`survey`] finds where it is at rest, [`analysis`] puts all of the above
 //!   together
+//! - [`temperature`] has the biases' dependence on temperature
 //! - [`earth_rate`] checks several attitudes against Earth's rate
 //! - [`instrument`] writes the `[imu]` section of a scenario, [`twin`] simulates it and compares
 //! - [`result`] is all of it, [`text`] and [`page`] are its terminal and HTML forms
@@ -25,5 +26,6 @@ pub mod recording;
 pub mod result;
 pub mod spectrum;
 pub mod survey;
+pub mod temperature;
 pub mod text;
 pub mod twin;

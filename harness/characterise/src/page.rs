@@ -10,6 +10,8 @@ use octant_base::number::{plain, significant};
 use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 use octant_report::page::{PageSection, page, sections};
 
+mod temperature;
+
 /// Renders the page; `command` is the one that makes it again.
 #[must_use]
 pub fn render(result: &Characterisation, command: &str) -> String {
@@ -22,7 +24,7 @@ pub fn render(result: &Characterisation, command: &str) -> String {
         PageSection::new(
             "temperature",
             "Temperature",
-            html! { p { "Temperature dependence is " (result.temperature) "." } },
+            temperature::section(&result.temperature, &result.analysis.channels),
         ),
         PageSection::new("twin", "Simulated twin", twin(result)),
         PageSection::new("imu", "Instrument of a scenario", instrument(result)),

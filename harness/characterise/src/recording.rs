@@ -43,6 +43,8 @@ pub struct RateSample {
     pub follows: bool,
     /// True if the sample is to be used.
     pub valid: bool,
+    /// Temperature, °C.
+    pub temperature_c: Option<f64>,
 }
 
 impl RestingRecording {
@@ -145,6 +147,20 @@ impl RestingRecording {
         })
     }
 
+    /// Why the recording has no temperature.
+    pub(crate) fn without_temperature(&self) -> &'static str {
+        match &self.scenario.source {
+            SourceSpec::Text(_) => {
+                "the recording has none: source.text.temperature_column would name its column"
+            }
+            SourceSpec::Replay { mapping: Some(_), .. } => {
+                "the recording has none: source.mcap.temperature_field would name its field"
+            }
+            SourceSpec::Log(_) => "the instrument sent none",
+            _ => "a recording of Octant has none",
+        }
+    }
+
     fn open(&self) -> Result<AnySource, CharacteriseError> {
         let draws = DrawnValues::of(&self.scenario, &Seeded(self.scenario.seed));
         let plant = self.scenario.plant(self.scenario.seed, &draws);
@@ -215,7 +231,8 @@ impl RestingRecording {
                     f64::from(sample.delta_velocity[axis]) * DELTA_VELOCITY_LSB_MPS / interval_s;
             }
             let follows = before.is_some() && interval_s < GAP * nominal_s;
-            take(&RateSample { time_s: now as f64 * 1e-9, rates, follows, valid });
+            let temperature_c = source.temperature_c()?;
+            take(&RateSample { time_s: now as f64 * 1e-9, rates, follows, valid, temperature_c });
             before = Some(now);
         }
         Ok(source.cut_short())

@@ -5,7 +5,8 @@ use super::earth_rate::{EarthRateCheck, check};
 use super::error::CharacteriseError;
 use super::instrument::instrument_file;
 use super::recording::RestingRecording;
-use super::survey::survey;
+use super::survey::{RestStretch, survey};
+use super::temperature::{self, TemperatureDependence};
 use super::twin::{InstrumentTwin, compare, simulate};
 use serde::Serialize;
 
@@ -35,8 +36,8 @@ pub struct Characterisation {
     pub cut_short: Option<String>,
     /// Attitudes and Earth's rate.
     pub earth_rate: EarthRateCheck,
-    /// Temperature dependence: the sources of samples have no temperature.
-    pub temperature: &'static str,
+    /// Biases against temperature.
+    pub temperature: TemperatureDependence,
     /// Deviations, terms, spectra.
     pub analysis: RestAnalysis,
     /// The scenario with the instrument, TOML.
@@ -57,20 +58,31 @@ pub fn characterise(
 ) -> Result<Characterisation, CharacteriseError> {
     let period_s = recording.period_s();
     let survey = survey(recording)?;
-    let analysis = analyse(recording, &survey)?;
+    let temperature = temperature::of(recording, &survey)?;
+    let analysis = analyse(recording, &survey, temperature.correction())?;
     let scenario = recording.scenario();
     let file = std::path::Path::new(recording.name());
     let name =
         file.file_name().map_or_else(|| recording.name().into(), |name| name.to_string_lossy());
-    let imu = instrument_file(&analysis, scenario.sample_period_ns, &name);
+    let period_ns = scenario.sample_period_ns;
+    let imu = instrument_file(&analysis, (period_ns, &name), Some(&temperature));
     let twin = match seed {
         Some(seed) => {
-            let twin = simulate(&imu.text, seed, &analysis.stretches)?;
+            // What the temperature explains isn't in the analysis.
+            let of_twin = instrument_file(&analysis, (period_ns, &name), None);
+            let twin = simulate(&of_twin.text, seed, &analysis.stretches)?;
             Some(compare(&analysis, twin, seed))
         }
         None => None,
     };
     let rest: u64 = analysis.stretches.iter().sum();
+    let at_mean = |(number, stretch): (usize, &RestStretch)| {
+        let mean = temperature.correction().map_or(stretch.mean, |correction| {
+            correction.taken_off(&stretch.mean, correction.mean_warmer_k(number))
+        });
+        RestStretch { mean, ..*stretch }
+    };
+    let stretches: Vec<RestStretch> = survey.stretches.iter().enumerate().map(at_mean).collect();
     Ok(Characterisation {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION"),
@@ -81,8 +93,8 @@ pub fn characterise(
         gaps: survey.gaps,
         invalid: survey.invalid,
         cut_short: survey.cut_short,
-        earth_rate: check(&survey.stretches, &analysis, period_s),
-        temperature: "not told: a source of samples has no temperature",
+        earth_rate: check(&stretches, &analysis, period_s),
+        temperature,
         analysis,
         imu: imu.text,
         left_out: imu.left_out,

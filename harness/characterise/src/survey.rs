@@ -10,7 +10,7 @@
 
 use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
-use super::recording::RestingRecording;
+use super::recording::{RateSample, RestingRecording};
 use nalgebra::Vector3;
 use octant_base::number::{counted, plain};
 
@@ -51,8 +51,46 @@ pub struct RestSurvey {
     pub gaps: u64,
     /// Samples that are invalid or saturated.
     pub invalid: u64,
+    /// Samples with a temperature.
+    pub temperatures: u64,
     /// How the recording was cut short.
     pub cut_short: Option<String>,
+}
+
+/// Place of a sample at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct RestPlace {
+    /// Number of its stretch.
+    pub stretch: usize,
+    /// Number of the sample in the stretch.
+    pub sample: u64,
+    /// True for the last sample of the stretch.
+    pub is_last: bool,
+}
+
+impl RestSurvey {
+    /// Reads the samples at rest once more.
+    ///
+    /// # Errors
+    /// If the recording can't be read.
+    pub fn read(
+        &self,
+        recording: &RestingRecording,
+        mut take: impl FnMut(&RateSample, RestPlace),
+    ) -> Result<(), CharacteriseError> {
+        let (mut stretch, mut number) = (0, 0);
+        recording.read(|sample| {
+            if let Some(RestStretch { first, samples, .. }) = self.stretches.get(stretch)
+                && number >= *first
+            {
+                let is_last = number + 1 == first + samples;
+                take(sample, RestPlace { stretch, sample: number - first, is_last });
+                stretch += usize::from(is_last);
+            }
+            number += 1;
+        })?;
+        Ok(())
+    }
 }
 
 /// One second.
@@ -103,10 +141,11 @@ pub fn survey(recording: &RestingRecording) -> Result<RestSurvey, CharacteriseEr
     let per_second = (1.0 / recording.period_s()).round().max(1.0) as u64;
     let per_second = per_second.max(16);
     let (mut seconds, mut sums) = (Vec::new(), Sums::default());
-    let (mut samples, mut gaps, mut invalid) = (0, 0, 0);
+    let (mut samples, mut gaps, mut invalid, mut temperatures) = (0, 0, 0, 0);
     let mut follows = false;
     let cut_short = recording.read(|sample| {
         samples += 1;
+        temperatures += u64::from(sample.temperature_c.is_some());
         let is_gap = samples > 1 && !sample.follows;
         gaps += u64::from(is_gap);
         invalid += u64::from(!sample.valid && !is_gap);
@@ -147,7 +186,7 @@ pub fn survey(recording: &RestingRecording) -> Result<RestSurvey, CharacteriseEr
             counted(gaps, "gap", "gaps"),
         )));
     }
-    Ok(RestSurvey { stretches, samples, gaps, invalid, cut_short })
+    Ok(RestSurvey { stretches, samples, gaps, invalid, temperatures, cut_short })
 }
 
 /// Finds the stretches at rest.

@@ -3,6 +3,7 @@
 use super::analysis::ChannelAnalysis;
 use super::kernel::RandomTerm;
 use super::result::Characterisation;
+use super::temperature::{STEADY, TemperatureDependence, TemperatureFit};
 use octant_base::number::{counted, plain, significant};
 use octant_scenario::UnitDimension;
 use std::fmt::Write as _;
@@ -119,7 +120,7 @@ pub fn of(result: &Characterisation) -> String {
     }
     lines(&mut out, result);
     earth(&mut out, result);
-    let _ = writeln!(out, "temperature: {}", result.temperature);
+    temperature(&mut out, &result.temperature);
     twin(&mut out, result);
     out
 }
@@ -208,6 +209,53 @@ fn earth(out: &mut String, result: &Characterisation) {
             let _ = writeln!(out, "latitude: not told, {reason}");
         }
         _ => {}
+    }
+}
+
+/// Unit in which a coefficient of temperature is shown, and its size in SI units.
+#[must_use]
+pub fn unit_per_k(is_gyro: bool) -> (&'static str, f64) {
+    let dimension = match is_gyro {
+        true => UnitDimension::GYRO_BIAS_PER_K,
+        false => UnitDimension::ACCEL_BIAS_PER_K,
+    };
+    let one = octant_scenario::quantity_of(&format!("1 {}", dimension.unit));
+    (dimension.unit, one.map_or(1.0, |quantity| quantity.si))
+}
+
+/// A coefficient of temperature with its interval, or the interval alone where it has zero; "not told" without one.
+#[must_use]
+pub fn per_k(fit: &TemperatureFit, size: f64) -> String {
+    let digits = |value: f64| significant(value / size, 3);
+    let Some([low, high]) = fit.interval else { return "not told".to_owned() };
+    let interval = format!("[{}, {}]", digits(low), digits(high));
+    fit.per_k.map_or_else(|| interval.clone(), |value| format!("{} {interval}", digits(value)))
+}
+
+/// What a steady change of the temperature can't tell.
+#[must_use]
+pub fn steadiness(found: &TemperatureDependence) -> Option<String> {
+    let steady = found.steady.filter(|steady| *steady > STEADY)?;
+    Some(format!(
+        "{} % of the temperature's change are steady in time: a drift with time would look the same",
+        plain((100.0 * steady).floor(), 3)
+    ))
+}
+
+fn temperature(out: &mut String, found: &TemperatureDependence) {
+    if let Some(reason) = &found.reason {
+        let _ = writeln!(out, "temperature: not told, {reason}");
+        return;
+    }
+    let [low, high] = found.range_c.unwrap_or_default().map(|t| plain(t, 4));
+    let _ =
+        writeln!(out, "temperature from {low} to {high} degC, bias per kelvin, [interval of 95 %]");
+    for (triad, fits) in ["gyro", "accelerometer"].iter().zip(found.channels.chunks(3)) {
+        let (name, size) = unit_per_k(*triad == "gyro");
+        row(out, &format!("{triad} bias, {name}"), fits.iter().map(|fit| per_k(fit, size)));
+    }
+    if let Some(words) = steadiness(found) {
+        let _ = writeln!(out, "  {words}");
     }
 }
 

@@ -7,4 +7,5 @@ mod golden;
 mod recordings;
 mod spectra;
 mod synthetic;
+mod temperature;
 mod variances;

@@ -205,3 +205,135 @@ fn motion_is_refused_and_gaps_end_stretches() {
     let result = characterised("gap", &rows).unwrap();
     assert_eq!((result.gaps, result.analysis.stretches.len()), (1, 2));
 }
+
+/// Rows of the plant with a temperature in a column of their own; the rates of gyro x and accelerometer z follow it.
+fn warm(name: &str, per_k: [f64; 2], change: &dyn Fn(usize, f64) -> String) -> PathBuf {
+    let mut text = HEADER.replace('\n', ",temperature\n");
+    for (k, mut row) in plant(INSTRUMENT, 21, (0.0, 0.0), 1200).into_iter().enumerate() {
+        let t = 20.0 + 4.0 * (row[0] / 60.0).sin() + row[0] / 300.0;
+        row[1] += per_k[0] * (t - 20.0) * 0.02;
+        row[6] += per_k[1] * (t - 20.0) * 0.02;
+        let cells: Vec<String> = row
+            .iter()
+            .enumerate()
+            .map(|(i, x)| if i == 0 { format!("{x:.9}") } else { format!("{x:e}") })
+            .collect();
+        let _ = writeln!(text, "{},{}", cells.join(","), change(k, t));
+    }
+    let path = write(name, &[]);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn characterised_warm(
+    path: &Path,
+    more: &[&str],
+    seed: Option<u64>,
+) -> Result<Characterisation, CharacteriseError> {
+    let set: Vec<String> = more.iter().map(|set| (*set).to_owned()).collect();
+    RestingRecording::of(path, None, &set).and_then(|recording| characterise(&recording, seed))
+}
+
+const COLUMN: &str = "source.text.temperature_column=temperature";
+
+#[test]
+fn a_temperature_is_told_and_its_part_leaves_the_noise_alone() {
+    let written = |_: usize, t: f64| format!("{:.3}", t + 273.15);
+    // 10 deg/h/K and 300 ug/K.
+    let truth = [4.85e-5, 2.94e-3];
+    let path = warm("warm", truth, &written);
+    let cold = characterised_warm(&path, &[], None).unwrap();
+    let kelvin = "source.text.temperature_unit=K";
+    let result = characterised_warm(&path, &[COLUMN, kelvin], Some(7)).unwrap();
+    let still = warm("still", [0.0; 2], &written);
+    let without = characterised_warm(&still, &[], None).unwrap();
+    std::fs::remove_file(still).unwrap();
+    std::fs::remove_file(path).unwrap();
+    assert!(cold.temperature.reason.as_ref().unwrap().contains("source.text.temperature_column"));
+    let found = &result.temperature;
+    assert_eq!(found.reason, None);
+    let [low, high] = found.range_c.unwrap();
+    assert!((15.0..18.0).contains(&low) && (25.0..29.0).contains(&high), "{found:?}");
+    for (channel, truth) in [(0, truth[0]), (5, truth[1])] {
+        let fit = &found.channels[channel];
+        let [low, high] = fit.interval.unwrap();
+        assert!(fit.per_k.is_some() && low <= truth && truth <= high, "{fit:?}");
+    }
+    // The same noise as that of the instrument that doesn't feel the temperature, but for what the fit took with it.
+    for channel in [0, 5] {
+        let rows = |result: &Characterisation| {
+            let rows = &result.analysis.channels[channel].deviations;
+            rows.iter().map(|row| (row.allan.deviation, row.allan.freedom)).collect::<Vec<_>>()
+        };
+        let (corrected, expected) = (rows(&result), rows(&without));
+        for ((found, _), (expected, freedom)) in corrected.iter().zip(&expected) {
+            assert!(
+                *freedom < 3.0 || (found / expected - 1.0).abs() < 0.2,
+                "{corrected:?}, {expected:?}"
+            );
+        }
+        let last = expected.iter().rposition(|(_, freedom)| *freedom > 3.0).unwrap();
+        assert!(
+            rows(&cold)[last].0 > 2.0 * expected[last].0,
+            "the temperature is in the deviations"
+        );
+        let walk = |result: &Characterisation| {
+            *result.analysis.channels[channel]
+                .noise
+                .as_ref()
+                .unwrap()
+                .term(RandomTerm::RandomWalk)
+                .unwrap()
+        };
+        let (found, expected) = (walk(&result), walk(&without));
+        assert!((found.value.unwrap() / expected.value.unwrap() - 1.0).abs() < 0.01, "{found:?}");
+    }
+    // The file runs, with the coefficients that are shown.
+    let scenario = Scenario::parse(&result.imu, "imu", Path::new(""), &[]).unwrap();
+    let draws = DrawnValues::of(&scenario, &Seeded(1));
+    let warmth = scenario.plant(1, &draws).imu.extensions.temperature.unwrap();
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
+    assert!(near(warmth.gyro_bias_per_k[0], found.channels[0].per_k.unwrap()), "{warmth:?}");
+    assert!(near(warmth.accel_bias_per_k[2], found.channels[5].per_k.unwrap()), "{warmth:?}");
+    let [change_k, time_s] = found.change.unwrap();
+    assert!(near(warmth.plateau_k, change_k) && near(warmth.ramp_kps, change_k / time_s));
+    let said = text::of(&result);
+    assert!(said.contains("gyro bias, deg/h/K"), "{said}");
+    assert!(page::render(&result, "octant characterise").contains("temperature, °C"));
+    let json = serde_json::to_value(&result).unwrap();
+    assert_eq!(json["temperature"]["channels"].as_array().unwrap().len(), 6);
+    assert!(result.twin.unwrap().channels.iter().all(|channel| channel.matches()));
+}
+
+#[test]
+fn a_temperature_that_is_none_is_refused_with_its_place() {
+    let said = |change: &dyn Fn(usize, f64) -> String, more: &[&str]| {
+        let path = warm("wrong", [0.0; 2], change);
+        let said = characterised_warm(&path, more, None).unwrap_err().to_string();
+        std::fs::remove_file(path).unwrap();
+        assert!(said.contains("wrong.csv") || said.contains("temperature_unit"), "{said}");
+        said
+    };
+    let plain = |_: usize, t: f64| format!("{t:.3}");
+    let missing = said(&plain, &["source.text.temperature_column=warmth"]);
+    assert!(missing.contains("no column \"warmth\", found device_time_s"), "{missing}");
+    let nan = said(&|k, t| if k == 700 { "nan".into() } else { plain(k, t) }, &[COLUMN]);
+    assert!(nan.contains("line 702: column 8: found \"nan\", expected a finite number"), "{nan}");
+    let jump = said(&|k, t| plain(k, if k == 700 { t + 50.0 } else { t }), &[COLUMN]);
+    assert!(
+        jump.contains("line 702: column 8: temperature")
+            && jump.contains("50 K from the one 0.02 s before"),
+        "{jump}"
+    );
+    let kelvin = said(&plain, &[COLUMN, "source.text.temperature_unit=K"]);
+    assert!(
+        kelvin.contains("line 2: column 8: temperature")
+            && kelvin.contains("expected 173.15 to 473.15 K"),
+        "{kelvin}"
+    );
+    let unit = said(&plain, &[COLUMN, "source.text.temperature_unit=degF"]);
+    assert!(
+        unit.contains("source.text.temperature_unit: found \"degF\"") && unit.contains("degC, K"),
+        "{unit}"
+    );
+}

@@ -1,6 +1,10 @@
 //! `octant characterise`: a recording of a run at rest, its files, and input that it refuses.
 
 use crate::common::program::{ended, octant_in};
+use octant_instruments::{AnyEncoder, Protocol, Reading, Stamp, StampClock};
+use octant_random::stream::Triad;
+use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
+use std::fmt::Write as _;
 
 const AT_REST: &str = "schema = 1\ntitle = \"at rest\"\n[imu]\nrate = \"50 Hz\"\n[procedure.calibration]\n\
     duration = \"4 min\"\nname = \"one attitude\"\nstops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }]\n\
@@ -47,4 +51,109 @@ fn what_is_no_recording_is_refused() {
         let (_, said) = ended(octant_in(here, &["characterise", recording]), 2);
         assert!(said.contains(words), "{recording}: {said}");
     }
+}
+
+/// Scenario of a unit at rest whose gyro x follows its temperature.
+const WARM: &str = "schema = 1
+[imu]
+rate = \"50 Hz\"
+[procedure.calibration]
+duration = \"4 min\"
+name = \"one attitude\"
+stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }]
+[source]
+uri = \"text:warm.csv\"
+[source.reference]
+kind = \"static\"
+[source.text]
+delimiter = \"comma\"
+header = true
+time_column = \"t\"
+temperature_column = \"warm\"
+temperature_unit = \"K\"
+gyro = { x = \"wx\", y = \"wy\", z = \"wz\" }
+accelerometer = { x = \"ax\", y = \"ay\", z = \"az\" }
+";
+
+/// Rates and temperature, °C, of a unit at rest for 300 s: 1e-5 rad/s/K in gyro x.
+fn warm() -> impl Iterator<Item = (f64, [f64; 6], f64)> {
+    let normals = ["gyro", "accelerometer"].map(|name| Triad::new(3, name));
+    (1..=15_000u64).map(move |k| {
+        let t_s = k as f64 / 50.0;
+        let temperature = 25.0 + 5.0 * (t_s / 20.0).sin();
+        let [w, f] = normals.each_ref().map(|normal| normal.at(k));
+        let rates = [
+            1e-5 * (temperature - 25.0) + 1e-5 * w[0],
+            1e-5 * w[1],
+            1e-5 * w[2],
+            1e-3 * f[0],
+            1e-3 * f[1],
+            9.8 + 1e-3 * f[2],
+        ];
+        (t_s, rates, temperature)
+    })
+}
+
+#[test]
+fn a_temperature_in_a_text_and_in_an_instruments_bytes_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let mut text = "t,wx,wy,wz,ax,ay,az,warm\n".to_owned();
+    let (mut bytes, mut encoder) = (Vec::new(), AnyEncoder::new(Protocol::Xsens));
+    for (number, (t_s, rates, temperature)) in (1..).zip(warm()) {
+        let rates_of = rates.map(|rate| format!("{rate:e}")).join(",");
+        let _ = writeln!(text, "{t_s:.2},{rates_of},{:.3}", temperature + 273.15);
+        let ns = number * 20_000_000;
+        let counts =
+            |at: usize, lsb: f64| [0, 1, 2].map(|k| (rates[at + k] * 0.02 / lsb).round() as i32);
+        let sample = Sample {
+            sequence: number,
+            device_time: DeviceTime { ns },
+            delta_theta: counts(0, octant_sample::counts::DELTA_THETA_LSB_RAD),
+            delta_velocity: counts(3, octant_sample::counts::DELTA_VELOCITY_LSB_MPS),
+            gimbal: GimbalAngles::default(),
+            status: Status::empty(),
+        };
+        let reading = Reading {
+            stamp: Some(Stamp { ns, clock: StampClock::Startup }),
+            interval_s: Some(0.02),
+            temperature_c: Some(temperature as f32),
+            ..Reading::of_sample(&sample)
+        };
+        bytes.extend(encoder.encode(&reading).unwrap());
+    }
+    std::fs::write(here.join("warm.csv"), &text).unwrap();
+    std::fs::write(here.join("unit.bin"), bytes).unwrap();
+    std::fs::write(here.join("warm.toml"), WARM).unwrap();
+    let (head, _) = WARM.split_once("[source.text]").unwrap();
+    let log =
+        head.replace("text:warm.csv", "log:unit.bin") + "[source.log]\nprotocol = \"xsens\"\n";
+    std::fs::write(here.join("log.toml"), log).unwrap();
+    for scenario in ["warm.toml", "log.toml"] {
+        let call = ["characterise", scenario, "--json", "--imu", "imu.toml", "--force"];
+        let (out, _) = ended(octant_in(here, &call), 0);
+        let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+        let fit = &json["temperature"]["channels"][0];
+        let [low, high] = [0, 1].map(|end| fit["interval"][end].as_f64().unwrap());
+        assert!(low < 1e-5 && 1e-5 < high && high - low < 1e-6, "{scenario}: {fit}");
+        assert_eq!(json["temperature"]["channels"].as_array().unwrap().len(), 6);
+        let imu = std::fs::read_to_string(here.join("imu.toml")).unwrap();
+        assert!(imu.contains("[imu.extensions.temperature]\nramp = "), "{imu}");
+        // A filter may refuse an instrument that warms up; the scenario is read all the same.
+        let hour = ["--set", "procedure.calibration.duration=1 h", "--out", "twin", "--force"];
+        let run = octant_in(here, &[&["run", "imu.toml"][..], &hour].concat());
+        assert!(matches!(run.status.code(), Some(0 | 1)), "{run:?}");
+    }
+    let (out, _) = ended(octant_in(here, &["characterise", "warm.toml", "--no-twin"]), 0);
+    assert!(out.contains("degC, bias per kelvin, [interval of 95 %]"), "{out}");
+    std::fs::write(here.join("warm.csv"), text.replacen(",298.", ",25.", 1)).unwrap();
+    let (_, said) = ended(octant_in(here, &["characterise", "warm.toml"]), 2);
+    assert!(
+        said.contains("warm.csv: line 2: column 8: temperature 25.")
+            && said.contains("expected 173.15 to 473.15 K"),
+        "{said}"
+    );
+    let call = ["characterise", "warm.toml", "--set", "source.text.temperature_column=cold"];
+    let (_, said) = ended(octant_in(here, &call), 2);
+    assert!(said.contains("warm.csv: line 1: no column \"cold\", found t, wx"), "{said}");
 }

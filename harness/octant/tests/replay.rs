@@ -5,7 +5,8 @@ use octant_recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::recorded::{
-    MappedField, MappedStamp, McapMapping, RecordedQuantity, TimeUnit,
+    MappedField, MappedStamp, McapMapping, RecordedQuantity, TemperatureField, TemperatureUnit,
+    TimeUnit,
 };
 use octant_source::{Epoch, Replay, Source, SourceError};
 use std::collections::BTreeMap;
@@ -207,6 +208,47 @@ fn a_ros_imu_topic_becomes_samples() {
 }
 
 #[test]
+fn a_temperature_in_messages_is_read_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("warm.mcap");
+    let message = |(k, warm): (u64, &str)| {
+        format!(r#"{{"w":[1,2,3],"warm":{warm},"t":{}}}"#, k * 5_000_000).into_bytes()
+    };
+    let messages: Vec<_> = (1..).zip(["298.15", "299", "360"]).map(message).collect();
+    foreign(&path, None, "json", &messages);
+    let field = |path: &str| MappedField { path: path.into(), offset: 0.0, scale: 1.0 };
+    let triad = ["w[0]", "w[1]", "w[2]"].map(field);
+    let mut mapping = McapMapping {
+        gyro: triad.clone(),
+        accelerometer: triad,
+        stamp: MappedStamp::Field {
+            path: "t".into(),
+            unit: TimeUnit::Nanosecond,
+            nanoseconds: None,
+        },
+        temperature: Some(TemperatureField { path: "warm".into(), unit: TemperatureUnit::Kelvin }),
+        ..McapMapping::ros_imu("/imu/data", 200.0)
+    };
+    let (mut epoch, command) = (Epoch::default(), GimbalCommand::default());
+    let mut source = Replay::open(&path, Some(&mapping)).unwrap();
+    assert!(source.next(&command, &mut epoch).unwrap());
+    assert!((source.temperature_c().unwrap().unwrap() - 25.0).abs() < 1e-9);
+    // A run doesn't ask.
+    assert_eq!(all(&mut source).unwrap().len(), 2);
+    let said = source.temperature_c().unwrap_err().to_string();
+    assert!(
+        said.contains(
+            "warm.mcap: message 3 on /imu/data: field warm: temperature 360 K, 61.9 K from"
+        ),
+        "{said}"
+    );
+    mapping.temperature =
+        Some(TemperatureField { path: "cold".into(), unit: TemperatureUnit::Kelvin });
+    let said = all(&mut Replay::open(&path, Some(&mapping)).unwrap()).unwrap_err().to_string();
+    assert!(said.contains("message 1 on /imu/data") && said.contains("cold"), "{said}");
+}
+
+#[test]
 fn json_messages_become_samples() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("json.mcap");
@@ -230,6 +272,7 @@ fn json_messages_become_samples() {
         nominal_rate_hz: 200.0,
         split: 1,
         gimbal: None,
+        temperature: None,
     };
     let epochs = all(&mut Replay::open(&path, Some(&mapping)).unwrap()).unwrap();
     assert_eq!(epochs[2].sample.device_time.ns, 15_000_000);

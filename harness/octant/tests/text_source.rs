@@ -3,8 +3,8 @@
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::recorded::{
-    AxisColumn, Delimiter, GimbalColumns, RecordedColumn, RecordedQuantity, TextFiles, TextMapping,
-    TimeColumn, TimeUnit,
+    AxisColumn, Delimiter, GimbalColumns, RecordedColumn, RecordedQuantity, TemperatureColumn,
+    TemperatureUnit, TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
 use octant_source::{Epoch, Source, SourceError, TextSource};
 use std::path::{Path, PathBuf};
@@ -26,6 +26,7 @@ fn mapping(files: TextFiles) -> TextMapping {
         comment: "#".into(),
         skip_lines: 0,
         gimbal: None,
+        temperature: None,
     }
 }
 
@@ -101,6 +102,29 @@ fn names_signs_order_increments_and_gimbals() {
     assert!((sample.gimbal.azimuth_rad().to_degrees() - 90.0).abs() < 1e-6);
     assert!((sample.gimbal.roll_rad().to_degrees() + 45.0).abs() < 1e-6);
     assert_eq!(sample.device_time.ns, 5_000_000);
+}
+
+#[test]
+fn a_temperature_is_that_of_the_row_and_is_read_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "a.csv", "0.01,1,2,3,4,5,6,21.5\n0.02,1,2,3,4,5,6,\n");
+    let mut mapping = mapping(TextFiles::One(path));
+    assert_eq!(TextSource::open(&mapping).unwrap().temperature_c().unwrap(), None);
+    let (column, unit) = (RecordedColumn::Number(8), TemperatureUnit::Celsius);
+    (mapping.temperature, mapping.split) = (Some(TemperatureColumn { column, unit }), 2);
+    let mut source = TextSource::open(&mapping).unwrap();
+    let mut epoch = Epoch::default();
+    for _ in 0..2 {
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        assert_eq!(source.temperature_c().unwrap(), Some(21.5));
+    }
+    // A run doesn't ask.
+    assert_eq!(all(&mut source).unwrap().len(), 2);
+    let said = source.temperature_c().unwrap_err().to_string();
+    assert!(
+        said.contains("a.csv: line 2: column 8: found \"\", expected a finite number"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -92,6 +92,10 @@ impl Source for AnySource {
         each!(&self.kind, source => source.truth())
     }
 
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        each!(&mut self.kind, source => source.temperature_c())
+    }
+
     fn samples_total(&self) -> Option<u64> {
         each!(&self.kind, source => source.samples_total())
     }

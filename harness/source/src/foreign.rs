@@ -2,8 +2,9 @@
 
 use super::counting::{Counting, Measured};
 use super::messages::{TopicMessage, TopicMessages};
+use super::temperature::TemperatureCheck;
 use super::{Epoch, SourceError};
-use octant_scenario::recorded::{MappedField, McapMapping};
+use octant_scenario::recorded::{MappedField, McapMapping, TemperatureUnit};
 use std::io::Read;
 
 /// Streams a foreign MCAP file.
@@ -14,6 +15,11 @@ pub(super) struct Foreign<R> {
     scales: Vec<(f64, f64)>,
     has_gimbal: bool,
     counting: Counting,
+    /// Unit of the temperature, which is the last of the numbers.
+    temperature: Option<TemperatureUnit>,
+    temperatures: TemperatureCheck,
+    /// Stamp, ns, and temperature of the last message.
+    last: (u64, f64),
 }
 
 impl<R: Read> Foreign<R> {
@@ -27,7 +33,8 @@ impl<R: Read> Foreign<R> {
             .chain(&mapping.accelerometer)
             .chain(mapping.gimbal.iter().flatten())
             .collect();
-        let paths = fields.iter().map(|field| field.path.as_str());
+        let temperature = mapping.temperature.iter().map(|field| field.path.as_str());
+        let paths = fields.iter().map(|field| field.path.as_str()).chain(temperature);
         Ok(Self {
             path: path.into(),
             messages: TopicMessages::new(source, &mapping.topic, paths, &mapping.stamp)
@@ -35,6 +42,9 @@ impl<R: Read> Foreign<R> {
             scales: fields.iter().map(|field| (field.offset, field.scale)).collect(),
             has_gimbal: mapping.gimbal.is_some(),
             counting: Counting::new(mapping.quantity, nominal_ns, mapping.split).map_err(fail)?,
+            temperature: mapping.temperature.as_ref().map(|field| field.unit),
+            temperatures: TemperatureCheck::default(),
+            last: (0, f64::NAN),
         })
     }
 
@@ -48,6 +58,17 @@ impl<R: Read> Foreign<R> {
 
     pub(super) fn next(&mut self) -> Result<Option<Epoch>, SourceError> {
         self.advance().map_err(|reason| SourceError::Read { path: self.path.clone(), reason })
+    }
+
+    /// Temperature of the last message, °C.
+    pub(super) fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        let Some(unit) = self.temperature else { return Ok(None) };
+        let (time_ns, value) = self.last;
+        self.temperatures.take(time_ns, value, unit).map(Some).map_err(|reason| {
+            let field = self.messages.path(self.scales.len());
+            let reason = self.messages.in_message(&format!("field {field}: {reason}"));
+            SourceError::Read { path: self.path.clone(), reason }
+        })
     }
 
     fn advance(&mut self) -> Result<Option<Epoch>, String> {
@@ -72,6 +93,8 @@ impl<R: Read> Foreign<R> {
             }
             values[index] = value;
         }
+        let temperature = message.numbers.get(self.scales.len());
+        self.last = (message.time_ns, temperature.map_or(f64::NAN, |number| number.real()));
         let [gx, gy, gz, ax, ay, az, azimuth, roll] = values;
         self.counting.begin(Measured {
             time_ns: message.time_ns,

@@ -20,6 +20,7 @@ mod reference_text;
 mod replay;
 mod rows;
 mod solution;
+mod temperature;
 mod text;
 mod traffic;
 
@@ -55,6 +56,14 @@ pub trait Source {
     /// Returns the truth at the stamp of the last epoch, where the source knows it. This costs more
     /// than a sample: ask for it only when it is recorded.
     fn truth(&self) -> Option<Truth>;
+
+    /// Returns the temperature of the instrument at the last epoch, °C, where the source has one.
+    ///
+    /// # Errors
+    /// If it isn't a plausible one: each is compared with the one that was asked for before.
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        Ok(None)
+    }
 
     /// Total number of samples that the source will deliver, where it is known.
     fn samples_total(&self) -> Option<u64>;

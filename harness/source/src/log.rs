@@ -4,6 +4,7 @@
 //! are those of the readings, and where the protocol has none, readings follow each other.
 
 use crate::rate_check::RateCheck;
+use crate::temperature::TemperatureCheck;
 use crate::traffic::traffic;
 use crate::{Epoch, Source, SourceError};
 use octant_base::number::counted;
@@ -15,6 +16,7 @@ use octant_plant::Truth;
 use octant_recorder::event::{BenchReadings, BenchRecord};
 use octant_sample::GimbalCommand;
 use octant_scenario::InstrumentLog;
+use octant_scenario::recorded::TemperatureUnit;
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -42,6 +44,9 @@ pub struct LogSource {
     lost_before_end: Option<u64>,
     sampler: Sampler,
     rate: RateCheck,
+    temperatures: TemperatureCheck,
+    /// Stamp, ns, of the last sample, and the temperature that the instrument sent last, °C.
+    last: (u64, Option<f32>),
 }
 
 impl LogSource {
@@ -70,6 +75,8 @@ impl LogSource {
             lost_before_end: None,
             sampler: Sampler::new(SamplerSettings { axes: log.axes, period_ns }),
             rate: RateCheck::new(period_ns),
+            temperatures: TemperatureCheck::default(),
+            last: (0, None),
         })
     }
 
@@ -114,10 +121,14 @@ impl LogSource {
 impl Source for LogSource {
     fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         while let Some(reading) = self.reading()? {
+            // Not a number: the unit has no thermometer, or didn't read it.
+            let sent = reading.temperature_c.filter(|temperature| temperature.is_finite());
+            self.last.1 = sent.or(self.last.1);
             self.rate.reading(&reading).map_err(|reason| self.error(reason))?;
             match self.sampler.sample(&reading, None) {
                 Ok(sample) => {
                     (epoch.sample, epoch.aiding) = (sample, None);
+                    self.last.0 = sample.device_time.ns;
                     return Ok(true);
                 }
                 Err(Unusable::Behind) => {}
@@ -133,6 +144,13 @@ impl Source for LogSource {
 
     fn truth(&self) -> Option<Truth> {
         None
+    }
+
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        let (time_ns, Some(sent)) = self.last else { return Ok(None) };
+        let checked = self.temperatures.take(time_ns, f64::from(sent), TemperatureUnit::Celsius);
+        let sample = self.sampler.counters().samples;
+        checked.map(Some).map_err(|reason| self.error(format!("sample {sample}: {reason}")))
     }
 
     fn samples_total(&self) -> Option<u64> {

@@ -119,6 +119,13 @@ impl Source for Replay {
         self.last.truth
     }
 
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        match &mut self.kind {
+            Kind::Octant { .. } => Ok(None),
+            Kind::Foreign(foreign) => foreign.temperature_c(),
+        }
+    }
+
     fn samples_total(&self) -> Option<u64> {
         match &self.kind {
             Kind::Octant { total, .. } => *total,

@@ -2,11 +2,14 @@
 
 use super::counting::{Counting, Measured};
 use super::rows::Rows;
+use super::temperature::TemperatureCheck;
 use super::{Epoch, Source, SourceError, nominal_period_ns};
 use octant_base::number::counted;
 use octant_plant::Truth;
 use octant_sample::GimbalCommand;
-use octant_scenario::recorded::{AxisColumn, RecordedColumn, TextFiles, TextMapping, TimeUnit};
+use octant_scenario::recorded::{
+    AxisColumn, RecordedColumn, TemperatureUnit, TextFiles, TextMapping, TimeUnit,
+};
 use std::path::Path;
 
 /// Streams delimited text.
@@ -21,6 +24,9 @@ pub struct TextSource {
     period_ns: u64,
     counting: Counting,
     rows: u64,
+    /// Stamp of the present row, ns.
+    time_ns: u64,
+    temperatures: TemperatureCheck,
 }
 
 /// One file with the columns that are read from it.
@@ -30,6 +36,7 @@ struct File {
     gyro: Option<[Resolved; 3]>,
     accel: Option<[Resolved; 3]>,
     gimbal: Option<[Resolved; 2]>,
+    temperature: Option<(usize, TemperatureUnit)>,
 }
 
 /// Axis whose column was found.
@@ -59,6 +66,8 @@ impl TextSource {
             period_ns,
             counting,
             rows: 0,
+            time_ns: 0,
+            temperatures: TemperatureCheck::default(),
         })
     }
 
@@ -115,6 +124,7 @@ impl TextSource {
             (Some(second), _) => second.values(second.accel)?,
             (None, accel) => self.first.values(accel)?,
         };
+        self.time_ns = time_ns;
         let row = Measured {
             time_ns,
             gyro: self.first.values(self.first.gyro)?,
@@ -138,6 +148,14 @@ impl Source for TextSource {
         None
     }
 
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        let Some((index, unit)) = self.first.temperature else { return Ok(None) };
+        let rows = &self.first.rows;
+        let value = rows.number(index)?;
+        let checked = self.temperatures.take(self.time_ns, value, unit);
+        checked.map(Some).map_err(|reason| rows.column_error(index, reason))
+    }
+
     fn samples_total(&self) -> Option<u64> {
         None
     }
@@ -153,10 +171,12 @@ impl File {
         let axes = mapping.gyro.iter().chain(&mapping.accelerometer);
         let gimbal = mapping.gimbal.iter().flat_map(|gimbal| [&gimbal.azimuth, &gimbal.roll]);
         let time = mapping.time.iter().map(|time| &time.column);
+        let temperature = mapping.temperature.iter().map(|temperature| &temperature.column);
         let named = axes
             .chain(gimbal)
             .map(|axis| &axis.column)
             .chain(time)
+            .chain(temperature)
             .any(|column| matches!(column, RecordedColumn::Name(_)));
         let rows =
             Rows::open(path, mapping.delimiter, &mapping.comment, mapping.skip_lines, named)?;
@@ -178,9 +198,15 @@ impl File {
             Some(gimbal) if gyro => Some([axis(&gimbal.azimuth)?, axis(&gimbal.roll)?]),
             _ => None,
         };
+        let temperature = match &mapping.temperature {
+            Some(temperature) if gyro => {
+                Some((rows.column(&temperature.column)?, temperature.unit))
+            }
+            _ => None,
+        };
         let gyro = if gyro { Some(three(&mapping.gyro)?) } else { None };
         let accel = if accel { Some(three(&mapping.accelerometer)?) } else { None };
-        Ok(Self { rows, time, gyro, accel, gimbal })
+        Ok(Self { rows, time, gyro, accel, gimbal, temperature })
     }
 
     fn time_ns(&self) -> Result<Option<u64>, SourceError> {

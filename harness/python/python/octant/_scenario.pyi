@@ -1810,8 +1810,8 @@ class SourceMcapGyro(Section):
 
 class SourceMcap(Section):
     """Which channels and fields of another program's MCAP file are read. Takes a table with topic, time_field,
-    nanoseconds_field, time_unit, rate, split, gyro, accelerometer. Default: replay: the channels that this
-    program writes."""
+    nanoseconds_field, time_unit, temperature_field, temperature_unit, rate, split, gyro, accelerometer.
+    Default: replay: the channels that this program writes."""
 
     @property
     def accelerometer(self) -> SourceMcapAccelerometer:
@@ -1832,6 +1832,11 @@ class SourceMcap(Section):
     split: int
     """Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179
     deg/s at 100 Hz, 358 deg/s at 200 Hz). Takes a whole number from 1 to 1000. Default: 1."""
+    temperature_field: str
+    """Dotted name of the field with the instrument's temperature; octant characterise reads it. Takes a text in
+    quotes. Left out: the messages have no temperature."""
+    temperature_unit: Literal["degC", "K"]
+    """Unit of the temperature. Takes one of "degC", "K". Default: "degC"."""
     time_field: str
     """Dotted name of the field with the time stamp, a number. Takes a text in quotes. Default: the message's log
     time."""
@@ -2017,7 +2022,8 @@ class SourceTextGyro(Section):
 
 class SourceText(Section):
     """How the text files are read. Takes a table with rate, split, delimiter, skip_lines, header, comment,
-    time_column, time_unit, gyro, accelerometer, gimbal. Default: needed by text:FILE."""
+    time_column, time_unit, temperature_column, temperature_unit, gyro, accelerometer, gimbal. Default: needed
+    by text:FILE."""
 
     @property
     def accelerometer(self) -> SourceTextAccelerometer:
@@ -2049,6 +2055,11 @@ class SourceText(Section):
     split: int
     """Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179
     deg/s at 100 Hz, 358 deg/s at 200 Hz). Takes a whole number from 1 to 1000. Default: 1."""
+    temperature_column: int | str
+    """Column of the instrument's temperature, in the gyro's file; octant characterise reads it. Takes a column
+    number from 1, or a column's name. Left out: the file has no temperature."""
+    temperature_unit: Literal["degC", "K"]
+    """Unit of the temperature. Takes one of "degC", "K". Default: "degC"."""
     time_column: int | str
     """Column of the time stamp; "none": rows without one, which follow each other at the nominal rate. Takes a
     column number from 1, or a column's name. Default: 1."""
@@ -2143,8 +2154,8 @@ class Source(Section):
     @property
     def mcap(self) -> SourceMcap:
         """Which channels and fields of another program's MCAP file are read. Takes a table with topic,
-        time_field, nanoseconds_field, time_unit, rate, split, gyro, accelerometer. Default: replay: the
-        channels that this program writes."""
+        time_field, nanoseconds_field, time_unit, temperature_field, temperature_unit, rate, split, gyro,
+        accelerometer. Default: replay: the channels that this program writes."""
     @mcap.setter
     def mcap(self, value: SourceMcap | Mapping[str, Any]) -> None: ...
     @property
@@ -2166,7 +2177,8 @@ class Source(Section):
     @property
     def text(self) -> SourceText:
         """How the text files are read. Takes a table with rate, split, delimiter, skip_lines, header, comment,
-        time_column, time_unit, gyro, accelerometer, gimbal. Default: needed by text:FILE."""
+        time_column, time_unit, temperature_column, temperature_unit, gyro, accelerometer, gimbal. Default:
+        needed by text:FILE."""
     @text.setter
     def text(self, value: SourceText | Mapping[str, Any]) -> None: ...
     @property
