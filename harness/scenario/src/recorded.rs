@@ -75,6 +75,54 @@ pub struct TimeColumn {
     pub unit: TimeUnit,
 }
 
+/// Unit of a temperature.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TemperatureUnit {
+    /// Degrees Celsius.
+    #[default]
+    Celsius,
+    /// Kelvin.
+    Kelvin,
+}
+
+impl TemperatureUnit {
+    /// Name, as in a scenario.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Celsius => "degC",
+            Self::Kelvin => "K",
+        }
+    }
+
+    /// Converts a value to degrees Celsius.
+    #[must_use]
+    pub fn celsius(self, value: f64) -> f64 {
+        match self {
+            Self::Celsius => value,
+            Self::Kelvin => value - 273.15,
+        }
+    }
+}
+
+/// The column of the instrument's temperature.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TemperatureColumn {
+    /// Column, in the file of the gyros.
+    pub column: RecordedColumn,
+    /// Unit.
+    pub unit: TemperatureUnit,
+}
+
+/// The field of the instrument's temperature.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TemperatureField {
+    /// Path of the field.
+    pub path: String,
+    /// Unit.
+    pub unit: TemperatureUnit,
+}
+
 /// Delimiter between two fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Delimiter {
@@ -147,6 +195,8 @@ pub struct TextMapping {
     pub skip_lines: usize,
     /// Gimbal angles.
     pub gimbal: Option<GimbalColumns>,
+    /// Temperature, if the file has one.
+    pub temperature: Option<TemperatureColumn>,
 }
 
 /// A field of a message with its conversion to SI.
@@ -205,6 +255,8 @@ pub struct McapMapping {
     pub split: u32,
     /// Gimbal azimuth and roll, rad after scaling, if the messages have them.
     pub gimbal: Option<[MappedField; 2]>,
+    /// Temperature, if the messages have one.
+    pub temperature: Option<TemperatureField>,
 }
 
 impl McapMapping {
@@ -226,6 +278,7 @@ impl McapMapping {
             nominal_rate_hz,
             split: 1,
             gimbal: None,
+            temperature: None,
         }
     }
 }

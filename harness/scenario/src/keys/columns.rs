@@ -1,10 +1,10 @@
-//! Columns of text files, and the unit of their times.
+//! Columns of text files, and the units of their times and temperatures.
 
 use super::definition::Kind;
 use super::table::{Of, Value, choice};
 use crate::error::Problem;
 use crate::read::reader::Reader;
-use crate::recorded::{RecordedColumn, TimeUnit};
+use crate::recorded::{RecordedColumn, TemperatureUnit, TimeUnit};
 
 impl Value for RecordedColumn {
     fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
@@ -25,5 +25,12 @@ pub(super) const fn time_unit() -> Of<TimeUnit> {
         "ms" => TimeUnit::Millisecond, "milliseconds";
         "us" => TimeUnit::Microsecond, "microseconds";
         "ns" => TimeUnit::Nanosecond, "nanoseconds";
+    }
+}
+
+pub(super) const fn temperature_unit() -> Of<TemperatureUnit> {
+    choice! {
+        "degC" => TemperatureUnit::Celsius, "degrees Celsius";
+        "K" => TemperatureUnit::Kelvin, "kelvin";
     }
 }

@@ -1,6 +1,6 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
-use super::columns::{column, time_unit};
+use super::columns::{column, temperature_unit, time_unit};
 use super::definition::{Bounds, Kind};
 use super::fmu::SourceFmuKeys;
 use super::table::{
@@ -8,7 +8,9 @@ use super::table::{
 };
 use super::trajectory::{ReferenceTrajectoryKeys, SolutionKeys};
 use crate::quantity::UnitDimension;
-use crate::recorded::{Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TimeUnit};
+use crate::recorded::{
+    Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TemperatureUnit, TimeUnit,
+};
 
 keys! {
     /// `[source]`.
@@ -186,6 +188,9 @@ keys! {
         time_column: At<RecordedColumn> = column(), "1",
             "Column of the time stamp; \"none\": rows without one, which follow each other at the nominal rate.";
         time_unit: TimeUnit = time_unit(), "s", "Unit of the time stamp.";
+        temperature_column: At<Option<RecordedColumn>> = column(), absent("the file has no temperature"),
+            "Column of the instrument's temperature, in the gyro's file; octant characterise reads it.";
+        temperature_unit: TemperatureUnit = temperature_unit(), "degC", "Unit of the temperature.";
         gyro: GyroKeys = table(), required, "Columns of the gyros.";
         accelerometer: AccelerometerKeys = table(), required, "Columns of the accelerometers.";
         gimbal: Option<GimbalKeys>
@@ -280,6 +285,9 @@ keys! {
         nanoseconds_field: At<Option<String>> = text(), absent("the time stamp is one number"),
             "Dotted name of a field with nanoseconds to add, as stamps of ROS have them.";
         time_unit: TimeUnit = time_unit(), "ns", "Unit of the time stamp.";
+        temperature_field: Option<String> = text(), absent("the messages have no temperature"),
+            "Dotted name of the field with the instrument's temperature; octant characterise reads it.";
+        temperature_unit: TemperatureUnit = temperature_unit(), "degC", "Unit of the temperature.";
         rate: At<f64>
             = within(&[UnitDimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
             derived("imu.rate divided by split"),

@@ -7,7 +7,7 @@ use crate::keys::{At, McapKeys, SignalKeys, SourceKeys, TextKeys};
 use crate::model::{FileName, SourceSpec};
 use crate::recorded::{
     AxisColumn, GimbalColumns, MappedField, MappedStamp, McapMapping, NO_TIME, RecordedColumn,
-    RecordedQuantity, TextFiles, TextMapping, TimeColumn,
+    RecordedQuantity, TemperatureColumn, TemperatureField, TextFiles, TextMapping, TimeColumn,
 };
 use std::path::PathBuf;
 
@@ -82,6 +82,17 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         let axis = |key| Ok(AxisColumn { column: column(key)?, offset: 0.0, scale });
         Ok(GimbalColumns { azimuth: axis(&gimbal.azimuth)?, roll: axis(&gimbal.roll)? })
     });
+    let temperature = match &*keys.temperature_column {
+        None => None,
+        Some(RecordedColumn::Name(name)) if !keys.header => {
+            return Err(keys.temperature_column.problem(format!(
+                "found the name {name:?} with header = false, expected a column number"
+            )));
+        }
+        Some(column) => {
+            Some(TemperatureColumn { column: column.clone(), unit: keys.temperature_unit })
+        }
+    };
     Ok(TextMapping {
         files,
         time,
@@ -94,6 +105,7 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         comment: keys.comment.clone(),
         skip_lines: keys.skip_lines,
         gimbal: gimbal.transpose()?,
+        temperature,
     })
 }
 
@@ -135,6 +147,10 @@ fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Prob
         nominal_rate_hz: *keys.rate,
         split: keys.split,
         gimbal: None,
+        temperature: keys
+            .temperature_field
+            .clone()
+            .map(|path| TemperatureField { path, unit: keys.temperature_unit }),
     })
 }
 
