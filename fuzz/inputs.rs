@@ -114,6 +114,7 @@ pub(crate) fn text(bytes: &[u8]) {
             comment: "#".to_owned(),
             skip_lines: 0,
             gimbal: None,
+            temperature: None,
         };
         let Ok(mut source) = TextSource::open(&mapping) else { continue };
         let mut last_ns = 0;

@@ -5,8 +5,10 @@
 //! sees.
 
 mod bands;
+mod border;
 pub mod covariance;
 pub mod ensemble;
+mod not_modelled;
 pub mod perfect;
 mod platform;
 pub mod static_rank;

@@ -230,6 +230,7 @@ fn json_messages_become_samples() {
         nominal_rate_hz: 200.0,
         split: 1,
         gimbal: None,
+        temperature: None,
     };
     let epochs = all(&mut Replay::open(&path, Some(&mapping)).unwrap()).unwrap();
     assert_eq!(epochs[2].sample.device_time.ns, 15_000_000);

@@ -26,6 +26,7 @@ fn mapping(files: TextFiles) -> TextMapping {
         comment: "#".into(),
         skip_lines: 0,
         gimbal: None,
+        temperature: None,
     }
 }
 
