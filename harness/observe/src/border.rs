@@ -243,3 +243,99 @@ pub(super) fn integrals(interval: &MotionInterval, change: &Vector3<f64>) -> Fur
 pub(super) fn sum(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+
+    const ALL: usize = STATE_COUNT + FURTHER_COUNT;
+
+    /// Numbers without a pattern, within ±1.
+    fn number(i: usize, j: usize) -> f64 {
+        libm::sin(12.9898 * (i as f64 + 1.0) + 78.233 * (j as f64 + 1.0))
+    }
+
+    /// A covariance of all states, and the same in its parts.
+    fn parts() -> (DMatrix<f64>, Covariance, Border) {
+        let root = DMatrix::from_fn(ALL, ALL, number);
+        let whole = &root * root.transpose();
+        let mut errors = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
+        let mut border = Border::new(&[0.0; FURTHER_COUNT]);
+        for i in 0..STATE_COUNT {
+            (i..STATE_COUNT).for_each(|j| errors.add(i, j, whole[(i, j)]));
+        }
+        for k in 0..FURTHER_COUNT {
+            (0..STATE_COUNT).for_each(|j| border.add(k, j, whole[(STATE_COUNT + k, j)]));
+            for l in 0..FURTHER_COUNT {
+                border.own[k][l] = whole[(STATE_COUNT + k, STATE_COUNT + l)];
+            }
+        }
+        (whole, errors, border)
+    }
+
+    fn assert_same(whole: &DMatrix<f64>, errors: &Covariance, border: &Border) {
+        let scale = whole.amax();
+        for i in 0..ALL {
+            for j in 0..ALL {
+                let found = match (i.checked_sub(STATE_COUNT), j.checked_sub(STATE_COUNT)) {
+                    (None, None) => errors.at(i, j),
+                    (Some(k), None) => border.cross[k][j],
+                    (None, Some(k)) => border.cross[k][i],
+                    (Some(k), Some(l)) => border.own[k][l],
+                };
+                assert!((found - whole[(i, j)]).abs() < 1e-12 * scale, "{i} {j}: {found}");
+            }
+        }
+    }
+
+    /// F P Fᵀ of the whole matrix.
+    #[test]
+    fn a_step_is_that_of_the_whole_covariance() {
+        let (whole, mut errors, mut border) = parts();
+        let mut transition = Transition::identity();
+        let mut columns = [[0.0; FURTHER_ROW]; MOVING];
+        let mut decay = [1.0; FURTHER_ROW];
+        let mut f = DMatrix::identity(ALL, ALL);
+        for i in 0..MOVING {
+            for j in 0..STATE_COUNT {
+                transition.rows[i][j] += 0.3 * number(i + 7, j + 50);
+                f[(i, j)] = transition.rows[i][j];
+            }
+            for k in 0..FURTHER_COUNT {
+                columns[i][k] = number(i + 31, k + 3);
+                f[(i, STATE_COUNT + k)] = columns[i][k];
+            }
+        }
+        for k in 18..24 {
+            decay[k] = 0.9;
+            f[(STATE_COUNT + k, STATE_COUNT + k)] = 0.9;
+        }
+        errors.propagate(&transition);
+        border.propagate(&transition, &(columns, decay), &mut errors);
+        assert_same(&(&f * whole * f.transpose()), &errors, &border);
+    }
+
+    /// (I − K h) P (I − K h)ᵀ + K r Kᵀ of the whole matrix, with any gain.
+    #[test]
+    fn an_update_is_that_of_the_whole_covariance() {
+        let (whole, mut errors, mut border) = parts();
+        let (state, r) = (4, 0.7);
+        let gain: [f64; STATE_COUNT] = core::array::from_fn(|i| 0.1 * number(i, 99));
+        let mut further = [0.0; FURTHER_ROW];
+        (0..FURTHER_COUNT).filter(|k| k % 3 != 0).for_each(|k| further[k] = 0.1 * number(k, 5));
+        border.update(&errors, (state, r), &gain, &further);
+        errors.update_with_gain(state, r, &gain);
+        let k =
+            DVector::from_fn(
+                ALL,
+                |i, _| {
+                    if i < STATE_COUNT { gain[i] } else { further[i - STATE_COUNT] }
+                },
+            );
+        let mut kept = DMatrix::identity(ALL, ALL);
+        kept.column_mut(state).axpy(-1.0, &k, 1.0);
+        let expected = &kept * whole * kept.transpose() + &k * k.transpose() * r;
+        assert_same(&expected, &errors, &border);
+    }
+}
