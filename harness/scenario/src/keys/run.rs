@@ -108,7 +108,7 @@ keys! {
         gravity_anomaly: f64
             = within(&[UnitDimension::ACCEL_BIAS], -0.01, 0.01, "within ±0.01 m/s^2 (1000 mGal)"), "0 ug",
             "True minus normal gravity.";
-        drawn: DrawnSiteKeys = table(), section,
+        drawn: Option<DrawnSiteKeys> = table::<DrawnSiteKeys>(), absent("nothing is drawn"),
             "Errors of gravity that the seed draws, each group from its own stream; they add to the values given above.";
     }
 }

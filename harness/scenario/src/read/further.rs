@@ -67,18 +67,20 @@ fn of(keys: &FurtherKeys) -> core::Further {
 /// Draws of the errors beside the parameters, group by group; `None`: not drawn. Gauss-Markov biases are processes, which
 /// the plant draws.
 pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 8] {
-    let (imu, site) = (&keys.imu.extensions.drawn, &keys.site.drawn);
+    let (imu, site) = (keys.imu.extensions.drawn.as_ref(), keys.site.drawn.as_ref());
     FurtherGroup::ALL.map(|group| match group {
-        FurtherGroup::AccelLever => imu.lever_arm.as_ref().map(DrawnLengths::distribution),
-        FurtherGroup::GyroAsymmetry => imu.gyro_asymmetry.as_ref().map(DrawnRatios::distribution),
-        FurtherGroup::AccelAsymmetry => imu.accel_asymmetry.as_ref().map(DrawnRatios::distribution),
+        FurtherGroup::AccelLever => imu?.lever_arm.as_ref().map(DrawnLengths::distribution),
+        FurtherGroup::GyroAsymmetry => imu?.gyro_asymmetry.as_ref().map(DrawnRatios::distribution),
+        FurtherGroup::AccelAsymmetry => {
+            imu?.accel_asymmetry.as_ref().map(DrawnRatios::distribution)
+        }
         FurtherGroup::AccelQuadratic => {
-            imu.accel_quadratic.as_ref().map(DrawnQuadratics::distribution)
+            imu?.accel_quadratic.as_ref().map(DrawnQuadratics::distribution)
         }
         FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => None,
-        FurtherGroup::Deflection => site.deflection.as_ref().map(DrawnAngles::distribution),
+        FurtherGroup::Deflection => site?.deflection.as_ref().map(DrawnAngles::distribution),
         FurtherGroup::GravityAnomaly => {
-            site.gravity_anomaly.as_ref().map(DrawnAccelerations::distribution)
+            site?.gravity_anomaly.as_ref().map(DrawnAccelerations::distribution)
         }
     })
 }
