@@ -247,9 +247,10 @@ pub(super) fn sum(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::{SMatrix, SVector};
 
     const ALL: usize = STATE_COUNT + FURTHER_COUNT;
+    type Whole = SMatrix<f64, ALL, ALL>;
 
     /// Numbers without a pattern, within ±1.
     fn number(i: usize, j: usize) -> f64 {
@@ -257,9 +258,9 @@ mod tests {
     }
 
     /// A covariance of all states, and the same in its parts.
-    fn parts() -> (DMatrix<f64>, Covariance, Border) {
-        let root = DMatrix::from_fn(ALL, ALL, number);
-        let whole = &root * root.transpose();
+    fn parts() -> (Whole, Covariance, Border) {
+        let root = Whole::from_fn(number);
+        let whole = root * root.transpose();
         let mut errors = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
         let mut border = Border::new(&[0.0; FURTHER_COUNT]);
         for i in 0..STATE_COUNT {
@@ -274,7 +275,7 @@ mod tests {
         (whole, errors, border)
     }
 
-    fn assert_same(whole: &DMatrix<f64>, errors: &Covariance, border: &Border) {
+    fn assert_same(whole: &Whole, errors: &Covariance, border: &Border) {
         let scale = whole.amax();
         for i in 0..ALL {
             for j in 0..ALL {
@@ -296,7 +297,7 @@ mod tests {
         let mut transition = Transition::identity();
         let mut columns = [[0.0; FURTHER_ROW]; MOVING];
         let mut decay = [1.0; FURTHER_ROW];
-        let mut f = DMatrix::identity(ALL, ALL);
+        let mut f = Whole::identity();
         for i in 0..MOVING {
             for j in 0..STATE_COUNT {
                 transition.rows[i][j] += 0.3 * number(i + 7, j + 50);
@@ -313,7 +314,7 @@ mod tests {
         }
         errors.propagate(&transition);
         border.propagate(&transition, &(columns, decay), &mut errors);
-        assert_same(&(&f * whole * f.transpose()), &errors, &border);
+        assert_same(&(f * whole * f.transpose()), &errors, &border);
     }
 
     /// (I − K h) P (I − K h)ᵀ + K r Kᵀ of the whole matrix, with any gain.
@@ -333,9 +334,9 @@ mod tests {
                     if i < STATE_COUNT { gain[i] } else { further[i - STATE_COUNT] }
                 },
             );
-        let mut kept = DMatrix::identity(ALL, ALL);
+        let mut kept = Whole::identity();
         kept.column_mut(state).axpy(-1.0, &k, 1.0);
-        let expected = &kept * whole * kept.transpose() + &k * k.transpose() * r;
+        let expected = kept * whole * kept.transpose() + k * k.transpose() * r;
         assert_same(&expected, &errors, &border);
     }
 }
