@@ -327,13 +327,9 @@ mod tests {
         (0..FURTHER_COUNT).filter(|k| k % 3 != 0).for_each(|k| further[k] = 0.1 * number(k, 5));
         border.update(&errors, (state, r), &gain, &further);
         errors.update_with_gain(state, r, &gain);
-        let k =
-            DVector::from_fn(
-                ALL,
-                |i, _| {
-                    if i < STATE_COUNT { gain[i] } else { further[i - STATE_COUNT] }
-                },
-            );
+        let k = SVector::<f64, ALL>::from_fn(|i, _| {
+            if i < STATE_COUNT { gain[i] } else { further[i - STATE_COUNT] }
+        });
         let mut kept = Whole::identity();
         kept.column_mut(state).axpy(-1.0, &k, 1.0);
         let expected = kept * whole * kept.transpose() + k * k.transpose() * r;
