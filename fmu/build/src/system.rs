@@ -34,8 +34,8 @@ impl Configured {
         }
         let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed)
             .map_err(|error| failed(error.to_string()))?;
-        // The parameters of the Calibrator have no place for them.
-        if scenario.has_further_states() {
+        // The parameters of the Calibrator have no place for them. The baseline isn't in the archive.
+        if scenario.has_further_states(Method::Primary) {
             return Err(failed(
                 "procedure.calibration.further is given, and the FMU has no parameters for these states"
                     .to_owned(),

@@ -16,6 +16,7 @@ use crate::plan::{Case, Plan, PlanError};
 use crate::store::CampaignResults;
 use octant_base::display::DisplayUnits;
 use octant_observe::ensemble::{DriftBand, Ensemble, EnsembleError, ErrorBand, ensemble};
+use octant_sample::further::FURTHER_NAMES;
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
 use octant_statistics::sample::{ConfidenceInterval, mean};
@@ -237,7 +238,10 @@ fn compare(
     }
     let times: Vec<_> = times(ensemble).collect();
     let finals = finals(ensemble, sample);
-    let rows = NAMES.len() + 2 * times.len() + finals.len();
+    let names = || NAMES.into_iter().chain(FURTHER_NAMES).enumerate();
+    let state_of = |name: &str| ensemble.states.iter().find(|state| state.name == name);
+    let predicted = names().filter(|(_, name)| state_of(name).is_some()).count();
+    let rows = predicted + 2 * times.len() + finals.len();
     // Each row has two intervals.
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
     let (low, high) = deviation::factors(count as u64 - 1, each)
@@ -245,10 +249,10 @@ fn compare(
     let student =
         paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;
 
-    let mut states = Vec::with_capacity(NAMES.len());
-    for (index, name) in NAMES.into_iter().enumerate() {
-        let Some(state) = ensemble.states.iter().find(|state| state.name == name) else { continue };
-        let figures = sample.parameter(index);
+    let mut states = Vec::with_capacity(predicted);
+    for (index, name) in names() {
+        let Some(state) = state_of(name) else { continue };
+        let figures = sample.state(index);
         let figures = figures.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
         let predicted = (state.mean, state.sigma);
         states.push(row(

@@ -4,6 +4,7 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::Core;
 use octant_calibration::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
+use octant_calibration::further::{FURTHER_COUNT, FurtherGroup};
 use octant_closed_loop::draws::draws;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::phi_of;
@@ -19,6 +20,7 @@ use octant_statistics::sample::{mean, percentile, rms};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+mod further;
 mod sequences;
 
 /// At this rate a move at 10 °/s is still divided into steps of 0.5°; a filter's cost is per
@@ -45,9 +47,9 @@ fn scenario_at(rate: &str, text: &str) -> Scenario {
 
 /// Results of one run.
 struct Run {
-    /// Errors of all 39 states at the end of the calibration, in the units and signs of a
-    /// prediction.
-    errors: [f64; STATE_COUNT],
+    /// Errors of all 39 states at the end of the calibration, and of the constant further ones that
+    /// the filter has, in the units and signs of a prediction.
+    errors: Vec<f64>,
     /// Latitude and longitude error, arcmin, and radial error, nmi, at equal times.
     drift: Vec<[f64; 3]>,
     /// Heading, pitch and roll error, arcmin, and velocity error north and east, m/s, at these times.
@@ -79,7 +81,8 @@ fn run_every(
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let metres = [earth.meridian_radius_m, earth.transverse_radius_m * earth.cos_latitude];
     let mut command = GimbalCommand::default();
-    let mut run = Run { errors: [f64::NAN; STATE_COUNT], drift: Vec::new(), motion: Vec::new() };
+    let mut run =
+        Run { errors: vec![f64::NAN; STATE_COUNT], drift: Vec::new(), motion: Vec::new() };
     for sample in 1..=scenario.samples().unwrap() {
         let step = plant.step(&command);
         let output = core.step(&step.sample, step.aiding.as_ref());
@@ -106,6 +109,7 @@ fn run_every(
             for (state, error) in run.errors.iter_mut().enumerate() {
                 *error /= state_unit(state).1;
             }
+            run.errors.extend(further_errors(&core, &scenario.true_further(&draws)));
         } else if sample > calibration && (sample - calibration).is_multiple_of(every) {
             let truth = plant.truth();
             let north = output.navigation.latitude_rad - truth.latitude_rad;
@@ -121,6 +125,20 @@ fn run_every(
         }
     }
     run
+}
+
+/// Errors of the further states that a core has and that have a truth, in their units.
+fn further_errors(core: &Core, truth: &[Option<f64>; FURTHER_COUNT]) -> Vec<f64> {
+    let Some(found) = core.further() else { return Vec::new() };
+    let is_process =
+        |group| matches!(group, FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov);
+    let groups = FurtherGroup::ALL.into_iter().filter(|group| !is_process(*group));
+    let known = |k: &usize| found.sigma[*k] > 0.0;
+    let errors = groups.flat_map(|group| {
+        let error = move |k: usize| (found.value[k] - truth[k].unwrap()) / group.si_per_unit();
+        group.range().filter(known).map(error)
+    });
+    errors.collect()
 }
 
 /// Removes the plant's noise, and keeps its draws.

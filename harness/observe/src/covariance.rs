@@ -6,16 +6,16 @@
 //! believes. After the calibration the true errors are carried through free navigation with the
 //! vertical channel held, which gives the predicted drift.
 
+use super::border::{Border, FurtherModel, Step};
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{EnsembleTruth, TrueErrors, Unseen};
+use super::truth::{EnsembleTruth, FurtherTruth, Gain, TrueErrors, Unseen};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{
     AidingMode, CoreConfig, ErrorModel, Estimator, Further, Kalman, SwayNoise,
 };
-use octant_calibration::covariance::{
-    Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
-};
-use octant_calibration::filter::{add_process_noise, prior_sigmas};
+use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
+use octant_calibration::filter::{FURTHER_ROW, add_bias_walk, add_process_noise, prior_sigmas};
+use octant_calibration::further::FURTHER_COUNT;
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::ARCMIN;
@@ -74,6 +74,20 @@ pub struct PredictedResult {
     pub drift: Vec<PositionError>,
     /// Attitude and velocity error at the same times.
     pub motion: Vec<MotionError>,
+    /// Errors beside the parameters at the end of the calibration; `None` where neither the instrument nor the filter has
+    /// any.
+    pub further: Option<PredictedFurther>,
+}
+
+/// Errors beside the parameters at the end of a calibration, SI, true − estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictedFurther {
+    /// σ that the filter believes; zero where it doesn't know of the error.
+    pub believed: [f64; FURTHER_COUNT],
+    /// Mean. Of Gauss-Markov biases minus that of the estimates.
+    pub mean: [f64; FURTHER_COUNT],
+    /// σ about the mean. Of Gauss-Markov biases that of the estimates.
+    pub sigma: [f64; FURTHER_COUNT],
 }
 
 /// Attitude and velocity error of an ensemble at one time, computed − true.
@@ -115,10 +129,9 @@ pub enum AnalysisError {
          linear, expected \"white\""
     )]
     ColouredSway,
-    /// The filter has states beside the 39, which the prediction doesn't have.
+    /// The filter has states beside the 39, of which true sizes have to be known.
     #[error(
-        "predict the covariance: found procedure.calibration.further, whose states the prediction doesn't have; \
-         octant observe without --ensemble shows their σ"
+        "predict the covariance from σ of the 39 states: found procedure.calibration.further, expected none"
     )]
     Further,
     /// The sequence doesn't fit.
@@ -150,7 +163,14 @@ pub fn predict(
         unseen: Unseen::Nothing,
         start_s: 0.0,
         non_orthogonality_rad: 0.0,
+        further: FurtherTruth::default(),
     };
+    if let Some(calibration) = &config.calibration
+        && let Estimator::Kalman(kalman) = &calibration.estimator
+        && kalman.further != Further::default()
+    {
+        return Err(AnalysisError::Further);
+    }
     let PredictedResult { believed, achieved, drift, .. } = reach(config, c_nc, &truth)?;
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let drift = drift.iter().map(|at| at.sigmas(&earth)).collect();
@@ -198,19 +218,22 @@ pub fn reach(
     if kalman.sway != SwayNoise::White {
         return Err(AnalysisError::ColouredSway);
     }
-    if kalman.further != Further::default() {
-        return Err(AnalysisError::Further);
-    }
+    let bordered = kalman.further.has_states() || truth.further.has_errors();
+    let further = bordered.then(|| FurtherModel::new(&kalman.further));
     let rates = config.turntable;
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
     let home = GimbalAngles::default();
     let cursor = Cursor::new(calibration.sequence.clone(), home, rates, dwell, SAMPLE_S, false);
     let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, home, cursor);
-    let mut errors = TrueErrors::new(truth);
+    let mut errors = TrueErrors::new(truth, bordered);
     let (start_s, end_s) = (truth.start_s, calibration.duration_s);
-    let believed =
-        calibrate(&mut platform, kalman, noise_of(config), (start_s, end_s), &mut errors);
+    let filter = (kalman, further.as_ref());
+    let (believed, believed_further) =
+        calibrate(&mut platform, filter, noise_of(config), (start_s, end_s), &mut errors);
     let (mean, achieved) = errors.moments();
+    let found = errors.further().zip(believed_further);
+    let predicted =
+        found.map(|([mean, sigma], believed)| PredictedFurther { believed, mean, sigma });
 
     let (mut drift, mut motion) = (Vec::new(), Vec::new());
     if let Some(plan) = &config.navigation
@@ -225,23 +248,26 @@ pub fn reach(
             .map(|wander| 0.1 * wander.correlation_time_s)
             .fold(NAVIGATION_STEP_S, f64::min)
             .max(1.0);
-        (drift, motion) = navigate(platform, &mut errors, end_s, duration_s, step_s);
+        let times = (end_s, duration_s, step_s);
+        (drift, motion) = navigate(platform, &mut errors, further.as_ref(), times);
     }
-    Ok(PredictedResult { believed, mean, achieved, drift, motion })
+    Ok(PredictedResult { believed, mean, achieved, drift, motion, further: predicted })
 }
 
 fn calibrate(
     platform: &mut Platform<'_>,
-    kalman: &Kalman,
+    (kalman, further): (&Kalman, Option<&FurtherModel>),
     noise: (f64, f64),
     (start_s, end_s): (f64, f64),
     errors: &mut TrueErrors,
-) -> Covariance {
+) -> (Covariance, Option<[f64; FURTHER_COUNT]>) {
     let mut believed = Covariance::from_sigmas(&prior_sigmas(kalman));
+    let mut border = further.map(FurtherModel::believed);
     let (first, r) = match kalman.aiding {
         AidingMode::Velocity { sigma_mps } => (DV, sigma_mps * sigma_mps),
         AidingMode::Position { sigma_m } => (DR, sigma_m * sigma_m),
     };
+    let walk = kalman.further.gyro_rate_random_walk;
     let period_s = kalman.aiding_period_ns as f64 * 1e-9;
     let (mut t, mut dwelling) = (start_s, None);
     while t < end_s - 1e-6 {
@@ -250,30 +276,44 @@ fn calibrate(
         let whole = (end - t - period_s).abs() < 1e-6;
         let standing = platform.stands(t);
         // A whole period at rest has the same transition each time.
-        let transition = match &dwelling {
-            Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
-                Transition::clone(transition)
+        let step = match &dwelling {
+            Some((stop, step)) if whole && standing && *stop == platform.cursor.stop() => {
+                Step::clone(step)
             }
-            _ => platform.transition(t, end - t, kalman.error_model),
+            _ => platform.step(t, end - t, kalman.error_model, further),
         };
         if whole && standing {
-            dwelling = Some((platform.cursor.stop(), transition.clone()));
+            dwelling = Some((platform.cursor.stop(), step.clone()));
         }
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
-        believed.propagate(&transition);
+        believed.propagate(&step.transition);
+        if let (Some(model), Some(border), Some(of)) = (further, &mut border, &step.further) {
+            border.propagate(&step.transition, of, &mut believed);
+            border.add_noise(model, &of.1);
+        }
+        if walk > 0.0 {
+            add_bias_walk(&mut believed, walk * walk * (end - t), &step.transition);
+        }
         add_process_noise(&mut believed, noise, end - t, &force);
-        errors.propagate(&transition, t, end - t, &force);
+        errors.propagate(&step, t, end - t, &force);
         t = end;
         if (t - measured_at).abs() < 1e-6 {
             for axis in 0..3 {
-                let gain = believed.gain(first + axis, r);
-                believed.update(first + axis, r, 0.0, &mut [0.0; STATE_COUNT]);
+                let state = first + axis;
+                let mut gain =
+                    Gain { errors: believed.gain(state, r), further: [0.0; FURTHER_ROW] };
+                if let (Some(model), Some(border)) = (further, &mut border) {
+                    gain.further = border.gain(model, state, believed.at(state, state) + r);
+                    border.update(&believed, (state, r), &gain.errors, &gain.further);
+                }
+                believed.update(state, r, 0.0, &mut [0.0; STATE_COUNT]);
                 errors.update(first, axis, r, &gain, t);
             }
         }
         platform.reach(t);
     }
-    believed
+    let sigmas = |border: Border| core::array::from_fn(|k| libm::sqrt(border.variance(k).max(0.0)));
+    (believed, border.map(sigmas))
 }
 
 /// Carries the errors through navigation. `start_s` is the end of the calibration, where the
@@ -281,9 +321,8 @@ fn calibrate(
 fn navigate(
     mut platform: Platform<'_>,
     errors: &mut TrueErrors,
-    start_s: f64,
-    duration_s: f64,
-    step_s: f64,
+    further: Option<&FurtherModel>,
+    (start_s, duration_s, step_s): (f64, f64, f64),
 ) -> (Vec<PositionError>, Vec<MotionError>) {
     errors.start_free(start_s);
     let (mut drift, mut motion) = (Vec::new(), Vec::new());
@@ -293,22 +332,21 @@ fn navigate(
         let end = platform.next_event_s(t, duration_s).min(t + step_s).min(mark_s.max(t + 1e-3));
         let standing = platform.stands(t);
         let whole = (end - t - step_s).abs() < 1e-6;
-        let transition = match &dwelling {
-            Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
-                Transition::clone(transition)
+        let step = match &dwelling {
+            Some((stop, step)) if whole && standing && *stop == platform.cursor.stop() => {
+                Step::clone(step)
             }
             _ => {
-                let mut transition = platform.transition(t, end - t, ErrorModel::Phi);
-                transition.rows[DV + 2].fill(0.0);
-                transition.rows[DR + 2].fill(0.0);
-                transition
+                let mut step = platform.step(t, end - t, ErrorModel::Phi, further);
+                step.hold_vertical();
+                step
             }
         };
         if whole && standing {
-            dwelling = Some((platform.cursor.stop(), transition.clone()));
+            dwelling = Some((platform.cursor.stop(), step.clone()));
         }
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
-        errors.propagate(&transition, start_s + t, end - t, &force);
+        errors.propagate(&step, start_s + t, end - t, &force);
         errors.hold_vertical();
         t = end;
         if (t - mark_s).abs() < 1e-3 || t >= duration_s - 1e-6 {

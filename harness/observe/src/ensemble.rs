@@ -7,14 +7,17 @@
 
 pub use super::bands::{ErrorBand, SolutionBands};
 
+use super::border::{FurtherModel, sum};
 use super::covariance::{
-    AnalysisError, PositionError, PredictedResult, arcmin_m, reach, state_name,
+    AnalysisError, PositionError, PredictedFurther, PredictedResult, arcmin_m, reach, state_name,
 };
+use super::not_modelled::not_modelled;
 use super::platform::{Platform, SAMPLE_S};
-use super::truth::{EnsembleTruth, Swing, Unseen, Wander};
+use super::truth::{EnsembleTruth, FurtherTruth, Swing, Unseen, Wander};
 use nalgebra::{Matrix3, Vector3};
-use octant_calibration::config::{CoreConfig, ErrorModel, Estimator};
+use octant_calibration::config::{CoreConfig, ErrorModel, Estimator, Further, Kalman};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
+use octant_calibration::further::{FURTHER_COUNT, FURTHER_NAMES, FurtherGroup};
 use octant_calibration::schedule::Cursor;
 use octant_calibration::sequence::Sequence;
 use octant_earth::ellipsoid::Ellipsoid;
@@ -48,7 +51,7 @@ pub struct Ensemble {
     pub method: String,
     /// Length of the calibration, h.
     pub calibration_h: f64,
-    /// Errors of all 39 states at the end of the calibration.
+    /// Errors of all 39 states at the end of the calibration, and of the further ones that the filter has.
     pub states: Vec<ErrorState>,
     /// Position error in navigation, a point every ten minutes.
     pub drift: Vec<DriftBand>,
@@ -143,7 +146,8 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
     let c = c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad);
     let truth = truth(scenario, &config, &calibration.sequence, &c)?;
     let attitude = mean;
-    let PredictedResult { believed, mean, achieved, drift, motion } = reach(&config, &c, &truth)?;
+    let PredictedResult { believed, mean, achieved, drift, motion, further } =
+        reach(&config, &c, &truth)?;
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let states = (0..STATE_COUNT).map(|state| {
         let (unit, si) = state_unit(state);
@@ -167,7 +171,7 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
         scenario: scenario.title.clone(),
         method: scenario.method_label(method),
         calibration_h: calibration.duration_s / 3600.0,
-        states: states.collect(),
+        states: states.chain(further_states(kalman, &truth.further, further.as_ref())).collect(),
         drift: drift
             .iter()
             .zip(&motion)
@@ -177,6 +181,34 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
             })
             .collect(),
         not_modelled: not_modelled(scenario),
+    })
+}
+
+/// Errors of the further states that the filter considers or estimates. Gauss-Markov biases have no truth that a run
+/// could be compared with, and are left out.
+fn further_states<'a>(
+    kalman: &'a Kalman,
+    truth: &'a FurtherTruth,
+    found: Option<&'a PredictedFurther>,
+) -> impl Iterator<Item = ErrorState> + 'a {
+    let is_process =
+        |group| matches!(group, FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov);
+    let known = move |group: &FurtherGroup| {
+        kalman.further.of(*group).sigma().is_some() && !is_process(*group)
+    };
+    FurtherGroup::ALL.into_iter().filter(known).flat_map(move |group| {
+        let si = group.si_per_unit();
+        group.range().zip(core::iter::repeat(found)).filter_map(move |(k, found)| {
+            let found = found?;
+            Some(ErrorState {
+                name: FURTHER_NAMES[k].to_owned(),
+                unit: group.unit().to_owned(),
+                prior: truth.sigma[k] / si,
+                believed: Some(found.believed[k] / si),
+                mean: -found.mean[k] / si + 0.0,
+                sigma: found.sigma[k] / si,
+            })
+        })
     })
 }
 
@@ -258,6 +290,12 @@ pub fn truth(
         }
     }
     let imu = &scenario.imu;
+    let mut further = FurtherTruth {
+        sigma: further_sigmas(&scenario.further),
+        mean: octant_plant::further::truth(&imu.extensions, &scenario.site.gravity)
+            .map(|given| given.unwrap_or(0.0)),
+        ..FurtherTruth::default()
+    };
     let noise = (square(imu.angle_random_walk), square(imu.velocity_random_walk));
     let mut covariance = Covariance::from_sigmas(&sigmas);
     let mut start_s = 0.0;
@@ -271,7 +309,9 @@ pub fn truth(
         let cursor = Cursor::new(sequence.clone(), home, rates, duration_s, SAMPLE_S, false);
         let leant = scenario.turntable.non_orthogonality_rad;
         let platform = Platform::new(config, *c, leant, home, cursor);
-        Coarse::of(&platform).apply(&sigmas, noise, duration_s, &mut covariance, &mut mean);
+        let coarse = Coarse::of(&platform);
+        coarse.apply(&sigmas, noise, duration_s, &mut covariance, &mut mean);
+        coarse.tilt_by(&mut further, &mut covariance, &mut mean);
     }
     let extensions = &imu.extensions;
     let mut wanders = Vec::new();
@@ -319,7 +359,21 @@ pub fn truth(
         unseen,
         start_s,
         non_orthogonality_rad: scenario.turntable.non_orthogonality_rad,
+        further,
     })
+}
+
+/// Returns the standard deviations of draws of the errors beside the parameters.
+fn further_sigmas(draws: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT] {
+    let mut sigmas = [0.0; FURTHER_COUNT];
+    for (group, draw) in FurtherGroup::ALL.into_iter().zip(draws) {
+        sigmas[group.range()].fill(match draw {
+            Some(ParameterDistribution::Normal(sigma)) => *sigma,
+            Some(ParameterDistribution::Uniform(half_width)) => half_width / libm::sqrt(3.0),
+            Some(ParameterDistribution::Constant(_)) | None => 0.0,
+        });
+    }
+    sigmas
 }
 
 /// Returns a ship's displacements: those that are the same in every run, and those with drawn
@@ -350,9 +404,10 @@ fn swings(scenario: &Scenario, ship: &DocksideSpec) -> (Vec<Swing>, Vec<Swing>) 
     (same, drawn)
 }
 
-/// Linear effect of the instrument's errors on a coarse alignment: φ = A · parameters + noise.
+/// Linear effect of the instrument's errors on a coarse alignment: φ = A · parameters + B · further errors + noise.
 struct Coarse {
     rows: [[f64; STATE_COUNT]; 3],
+    further: [[f64; FURTHER_COUNT]; 3],
     earth: Ellipsoid,
 }
 
@@ -361,18 +416,30 @@ impl Coarse {
         // Short enough that attitude errors have no effect on velocity.
         const H: f64 = 1e-4;
         let earth = platform.earth;
-        let transition = platform.transition(0.0, H, ErrorModel::Phi);
+        let model = FurtherModel::new(&Further::default());
+        let step = platform.step(0.0, H, ErrorModel::Phi, Some(&model));
         let (g, horizontal) = (earth.gravity_mps2, earth.earth_rate().x);
         let tan_latitude = earth.sin_latitude / earth.cos_latitude;
+        // Of an error's effect on φ and δv over H.
+        let tilts = |effect: &dyn Fn(usize) -> f64| {
+            let force = |axis: usize| effect(DV + axis) / H;
+            let rate_east = -effect(PHI + 1) / H;
+            let north = force(1) / g;
+            [north, -force(0) / g, rate_east / horizontal - north * tan_latitude]
+        };
         let mut rows = [[0.0; STATE_COUNT]; 3];
         for state in PARAMETERS..STATE_COUNT {
-            let force = |axis: usize| transition.rows[DV + axis][state] / H;
-            let rate_east = -transition.rows[PHI + 1][state] / H;
-            rows[0][state] = force(1) / g;
-            rows[1][state] = -force(0) / g;
-            rows[2][state] = rate_east / horizontal - rows[0][state] * tan_latitude;
+            let tilts = tilts(&|moving| step.transition.rows[moving][state]);
+            (0..3).for_each(|i| rows[i][state] = tilts[i]);
         }
-        Self { rows, earth }
+        let mut further = [[0.0; FURTHER_COUNT]; 3];
+        if let Some((columns, _)) = &step.further {
+            for k in 0..FURTHER_COUNT {
+                let tilts = tilts(&|moving| columns[moving][k]);
+                (0..3).for_each(|i| further[i][k] = tilts[i]);
+            }
+        }
+        Self { rows, further, earth }
     }
 
     fn apply(
@@ -403,52 +470,22 @@ impl Coarse {
             mean[PHI + i] = (PARAMETERS..STATE_COUNT).map(|s| self.rows[i][s] * mean[s]).sum();
         }
     }
-}
 
-/// Lists the effects of a scenario that are not in the prediction.
-fn not_modelled(scenario: &Scenario) -> Vec<String> {
-    let extensions = &scenario.imu.extensions;
-    let even = scenario.parameters.iter().any(|d| matches!(d, ParameterDistribution::Uniform(_)));
-    let spectrum =
-        matches!(&scenario.motion, MotionSpec::Dockside(ship) if ship.spectrum.is_some());
-    let dockside = matches!(scenario.motion, MotionSpec::Dockside(_));
-    let quantized =
-        extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
-    let all: [(bool, &str); 15] = [
-        (true, "nonlinear effects: products of errors, and screens and gates that reject samples"),
-        (
-            even,
-            "the shape of uniform draws: only their variance counts, and percentiles are those of normal errors",
-        ),
-        (
-            scenario.turntable.encoder_sigma_rad != 0.0,
-            "errors of the encoders: the filter doesn't use their angles",
-        ),
-        (quantized, "quantization"),
-        (extensions.vibration.is_some(), "vibration"),
-        (extensions.lever_arm_m != [[0.0; 3]; 3], "lever arms of the accelerometers"),
-        (
-            extensions.gyro_asymmetry != [0.0; 3] || extensions.accel_asymmetry != [0.0; 3],
-            "the asymmetry of scale factors",
-        ),
-        (extensions.accel_quadratic != [0.0; 3], "the second order of the accelerometers"),
-        (
-            scenario.site.gravity != octant_plant::config::GravityDisturbance::default(),
-            "the disturbance of gravity",
-        ),
-        (extensions.time_skew_s != 0.0, "the time skew of the inertial unit"),
-        (scenario.turntable.backlash_rad != 0.0, "backlash of the gears"),
-        (dockside, "the ship's roll, pitch and yaw: only the displacement of its motion enters"),
-        (
-            spectrum,
-            "the draw of the periods of the ship's spectrum: those of the scenario's seed stand for all",
-        ),
-        (!scenario.faults.is_empty(), "the scenario's faults"),
-        (
-            !scenario.endpoint.is_in_process(),
-            "the core at endpoint.uri: the built-in core stands for it",
-        ),
-    ];
-    let named = all.into_iter().filter(|(there, _)| *there);
-    named.map(|(_, what)| what.to_owned()).collect()
+    /// Adds the effect of errors beside the parameters.
+    fn tilt_by(
+        &self,
+        truth: &mut FurtherTruth,
+        covariance: &mut Covariance,
+        mean: &mut [f64; STATE_COUNT],
+    ) {
+        truth.tilt = self.further;
+        for i in 0..3 {
+            mean[PHI + i] += sum(&self.further[i], &truth.mean);
+            for j in i..3 {
+                let each = (0..FURTHER_COUNT)
+                    .map(|k| self.further[i][k] * self.further[j][k] * truth.sigma[k].powi(2));
+                covariance.add(PHI + i, PHI + j, each.sum());
+            }
+        }
+    }
 }

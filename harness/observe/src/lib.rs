@@ -5,8 +5,10 @@
 //! sees, [`mod@protection`] what its test for drifts doesn't.
 
 mod bands;
+mod border;
 pub mod covariance;
 pub mod ensemble;
+mod not_modelled;
 pub mod perfect;
 mod platform;
 pub mod protection;
@@ -14,3 +16,10 @@ pub mod static_rank;
 pub mod truth;
 
 pub use static_rank::{StaticRank, static_rank};
+
+// The tests name the crate as its users do. They are a part of it because some look at what is private.
+#[cfg(test)]
+extern crate self as octant_observe;
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

@@ -1,9 +1,11 @@
 //! Platform of an analysis: it stands at a site and turns as planned.
 
+use super::border::{FurtherModel, Step, integrals};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{CoreConfig, ErrorModel};
-use octant_calibration::covariance::Transition;
+use octant_calibration::covariance::{MOVING, Transition};
 use octant_calibration::error_model::MotionInterval;
+use octant_calibration::filter::FURTHER_ROW;
 use octant_calibration::schedule::{Cursor, turned_rad};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_cb;
@@ -116,16 +118,39 @@ impl<'a> Platform<'a> {
         }
     }
 
-    /// Returns the transition over `[t_s, t_s + length_s]`, in which the platform stands or turns
-    /// throughout.
-    pub(super) fn transition(&self, t_s: f64, length_s: f64, model: ErrorModel) -> Transition {
+    /// Returns the step over `[t_s, t_s + length_s]`, in which the platform stands or turns
+    /// throughout: the transition, and what the further states do.
+    pub(super) fn step(
+        &self,
+        t_s: f64,
+        length_s: f64,
+        model: ErrorModel,
+        further: Option<&FurtherModel>,
+    ) -> Step {
         let step_s = if self.stands(t_s) { 1.0 } else { SUB_STEP_S };
         let steps = (length_s / step_s - 1e-9).ceil().max(1.0);
         let h = length_s / steps;
         let mut transition = Transition::identity();
+        let mut columns = further.map(|_| [[0.0; FURTHER_ROW]; MOVING]);
         for k in 0..steps as u32 {
-            transition.advance(model, &self.interval(t_s + f64::from(k) * h, h), &self.earth);
+            let since_s = f64::from(k) * h;
+            let interval = self.interval(t_s + since_s, h);
+            transition.advance(model, &interval, &self.earth);
+            if let (Some(further), Some(columns)) = (further, &mut columns) {
+                let change = self.rate(t_s + since_s + h) - self.rate(t_s + since_s);
+                let integrals = integrals(&interval, &change);
+                let middle_s = since_s + 0.5 * h;
+                further.advance(columns, model, &interval, &integrals, &self.earth, middle_s);
+            }
         }
-        transition
+        let further = columns.zip(further.map(|further| further.decay(length_s)));
+        Step { transition, further }
+    }
+
+    /// Returns the rate of the body in b at a time, rad/s.
+    fn rate(&self, t_s: f64) -> Vector3<f64> {
+        // Short against the time in which a gimbal gains its rate, long against the resolution of angles.
+        const H: f64 = 1e-5;
+        self.interval(t_s - 0.5 * H, H).delta_theta / H
     }
 }

@@ -7,11 +7,13 @@
 //! offset. A sway of which only the phase is drawn is carried by the responses to a sine and to a
 //! cosine, half the variance each.
 
+use super::border::{Border, Step, sum};
 use nalgebra::Vector3;
 use octant_calibration::covariance::{
-    Covariance, DR, DV, MOVING, PARAMETERS, STATE_COUNT, Transition,
+    Covariance, DR, DV, MOVING, PARAMETERS, PHI, STATE_COUNT, Transition,
 };
-use octant_calibration::filter::add_process_noise;
+use octant_calibration::filter::{FURTHER_ROW, FurtherRow, add_process_noise};
+use octant_calibration::further::FURTHER_COUNT;
 use octant_plant::config::Temperature;
 use octant_sample::parameters::ParameterGroup;
 
@@ -44,6 +46,28 @@ pub struct EnsembleTruth {
     pub start_s: f64,
     /// Angle by which the gimbal axes deviate from a right angle, rad.
     pub non_orthogonality_rad: f64,
+    /// Errors beside the parameters.
+    pub further: FurtherTruth,
+}
+
+/// Errors beside the parameters over an ensemble, SI, in the order of
+/// [`FURTHER_NAMES`](octant_calibration::further::FURTHER_NAMES). Gauss-Markov biases are among the [`Wander`]s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FurtherTruth {
+    /// σ of what is drawn, each independent.
+    pub sigma: [f64; FURTHER_COUNT],
+    /// Values that are the same in every run.
+    pub mean: [f64; FURTHER_COUNT],
+    /// Effect on φ of an alignment before the start, rad.
+    pub tilt: [[f64; FURTHER_COUNT]; 3],
+}
+
+impl FurtherTruth {
+    /// Returns whether an instrument or its site has such an error.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.sigma.iter().chain(&self.mean).any(|value| *value != 0.0)
+    }
 }
 
 /// Part of the motion that the reference doesn't see.
@@ -127,6 +151,8 @@ impl Swing {
 #[derive(Clone, Debug)]
 struct Answer {
     errors: Errors,
+    /// Further states; zero without them.
+    further: FurtherRow,
     swings: Vec<Swing>,
     temperature: Option<Temperature>,
 }
@@ -141,7 +167,7 @@ impl Answer {
         self
     }
 
-    fn propagate(&mut self, transition: &Transition, t_s: f64, h: f64) {
+    fn propagate(&mut self, step: &Step, t_s: f64, h: f64) {
         let mut driven = self.errors;
         if let Some(temperature) = &self.temperature {
             let risen = temperature.ramp_kps * (t_s + 0.5 * h);
@@ -158,13 +184,19 @@ impl Answer {
                 }
             }
         }
-        for (i, row) in transition.rows.iter().enumerate() {
+        for (i, row) in step.transition.rows.iter().enumerate() {
             self.errors[i] = row.iter().zip(&driven).map(|(a, b)| a * b).sum();
+        }
+        if let Some((columns, decay)) = &step.further {
+            for (error, column) in self.errors.iter_mut().zip(columns) {
+                *error += sum(column, &self.further);
+            }
+            self.further.iter_mut().zip(decay).for_each(|(value, decay)| *value *= decay);
         }
     }
 
     /// Updates the response; the reference is off by the motion that it does not see (`unseen`).
-    fn update(&mut self, state: usize, axis: usize, gain: &Errors, unseen: Unseen, t_s: f64) {
+    fn update(&mut self, state: usize, axis: usize, gain: &Gain, unseen: Unseen, t_s: f64) {
         let off: f64 = (self.swings.iter())
             .map(|swing| match unseen {
                 Unseen::Nothing => 0.0,
@@ -173,8 +205,11 @@ impl Answer {
             })
             .sum();
         let innovation = self.errors[state] - off;
-        for (error, gain) in self.errors.iter_mut().zip(gain) {
+        for (error, gain) in self.errors.iter_mut().zip(&gain.errors) {
             *error -= gain * innovation;
+        }
+        for (value, gain) in self.further.iter_mut().zip(&gain.further) {
+            *value -= gain * innovation;
         }
     }
 
@@ -196,6 +231,13 @@ fn first_of(group: ParameterGroup) -> usize {
     PARAMETERS + group.range().start
 }
 
+/// Gain of the filter for the 39 errors and the further states.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gain {
+    pub(super) errors: Errors,
+    pub(super) further: FurtherRow,
+}
+
 /// Wandering bias with its covariance to the errors.
 #[derive(Clone, Debug)]
 struct Wandering {
@@ -204,6 +246,8 @@ struct Wandering {
     like: usize,
     variance: f64,
     cross: Errors,
+    /// Covariance to the further states, whose estimates it moves.
+    further: FurtherRow,
 }
 
 /// True errors at a time.
@@ -213,6 +257,8 @@ pub(super) struct TrueErrors {
     reference_variance: Option<f64>,
     unseen: Unseen,
     covariance: Covariance,
+    /// Further states; `None` where neither the instrument nor the filter has any.
+    border: Option<Border>,
     wanderings: Vec<Wandering>,
     mean: Answer,
     /// Responses with a variance of one half each.
@@ -220,7 +266,8 @@ pub(super) struct TrueErrors {
 }
 
 impl TrueErrors {
-    pub(super) fn new(truth: &EnsembleTruth) -> Self {
+    /// Makes the errors at the start; `bordered`: with further states.
+    pub(super) fn new(truth: &EnsembleTruth, bordered: bool) -> Self {
         let wandering = |process: &Wander| {
             let process = *process;
             (0..3).map(move |axis| Wandering {
@@ -228,23 +275,27 @@ impl TrueErrors {
                 like: first_of(process.group) + axis,
                 variance: process.variance,
                 cross: [0.0; STATE_COUNT],
+                further: [0.0; FURTHER_ROW],
             })
         };
         let quarter = 0.5 * core::f64::consts::PI;
-        let answer = |errors, swings| Answer { errors, swings, temperature: None };
+        let further = [0.0; FURTHER_ROW];
+        let answer = |errors, swings| Answer { errors, further, swings, temperature: None };
         let both = |swing: &Swing| {
             let swing = *swing;
             [0.0, quarter].map(|phase_rad| {
                 answer([0.0; STATE_COUNT], vec![Swing { phase_rad, ..swing }]).begun(truth.start_s)
             })
         };
-        let mean =
+        let mut mean =
             Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
+        mean.further[..FURTHER_COUNT].copy_from_slice(&truth.further.mean);
         Self {
             noise: truth.noise,
             reference_variance: truth.reference_sigma.map(|sigma| sigma * sigma),
             unseen: truth.unseen,
             covariance: truth.covariance.clone(),
+            border: bordered.then(|| border(&truth.further)),
             wanderings: truth.wanders.iter().flat_map(wandering).collect(),
             mean: mean.begun(truth.start_s),
             swung: truth.sway.iter().flat_map(both).collect(),
@@ -252,32 +303,35 @@ impl TrueErrors {
     }
 
     /// Carries everything from `t_s` on over `h`; `force` is the specific force in n times `h`.
-    pub(super) fn propagate(
-        &mut self,
-        transition: &Transition,
-        t_s: f64,
-        h: f64,
-        force: &Vector3<f64>,
-    ) {
-        self.covariance.propagate(transition);
+    pub(super) fn propagate(&mut self, step: &Step, t_s: f64, h: f64, force: &Vector3<f64>) {
+        self.covariance.propagate(&step.transition);
+        if let (Some(border), Some(further)) = (&mut self.border, &step.further) {
+            border.propagate(&step.transition, further, &mut self.covariance);
+        }
         for wandering in &mut self.wanderings {
-            wandering.propagate(transition, h, &mut self.covariance);
+            wandering.propagate(step, h, &mut self.covariance, self.border.as_mut());
         }
         add_process_noise(&mut self.covariance, self.noise, h, force);
         for answer in self.answers() {
-            answer.propagate(transition, t_s, h);
+            answer.propagate(step, t_s, h);
         }
     }
 
     /// Updates with a measurement of one axis, `first` being the state of the first axis, by the
     /// filter's gain. `r` is the reference's variance that the filter assumes.
-    pub(super) fn update(&mut self, first: usize, axis: usize, r: f64, gain: &Errors, t_s: f64) {
+    pub(super) fn update(&mut self, first: usize, axis: usize, r: f64, gain: &Gain, t_s: f64) {
         let state = first + axis;
         let r = self.reference_variance.unwrap_or(r);
-        self.covariance.update_with_gain(state, r, gain);
+        if let Some(border) = &mut self.border {
+            border.update(&self.covariance, (state, r), &gain.errors, &gain.further);
+        }
+        self.covariance.update_with_gain(state, r, &gain.errors);
         for wandering in &mut self.wanderings {
             let measured = wandering.cross[state];
-            for (cross, gain) in wandering.cross.iter_mut().zip(gain) {
+            for (cross, gain) in wandering.cross.iter_mut().zip(&gain.errors) {
+                *cross -= gain * measured;
+            }
+            for (cross, gain) in wandering.further.iter_mut().zip(&gain.further) {
                 *cross -= gain * measured;
             }
         }
@@ -308,6 +362,9 @@ impl TrueErrors {
 
     fn forget(&mut self, state: usize) {
         self.covariance.reopen(state, 0.0);
+        if let Some(border) = &mut self.border {
+            border.forget(state);
+        }
         for wandering in &mut self.wanderings {
             wandering.cross[state] = 0.0;
         }
@@ -329,11 +386,39 @@ impl TrueErrors {
         }
         (self.mean.errors, covariance)
     }
+
+    /// Returns mean and σ of the further states; `None` without any. Of Gauss-Markov biases it is those of the estimates,
+    /// with the sign turned.
+    pub(super) fn further(&self) -> Option<[[f64; FURTHER_COUNT]; 2]> {
+        let border = self.border.as_ref()?;
+        let swung = |k: usize| self.swung.iter().map(move |answer| 0.5 * answer.further[k].powi(2));
+        let variance = |k: usize| border.variance(k) + swung(k).sum::<f64>();
+        let sigma = core::array::from_fn(|k| libm::sqrt(variance(k).max(0.0)));
+        Some([core::array::from_fn(|k| self.mean.further[k]), sigma])
+    }
+}
+
+/// Further states at the start, correlated with the attitude of an alignment.
+fn border(truth: &FurtherTruth) -> Border {
+    let mut border = Border::new(&truth.sigma);
+    for (i, tilt) in truth.tilt.iter().enumerate() {
+        for (k, (tilt, sigma)) in tilt.iter().zip(&truth.sigma).enumerate() {
+            border.add(k, PHI + i, tilt * sigma * sigma);
+        }
+    }
+    border
 }
 
 impl Wandering {
-    /// Propagates `x⁺ = Φ x + γ w`; `Φ P Φᵀ` is done already.
-    fn propagate(&mut self, transition: &Transition, h: f64, covariance: &mut Covariance) {
+    /// Propagates `x⁺ = Φ x + D z + γ w`; what Φ and D do to the covariance of x is done already.
+    fn propagate(
+        &mut self,
+        step: &Step,
+        h: f64,
+        covariance: &mut Covariance,
+        border: Option<&mut Border>,
+    ) {
+        let transition: &Transition = &step.transition;
         let (decay, mean, came) = self.process.over(h);
         // White noise in the bias over the step acts on the mean half a step later, which is
         // negligible over steps that are short against the correlation time.
@@ -341,6 +426,15 @@ impl Wandering {
         let mut carried = self.cross;
         for (i, row) in transition.rows.iter().enumerate() {
             carried[i] = row.iter().zip(&self.cross).map(|(a, b)| a * b).sum();
+        }
+        if let (Some(border), Some((columns, left))) = (border, &step.further) {
+            for (carried, column) in carried.iter_mut().zip(columns) {
+                *carried += sum(column, &self.further);
+            }
+            // The further states are carried to the end of the step, the bias not yet.
+            self.further.iter_mut().zip(left).for_each(|(cross, left)| *cross *= left);
+            border.add_products(&self.further, &input);
+            self.further.iter_mut().for_each(|cross| *cross *= decay);
         }
         let input_of = |i: usize| if i < MOVING { input[i] } else { 0.0 };
         for k in 0..MOVING {

@@ -106,7 +106,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         scenario: scenario.title.clone(),
         method: scenario.method_label(method),
         nis_mean: watcher.health.nis_mean(),
-        nees: nees(&parameters),
+        nees: nees(&parameters, &BTreeMap::new()),
         worst_normalized_error: worst_normalized_error(&parameters, &planned),
         parameters,
         navigation,

@@ -106,6 +106,14 @@ fn what_is_not_built_is_refused() {
         &["--set", "imu.extensions.gyro_bias_instability=0.001 deg/h"],
         &["biases that wander", "expected constant biases"],
     );
+    refused(
+        &["--set", "site.drawn.deflection={ normal = \"5 arcsec\" }"],
+        &["errors beside the parameters", "expected none"],
+    );
+    refused(
+        &["--set", "procedure.calibration.further={ accel_lever = { estimated = \"5 cm\" } }"],
+        &["procedure.calibration.further", "expected none"],
+    );
     refused(&["--azimuth-range", "30..90"], &["azimuth range", "contains 0"]);
     refused(&["--azimuth-range", "30"], &["expected whole degrees"]);
     refused(&["--lead-in", "3 h"], &["no candidate keeps the limits"]);

@@ -3,6 +3,7 @@
 use crate::common::program::program;
 use octant_observe::perfect;
 use octant_sample::further::FURTHER_NAMES;
+use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;
@@ -40,6 +41,13 @@ fn summary(text: &str) -> Value {
     std::fs::write(folder.path().join("s.toml"), text).unwrap();
     let mut run = program(&["run", "s.toml", "--out", "out", "--json"]);
     let output = run.current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {said}"))
+}
+
+/// What a command says as JSON, whatever its exit status.
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    let output = program(arguments).current_dir(folder).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {said}"))
 }
@@ -93,6 +101,119 @@ fn what_is_observed_before_a_run_is_the_sigma_after_it() {
     }
 }
 
+/// The predicted ensemble has the states, and compares them with the cases of a campaign.
+#[test]
+fn the_predicted_ensemble_has_the_further_states() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), DRAWN).unwrap();
+    let predicted = json(folder.path(), &["observe", "s.toml", "--ensemble", "--json"]);
+    let states = predicted[0]["states"].as_array().unwrap();
+    assert_eq!(states.len(), 39 + 21);
+    let arm = states.iter().find(|state| state["name"] == "accel_lever_xx").unwrap();
+    assert_eq!((arm["prior"].as_f64(), arm["unit"].as_str()), (Some(30.0), Some("mm")));
+    let [believed, sigma] = ["believed", "sigma"].map(|key| arm[key].as_f64().unwrap());
+    // The filter's σ is that of the draws: it achieves what it believes.
+    assert!(sigma < 10.0 && (sigma / believed - 1.0).abs() < 0.01, "{arm}");
+    let campaign =
+        "schema = 1\ntitle = \"c\"\nreplicates = 6\n[[scenarios]]\nid = \"s\"\nfile = \"s.toml\"\n";
+    std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+    for command in [&["campaign", "plan", "c.toml", "--out", "c"][..], &["campaign", "run", "c"]] {
+        let done = program(command).current_dir(folder.path()).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    }
+    let against =
+        json(folder.path(), &["observe", "s.toml", "--ensemble", "--against", "c", "--json"]);
+    let compared = against["compared"][0]["states"].as_array().unwrap();
+    assert_eq!(compared.len(), 30 + 21);
+    assert!(compared.iter().all(|row| row["agrees"] == true), "{against}");
+}
+
+/// Every further error that the seed draws, with the filter's σ. Deflection and anomaly can't be told from other errors
+/// on a base at rest, and are considered.
+const DRAWN: &str = r#"schema = 1
+seed = 1
+
+[imu]
+rate = "50 Hz"
+
+[imu.extensions.drawn]
+lever_arm = { normal = "3 cm" }
+gyro_asymmetry = { normal = "30 ppm" }
+accel_asymmetry = { normal = "30 ppm" }
+accel_quadratic = { normal = "20 ug/g^2" }
+
+[site.drawn]
+deflection = { normal = "10 arcsec" }
+gravity_anomaly = { normal = "50 ug" }
+
+[screening]
+gate = "off"
+drift = "off"
+
+[procedure.calibration]
+duration = "1 h"
+
+[procedure.calibration.further]
+accel_lever = { estimated = "3 cm" }
+gyro_asymmetry = { estimated = "30 ppm" }
+accel_asymmetry = { estimated = "30 ppm" }
+accel_quadratic = { estimated = "20 ug/g^2" }
+deflection = { considered = "10 arcsec" }
+gravity_anomaly = { considered = "50 ug" }
+"#;
+
+/// Instruments of many seeds: the squared normalized error of each further state is χ² with one degree of freedom a seed.
+/// Each mean has to be in the interval that all 21 keep with a probability of 99.9 %.
+#[test]
+fn drawn_further_errors_are_as_large_as_the_filter_says() {
+    const SEEDS: u32 = 24;
+    let mut sums = std::collections::BTreeMap::new();
+    let (mut nees, mut first) = (0.0, None);
+    for seed in 1..=SEEDS {
+        let summary = summary(&DRAWN.replace("seed = 1", &format!("seed = {seed}")));
+        let calibration = &summary["calibration"];
+        for (name, score) in calibration["further"].as_object().unwrap() {
+            *sums.entry(name.clone()).or_insert(0.0) +=
+                score["normalized"].as_f64().unwrap().powi(2);
+        }
+        nees += calibration["nees"]["accel_lever"].as_f64().unwrap();
+        let arm = calibration["further"]["accel_lever_zx"]["true"].as_f64();
+        assert_ne!(arm, first, "seed {seed}");
+        first = arm;
+    }
+    assert_eq!(sums.len(), 21);
+    // Of a two-sided probability of 0.001 for 21 states: χ² with 24 degrees of freedom, by Wilson and Hilferty.
+    let (n, z) = (f64::from(SEEDS), 4.07);
+    let bound = |z: f64| (1.0 - 2.0 / (9.0 * n) + z * (2.0 / (9.0 * n)).sqrt()).powi(3);
+    for (name, sum) in &sums {
+        let mean = sum / n;
+        println!("{name:20} {mean:.2}");
+        assert!((bound(-z)..bound(z)).contains(&mean), "{name}: {mean}");
+    }
+    let arms = sums.iter().filter(|(name, _)| name.starts_with("accel_lever")).map(|(_, sum)| sum);
+    assert!((arms.sum::<f64>() / 9.0 / nees - 1.0).abs() < 1e-9);
+}
+
+/// The resolved scenario has the drawn values as given ones, and is the same run.
+#[test]
+fn a_resolved_scenario_has_the_errors_that_were_drawn() {
+    let given =
+        DRAWN.replace("[site.drawn]", "[site]\ndeflection_east = \"3 arcsec\"\n\n[site.drawn]");
+    let scenario = Scenario::parse(&given, "s.toml", Path::new("."), &[]).unwrap();
+    let draws = DrawnValues::of(&scenario, &Seeded(7));
+    let resolved = scenario.to_resolved_toml(7, &draws);
+    assert!(!resolved.contains("drawn]"), "{resolved}");
+    let again = Scenario::parse(&resolved, "r.toml", Path::new("."), &[]).unwrap();
+    let plant = scenario.plant(7, &draws);
+    assert_eq!(again.plant(7, &DrawnValues::of(&again, &Seeded(7))), plant);
+    // Draws add to what is given.
+    let without = Scenario::parse(DRAWN, "s.toml", Path::new("."), &[]).unwrap();
+    let less = without.plant(7, &draws);
+    let arcsec = octant_earth::units::ARCSEC;
+    let moved = plant.site.gravity.deflection_east_rad - less.site.gravity.deflection_east_rad;
+    assert!((moved / arcsec - 3.0).abs() < 1e-9 && less.site.gravity.deflection_east_rad != 0.0);
+}
+
 #[test]
 fn a_requirement_can_be_on_a_further_state() {
     let with = |limit: &str| {
@@ -134,7 +255,7 @@ fn what_has_no_place_for_further_states_refuses_them() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("s.toml"), LEVER).unwrap();
     for (arguments, said) in [
-        (vec!["observe", "s.toml", "--ensemble"], "procedure.calibration.further"),
+        (vec!["design", "s.toml"], "procedure.calibration.further"),
         (vec!["fmu", "build", "--scenario", "s.toml", "--out", "f"], "further"),
     ] {
         let output = program(&arguments).current_dir(folder.path()).output().unwrap();
@@ -152,4 +273,16 @@ fn what_has_no_place_for_further_states_refuses_them() {
     let output = build.current_dir(folder.path()).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(message.contains("gravity disturbance"), "{message}");
+    // The baseline isn't in the archive: its states are no obstacle.
+    let baseline = LEVER
+        .replace("[procedure.calibration.further]\naccel_lever = { estimated = \"5 cm\" }\ngravity_anomaly = { considered = \"30 ug\" }\n", "")
+        .replace("further = {}", "further = { accel_lever = { estimated = \"5 cm\" } }");
+    let scenario = Scenario::parse(&baseline, "s.toml", Path::new("."), &[]).unwrap();
+    assert!(scenario.has_further_states(Method::Baseline));
+    std::fs::write(folder.path().join("s.toml"), baseline).unwrap();
+    let mut build = program(&["fmu", "build", "--scenario", "s.toml", "--out", "f"]);
+    let output = build.current_dir(folder.path()).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{message}");
+    assert!(folder.path().join("f/calibrator_s.csv").is_file());
 }

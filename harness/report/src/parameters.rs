@@ -49,14 +49,19 @@ fn group_rows(
     calibration: &CalibrationScore,
     baseline: Option<&CalibrationScore>,
 ) -> Markup {
-    let heading = html! {
-        (title(group)) " " span.soft { (group.unit()) }
-        @if let Some(nees) = calibration.nees.get(group.name()) {
-            span.soft { " · mean (error/σ)² " (number::fixed(*nees, 2)) }
-        }
-    };
+    let heading = heading(title(group), group.unit(), calibration.nees.get(group.name()));
     let names = &NAMES[group.range()];
     rows(&heading, names, &calibration.parameters, baseline.map(|other| &other.parameters))
+}
+
+/// Renders the heading of a group: its title and unit, and the mean of its squared normalized errors.
+fn heading(title: &str, unit: &str, nees: Option<&f64>) -> Markup {
+    html! {
+        (title) " " span.soft { (unit) }
+        @if let Some(nees) = nees {
+            span.soft { " · mean (error/σ)² " (number::fixed(*nees, 2)) }
+        }
+    }
 }
 
 /// Returns the title of a group of further states.
@@ -82,7 +87,8 @@ fn further_rows(
     if names.iter().all(|name| !calibration.further.contains_key(*name)) {
         return html! {};
     }
-    let heading = html! { (further_title(group)) " " span.soft { (group.unit()) } };
+    let nees = calibration.nees.get(group.name());
+    let heading = heading(further_title(group), group.unit(), nees);
     rows(&heading, names, &calibration.further, baseline.map(|other| &other.further))
 }
 

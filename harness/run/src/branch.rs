@@ -42,7 +42,7 @@ impl Branch {
         let books = (&mut recorder, &mut watcher);
         let control = plan.control;
         let closed = method::close((driven, None), &mut source, &mut endpoint, books, control)?;
-        let truth = Some(draws.parameters);
+        let truth = Some(&draws);
         let run = method::finish(plan.scenario, plan.method, closed, recorder, watcher, truth)?;
         let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
         Ok(MethodRun { receipts, ..run })

@@ -185,7 +185,7 @@ pub fn run_as_far_as_it_goes(
         }
     };
     let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
-    let truth = true_parameters.then_some(draws.parameters);
+    let truth = true_parameters.then_some(&draws);
     let run = finish(scenario, method, closed, recorder, watcher, truth)?;
     Ok(MethodRun { receipts, ..run })
 }
@@ -388,7 +388,7 @@ pub(super) fn finish(
     closed: Closed,
     mut recorder: Recorder,
     mut watcher: Watcher,
-    truth: Option<Parameters>,
+    truth: Option<&DrawnValues>,
 ) -> Result<MethodRun, MethodError> {
     let Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short } = closed;
     if let Some(output) = last {
@@ -413,10 +413,10 @@ pub(super) fn finish(
         Method::Baseline => scenario.baseline.as_ref(),
     }
     .map(|plan| {
-        let parameters = score(truth.as_ref(), &estimate.parameters, &estimate.sigma);
-        let all = octant_plant::further::truth(&scenario.imu.extensions, &scenario.site.gravity);
-        let known = truth.is_some().then_some(&all);
-        let further = conclusion.further.as_ref().map(|found| score_further(known, found));
+        let known = truth.map(|draws| &draws.parameters);
+        let parameters = score(known, &estimate.parameters, &estimate.sigma);
+        let all = truth.map(|draws| scenario.true_further(draws));
+        let further = score_further(all.as_ref(), conclusion.further.as_ref());
         let mut health = watcher.health.counts().clone();
         health.measurements = conclusion.measurements.unwrap_or(health.measurements);
         let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
@@ -431,10 +431,10 @@ pub(super) fn finish(
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
             nis_mean: nis_mean.filter(|nis| nis.is_finite()),
-            nees: nees(&parameters),
+            nees: nees(&parameters, &further),
             worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
             parameters,
-            further: further.unwrap_or_default(),
+            further,
             refused: refused.clone(),
             health,
             sigma_hours: watcher
@@ -466,7 +466,7 @@ pub(super) fn finish(
         navigation,
         recorder,
         watcher,
-        truth,
+        truth: truth.map(|draws| draws.parameters),
         table,
         receipts: Vec::new(),
         twin: None,

@@ -25,6 +25,7 @@ use octant_faults::station::Delivered;
 use octant_recorder::{Recorder, RecorderOptions, RecorderTrouble};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters, Truth};
+use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{Method, Scenario};
 use octant_score::trace::RunTrace;
 use octant_source::configure::configurations;
@@ -62,7 +63,7 @@ pub struct SteppedRun {
     unit: Option<String>,
     recorder: Recorder,
     watcher: Watcher,
-    truth: Option<Parameters>,
+    truth: Option<DrawnValues>,
     control: Control,
     steps: Steps,
     names: Vec<(String, String)>,
@@ -160,7 +161,7 @@ impl SteppedRun {
             unit,
             recorder,
             watcher,
-            truth: told.0.then_some(draws.parameters),
+            truth: told.0.then(|| draws.clone()),
             control: Control::default(),
             steps: Steps::new(total),
             names,
@@ -305,7 +306,7 @@ impl SteppedRun {
         let receipts = faulted.into_iter().chain(self.functions.receipts()).collect();
         let (scenario, method) = (&self.scenario, self.method);
         let (recorder, watcher) = (self.recorder, self.watcher);
-        let run = method::finish(scenario, method, closed, recorder, watcher, self.truth)?;
+        let run = method::finish(scenario, method, closed, recorder, watcher, self.truth.as_ref())?;
         let label = match self.unit {
             Some(name) => format!("{name}, a unit of the host program"),
             None => run.label.clone(),

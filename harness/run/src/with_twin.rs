@@ -92,7 +92,7 @@ fn both(
     words.into_iter().for_each(|event| keeper.books.recorder.event(event));
     let books = (&mut recorder, &mut watcher);
     let closed = method::close((driven, None), &mut source, &mut endpoint, books, control)?;
-    let truth = Some(draws.parameters);
+    let truth = Some(&draws);
     let run = method::finish(scenario, method, closed, recorder, watcher, truth)?;
     let receipts = faulted.station.receipts();
     Ok(MethodRun { receipts, twin: Some(Arc::new(twin?)), ..run })

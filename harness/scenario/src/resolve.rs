@@ -12,6 +12,9 @@ use octant_earth::{UnitQuaternion, Vector3, rotation};
 use octant_plant::sea::Spectrum;
 use octant_plant::{config as plant, draw};
 use octant_sample::Parameters;
+use octant_sample::further::FURTHER_COUNT;
+#[cfg(doc)]
+use octant_sample::further::{FURTHER_NAMES, FurtherGroup};
 #[cfg(doc)]
 use octant_sample::parameters::ParameterGroup;
 
@@ -19,6 +22,9 @@ use octant_sample::parameters::ParameterGroup;
 pub trait Drawing {
     /// Draws true parameters from the distribution of each group, in the order of [`ParameterGroup::ALL`].
     fn parameters(&self, distributions: &[ParameterDistribution; 7]) -> Parameters;
+    /// Draws errors beside the parameters, in the order of [`FURTHER_NAMES`], from the distribution of each group, in the
+    /// order of [`FurtherGroup::ALL`]; zero where there is none.
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT];
     /// Draws attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad)
     /// and velocity (m/s).
     fn alignment_error(
@@ -51,6 +57,12 @@ impl Drawing for Seeded {
             accel_misalignment: of_group(accel_misalignment),
         };
         draw::parameters(self.0, &draws)
+    }
+
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT] {
+        let none = draw::Draw::Constant([0.0; 9]);
+        let draws = distributions.each_ref().map(|of| of.as_ref().map_or(none, of_group));
+        draw::further(self.0, &draws)
     }
 
     fn alignment_error(
@@ -94,6 +106,8 @@ fn of_group<const N: usize>(distribution: &ParameterDistribution) -> draw::Draw<
 pub struct DrawnValues {
     /// True parameters.
     pub parameters: Parameters,
+    /// Errors beside the parameters, in the order of [`FURTHER_NAMES`]: they add to those that the scenario gives.
+    pub further: [f64; FURTHER_COUNT],
     /// Roll, pitch, yaw, surge, sway, heave of the ship: components with their phases, then those of
     /// the spectrum. Empty if static.
     pub motion: [Vec<plant::Sinusoid>; 6],
@@ -127,6 +141,7 @@ impl DrawnValues {
         };
         Self {
             parameters: drawing.parameters(&scenario.parameters),
+            further: drawing.further(&scenario.further),
             motion,
             attitude_error_rad,
             velocity_error_mps,
@@ -162,16 +177,32 @@ impl Scenario {
     /// Configuration of the plant.
     #[must_use]
     pub fn plant(&self, seed: u64, draws: &DrawnValues) -> plant::PlantConfig {
+        let (extensions, gravity) = self.true_errors(draws);
         plant::PlantConfig {
             sample_period_ns: self.sample_period_ns,
             seed,
             calibration_samples: self.calibration_samples(),
-            site: self.site,
+            site: plant::PlantSite { gravity, ..self.site },
             motion: self.plant_motion(draws),
             turntable: self.turntable,
-            imu: plant::Imu { parameters: draws.parameters, ..self.imu.clone() },
+            imu: plant::Imu { parameters: draws.parameters, extensions, ..self.imu },
             aiding: self.aiding,
         }
+    }
+
+    /// Errors of the instrument beside its parameters, and of gravity, with their draws.
+    fn true_errors(&self, draws: &DrawnValues) -> (plant::Extensions, plant::GravityDisturbance) {
+        let (mut extensions, mut gravity) = (self.imu.extensions.clone(), self.site.gravity);
+        octant_plant::further::add(&draws.further, &mut extensions, &mut gravity);
+        (extensions, gravity)
+    }
+
+    /// True values of the errors beside the parameters, SI, in the order of [`FURTHER_NAMES`]; `None` for a process that
+    /// changes over time.
+    #[must_use]
+    pub fn true_further(&self, draws: &DrawnValues) -> [Option<f64>; FURTHER_COUNT] {
+        let (extensions, gravity) = self.true_errors(draws);
+        octant_plant::further::truth(&extensions, &gravity)
     }
 
     fn plant_motion(&self, draws: &DrawnValues) -> plant::Motion {
@@ -339,6 +370,18 @@ mod tests {
             }
             assert_eq!(DrawnValues { parameters: all.parameters, ..other }, all, "{change}");
         }
+        // Errors beside the parameters, all groups of them.
+        let drawn_too = "[imu.extensions.drawn]\nlever_arm = { normal = \"3 cm\" }\n\
+                         gyro_asymmetry = { uniform = \"30 ppm\" }\naccel_asymmetry = { normal = \"30 ppm\" }\n\
+                         accel_quadratic = { normal = \"20 ug/g^2\" }\n[site.drawn]\n\
+                         deflection = { normal = \"10 arcsec\" }\ngravity_anomaly = { normal = \"50 ug\" }\n";
+        let other = drawn(&format!("{ship}{drawn_too}"));
+        let processes = 18..24;
+        for (index, value) in other.further.iter().enumerate() {
+            assert_eq!(*value == 0.0, processes.contains(&index), "{index}");
+        }
+        assert_eq!(all.further, [0.0; 27]);
+        assert_eq!(DrawnValues { further: all.further, ..other }, all);
         // A spectrum beside a component, or another alignment, doesn't change other draws either.
         let spectrum = "spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n";
         let other = drawn(&format!("{ship}{spectrum}[procedure.alignment]\ntilt = \"0.1 deg\"\n"));

@@ -8,6 +8,7 @@ use super::keys::{Kind, SCENARIO, Section};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
 use super::quantity::UnitDimension;
 use super::resolve::DrawnValues;
+use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -28,6 +29,7 @@ impl Scenario {
             let constant = table(vec![("constant", values)]);
             document.set_at(&format!("imu.{}", group.name()), node(constant));
         }
+        self.write_drawn(&mut document, draws);
         if let MotionSpec::Dockside(_) = &self.motion {
             document.remove_at("motion.ship.spectrum");
             document.set_at("motion.ship.preset", node(DocumentValue::Text("calm".to_owned())));
@@ -77,6 +79,47 @@ impl Scenario {
         let mut out: String = about.iter().map(|line| format!("# {line}\n")).collect();
         write_table(&document, SCENARIO, "", &mut out);
         Ok(out)
+    }
+
+    /// Writes the errors beside the parameters that were drawn as given ones.
+    fn write_drawn(&self, document: &mut DocumentTable, draws: &DrawnValues) {
+        let errors = self.true_further(draws);
+        for (group, _) in FurtherGroup::ALL.iter().zip(&self.further).filter(|(_, of)| of.is_some())
+        {
+            let values = errors[group.range()].iter().map(|error| error.unwrap_or(0.0));
+            let values: Vec<f64> = values.collect();
+            let mut set = |key: &str, value| document.set_at(key, node(value));
+            let extension = |dimension| quantities(dimension, &values);
+            let one = |dimension: UnitDimension, index: usize| text(dimension.write(values[index]));
+            match group {
+                FurtherGroup::AccelLever => {
+                    for (axis, arm) in ["x", "y", "z"].into_iter().zip(values.chunks(3)) {
+                        let arm = quantities(UnitDimension::LENGTH, arm);
+                        set(&format!("imu.extensions.lever_arm.{axis}"), arm);
+                    }
+                }
+                FurtherGroup::GyroAsymmetry => {
+                    set("imu.extensions.gyro_asymmetry", extension(UnitDimension::RATIO));
+                }
+                FurtherGroup::AccelAsymmetry => {
+                    set("imu.extensions.accel_asymmetry", extension(UnitDimension::RATIO));
+                }
+                FurtherGroup::AccelQuadratic => {
+                    let values = extension(UnitDimension::ACCEL_QUADRATIC);
+                    set("imu.extensions.accel_quadratic", values);
+                }
+                FurtherGroup::Deflection => {
+                    set("site.deflection_north", one(UnitDimension::SMALL_ANGLE, 0));
+                    set("site.deflection_east", one(UnitDimension::SMALL_ANGLE, 1));
+                }
+                FurtherGroup::GravityAnomaly => {
+                    set("site.gravity_anomaly", one(UnitDimension::ACCEL_BIAS, 0));
+                }
+                FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => {}
+            }
+        }
+        document.remove_at("imu.extensions.drawn");
+        document.remove_at("site.drawn");
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.

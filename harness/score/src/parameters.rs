@@ -37,13 +37,14 @@ pub fn score(
         .collect()
 }
 
-/// Scores the further states that the core has, in the units for users. Those that are considered have an estimate of
-/// zero, and their prior as σ.
+/// Scores the further states that the core has, in the units for users; none, if it has none. Those that are considered
+/// have an estimate of zero, and their prior as σ.
 #[must_use]
 pub fn score_further(
     truth: Option<&[Option<f64>; FURTHER_COUNT]>,
-    found: &FurtherEstimates,
+    found: Option<&FurtherEstimates>,
 ) -> BTreeMap<String, ParameterScore> {
+    let Some(found) = found else { return BTreeMap::new() };
     let of = |group: FurtherGroup| {
         let unit = group.si_per_unit();
         let score = move |index: usize| {
@@ -65,22 +66,26 @@ pub fn score_further(
     FurtherGroup::ALL.into_iter().flat_map(of).collect()
 }
 
-/// Mean of e²/σ² over the estimated parameters of each group, by the name of the group: near 1 if the
-/// claimed σ is right. Correlations are ignored; [`nees_full`] includes them.
+/// Mean of e²/σ² over the estimated parameters of each group, and over the states of each further group, by the name of
+/// the group: near 1 if the claimed σ is right. Correlations are ignored; [`nees_full`] includes them.
 #[must_use]
-pub fn nees(parameters: &BTreeMap<String, ParameterScore>) -> BTreeMap<String, f64> {
-    let mut groups = BTreeMap::new();
-    for group in ParameterGroup::ALL {
-        let normalized: Vec<f64> = group
-            .range()
-            .filter_map(|i| parameters.get(NAMES[i]).and_then(|p| p.normalized))
-            .collect();
-        if !normalized.is_empty() {
-            let sum: f64 = normalized.iter().map(|n| n * n).sum();
-            groups.insert(group.name().to_owned(), sum / normalized.len() as f64);
-        }
-    }
-    groups
+pub fn nees(
+    parameters: &BTreeMap<String, ParameterScore>,
+    further: &BTreeMap<String, ParameterScore>,
+) -> BTreeMap<String, f64> {
+    let of = |name: &'static str, members: &[&str], scores: &BTreeMap<String, ParameterScore>| {
+        let normalized = members.iter().filter_map(|member| scores.get(*member)?.normalized);
+        let squares: Vec<f64> = normalized.map(|n| n * n).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        (!squares.is_empty()).then(|| (name.to_owned(), mean))
+    };
+    let of_parameters = ParameterGroup::ALL
+        .into_iter()
+        .map(|group| of(group.name(), &NAMES[group.range()], parameters));
+    let of_further = FurtherGroup::ALL
+        .into_iter()
+        .map(|group| of(group.name(), &FURTHER_NAMES[group.range()], further));
+    of_parameters.chain(of_further).flatten().collect()
 }
 
 /// Number of parameters of the largest group.

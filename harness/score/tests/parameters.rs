@@ -1,8 +1,12 @@
 //! Estimates against truth.
 
 use octant_sample::Parameters;
+use octant_sample::further::{FURTHER_COUNT, FurtherEstimates, FurtherGroup};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
-use octant_score::parameters::{beyond, nees, nees_full, score, worst_normalized_error};
+use octant_score::parameters::{
+    beyond, nees, nees_full, score, score_further, worst_normalized_error,
+};
+use std::collections::BTreeMap;
 
 fn bias_error(error: [f64; 3]) -> (Parameters, Parameters) {
     let truth = Parameters { gyro_bias: [1e-8, -2e-8, 3e-8], ..Parameters::default() };
@@ -27,7 +31,7 @@ fn errors_are_in_users_units_and_normalized_by_sigma() {
     assert!((y.normalized.unwrap() + 4.0).abs() < 1e-9);
     assert_eq!(scores["g_zz"].sigma, None, "g_zz was not estimated");
     // Expected: (2² + 4² + 0²) / 3
-    let nees = nees(&scores);
+    let nees = nees(&scores, &BTreeMap::new());
     assert!((nees["gyro_bias"] - 20.0 / 3.0).abs() < 1e-8);
     assert_eq!(nees.len(), 1, "only the gyro biases were estimated");
     assert_eq!(worst_normalized_error(&scores, &["gyro_bias_x", "g_zz"]), None);
@@ -35,12 +39,32 @@ fn errors_are_in_users_units_and_normalized_by_sigma() {
     assert!((worst_normalized_error(&scores, &["gyro_bias_x"]).unwrap() - 4.0).abs() < 1e-9);
 }
 
+/// Errors of 1 σ and 3 σ: the mean of the squares is 5. A process has no truth, and a group that is off isn't there.
+#[test]
+fn further_groups_have_their_mean_squares() {
+    let mut found = FurtherEstimates { value: [0.0; FURTHER_COUNT], sigma: [0.0; FURTHER_COUNT] };
+    let mut truth = [Some(0.0); FURTHER_COUNT];
+    let deflection = FurtherGroup::Deflection.range();
+    found.value[deflection.start] = 1e-5;
+    found.value[deflection.start + 1] = -3e-5;
+    for group in [FurtherGroup::Deflection, FurtherGroup::GyroGaussMarkov] {
+        found.sigma[group.range()].fill(1e-5);
+    }
+    truth[FurtherGroup::GyroGaussMarkov.range()].fill(None);
+    let scores = score_further(Some(&truth), Some(&found));
+    assert_eq!(scores.len(), 5);
+    let nees = nees(&BTreeMap::new(), &scores);
+    assert_eq!(nees.keys().collect::<Vec<_>>(), ["deflection"]);
+    assert!((nees["deflection"] - 5.0).abs() < 1e-12);
+    assert!(score_further(Some(&truth), None).is_empty());
+}
+
 #[test]
 fn without_truth_there_is_no_error() {
     let scores = score(None, &Parameters::default(), &[1.0; PARAMETER_COUNT]);
     assert_eq!(scores.len(), PARAMETER_COUNT);
     assert!(scores.values().all(|p| p.error.is_none() && p.r#true.is_none()));
-    assert!(nees(&scores).is_empty());
+    assert!(nees(&scores, &BTreeMap::new()).is_empty());
     assert_eq!(worst_normalized_error(&scores, &[]), None);
 }
 

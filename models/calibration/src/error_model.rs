@@ -89,7 +89,7 @@ impl Transition {
 /// Advances columns of a transition's moving rows over an interval, as [`Transition::advance`]:
 /// `input` is their contribution to φ and δv in it. Those of `accelerometers` drive the velocity.
 #[inline(always)]
-pub(crate) fn advance_columns<const N: usize>(
+pub fn advance_columns<const N: usize>(
     rows: &mut [[f64; N]; MOVING],
     model: ErrorModel,
     interval: &MotionInterval,

@@ -14,9 +14,9 @@ mod solution;
 mod sub_step;
 mod sway;
 
+pub use further::{FURTHER_ROW, FurtherEffects, FurtherRow};
 pub use measurement::MeasurementResult;
-use noise::add_bias_walk;
-pub use noise::add_process_noise;
+pub use noise::{add_bias_walk, add_process_noise};
 pub use sub_step::{SensorIntegrals, sub_step_samples};
 
 use crate::config::{

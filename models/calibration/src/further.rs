@@ -34,4 +34,5 @@
 pub(crate) mod compensation;
 pub(crate) mod size_effect;
 
+pub use compensation::FurtherIntegrals;
 pub use octant_sample::further::{FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup};

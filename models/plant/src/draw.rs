@@ -1,4 +1,4 @@
-//! Drawing an instrument from a seed: true parameters, initial alignment, phases of the sway.
+//! Drawing an instrument from a seed: true parameters, further errors, initial alignment, phases of the sway.
 //!
 //! Every group has its own stream, so that a change of one distribution changes no other group.
 
@@ -7,6 +7,7 @@ use octant_random::normal::{Ziggurat, uniform};
 use octant_random::philox::block;
 use octant_random::stream::{Phase, key};
 use octant_sample::Parameters;
+use octant_sample::further::{FURTHER_COUNT, FurtherGroup};
 
 /// Distribution of a group of N parameters, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +102,19 @@ pub fn parameters(seed: u64, draws: &ParameterDraws) -> Parameters {
     }
 }
 
+/// Draws the errors beside the parameters, in the order of [`octant_sample::further::FURTHER_NAMES`], from the
+/// distribution of each group. The stream of a group is `draw.NAME`, and its errors are the first numbers of it.
+#[must_use]
+pub fn further(seed: u64, draws: &[Draw<9>; 8]) -> [f64; FURTHER_COUNT] {
+    let mut all = [0.0; FURTHER_COUNT];
+    for (of, draw) in FurtherGroup::ALL.iter().zip(draws) {
+        let drawn = group(seed, &format!("draw.{}", of.name()), draw);
+        let errors = &mut all[of.range()];
+        errors.copy_from_slice(&drawn[..errors.len()]);
+    }
+    all
+}
+
 /// Error of an initial alignment: computed − true.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AlignmentError {
@@ -151,6 +165,30 @@ mod tests {
             assert!((other.g_dependent[i] / all.g_dependent[i] - 10.0).abs() < 1e-12);
         }
         assert_ne!(parameters(4, &ParameterDraws::table_1()).gyro_scale, all.gyro_scale);
+    }
+
+    /// Each group has numbers of its own, its own alone, and none of the parameters'.
+    #[test]
+    fn further_errors_are_drawn_apart() {
+        let none = Draw::Constant([0.0; 9]);
+        let all = further(3, &[Draw::Normal { sigma: 1.0 }; 8]);
+        let parameters = parameters(3, &ParameterDraws::table_1()).to_array();
+        for (place, of) in FurtherGroup::ALL.into_iter().enumerate() {
+            let mut draws = [none; 8];
+            draws[place] = Draw::Normal { sigma: 2.0 };
+            for (index, value) in further(3, &draws).into_iter().enumerate() {
+                let expected = if of.range().contains(&index) { 2.0 * all[index] } else { 0.0 };
+                assert_eq!(value, expected, "{}: {index}", of.name());
+            }
+        }
+        let (mut sorted, count) = (all.to_vec(), all.len());
+        sorted.extend(parameters.iter().map(|value| value / (0.005 * DEG_PER_HOUR)));
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        assert_eq!(sorted.len(), count + parameters.len());
+        let mut uniform = [none; 8];
+        uniform[0] = Draw::Uniform { half_width: 0.5 };
+        assert!(further(3, &uniform)[..9].iter().all(|value| value.abs() < 0.5 && *value != 0.0));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
 use crate::plan::Case;
 use crate::store::CampaignResults;
 use crate::stream_key::StreamKey;
+use octant_sample::further::{FURTHER_COUNT, FURTHER_NAMES};
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_scenario::Method;
 use octant_score::summary::{CalibrationScore, NavigationScore, Summary};
@@ -15,6 +16,8 @@ use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
+/// Number of columns of parameters and of further states.
+const STATES: usize = PARAMETER_COUNT + FURTHER_COUNT;
 /// Number of scored errors of attitude and velocity.
 const SOLUTION: usize = 5;
 
@@ -41,7 +44,8 @@ struct ErrorColumn {
 
 /// Errors of the runs of a method with a published calibration.
 ///
-/// The columns are those of the parameters, in the order of [`NAMES`], of latitude and of longitude at each of the
+/// The columns are those of the parameters, in the order of [`NAMES`], of the further states, in the order of
+/// [`FURTHER_NAMES`], of latitude and of longitude at each of the
 /// times, and the final ones of attitude and velocity.
 #[derive(Debug)]
 pub(super) struct MethodSample {
@@ -161,7 +165,9 @@ impl RunErrors {
     fn of(summary: &Summary, method: Method, hours: &[f64]) -> Option<Self> {
         let (calibration, navigation) = of(summary, method)?;
         let parameter = |name: &&str| calibration.parameters.get(*name)?.error;
-        let mut columns: Vec<Option<f64>> = NAMES.iter().map(parameter).collect();
+        let further = |name: &&str| calibration.further.get(*name)?.error;
+        let mut columns: Vec<Option<f64>> =
+            NAMES.iter().map(parameter).chain(FURTHER_NAMES.iter().map(further)).collect();
         let at_hours: Vec<Option<[f64; 2]>> =
             hours.iter().map(|hours| at(navigation?, *hours)).collect();
         for axis in 0..2 {
@@ -182,7 +188,7 @@ impl RunErrors {
 impl MethodSample {
     /// Makes a sample without runs, whose drift is read at some times, h.
     pub(super) fn new(method: Method, hours: Vec<f64>) -> Self {
-        let columns = vec![ErrorColumn::new(); PARAMETER_COUNT + 2 * hours.len() + SOLUTION];
+        let columns = vec![ErrorColumn::new(); STATES + 2 * hours.len() + SOLUTION];
         Self {
             method,
             hours,
@@ -244,22 +250,23 @@ impl MethodSample {
         })
     }
 
-    /// Returns the errors of a parameter, by its place in [`NAMES`].
-    pub(super) fn parameter(&self, index: usize) -> Option<ErrorFigures> {
-        self.figures(Some(index).filter(|index| *index < PARAMETER_COUNT)?)
+    /// Returns the errors of a parameter, by its place in [`NAMES`], or of a further state after those, by its place in
+    /// [`FURTHER_NAMES`].
+    pub(super) fn state(&self, index: usize) -> Option<ErrorFigures> {
+        self.figures(Some(index).filter(|index| *index < STATES)?)
     }
 
     /// Returns the errors of an axis, 0 latitude and 1 longitude, at a time by its place, arcmin.
     pub(super) fn drift(&self, axis: usize, time: usize) -> Option<ErrorFigures> {
         let time = Some(time).filter(|time| *time < self.hours.len())?;
-        self.figures(PARAMETER_COUNT + axis * self.hours.len() + time)
+        self.figures(STATES + axis * self.hours.len() + time)
     }
 
     /// Returns the final errors of attitude and velocity in their order. `None` where
     /// a run doesn't have it: results from before they were scored have none.
     pub(super) fn finals(&self) -> impl Iterator<Item = Option<FinalErrors>> {
         let names = self.final_names.filter(|_| !self.is_without_navigation);
-        let first = PARAMETER_COUNT + 2 * self.hours.len();
+        let first = STATES + 2 * self.hours.len();
         let all = names.into_iter().flatten().enumerate();
         all.map(move |(place, (name, unit))| {
             Some(FinalErrors { name, unit, figures: self.figures(first + place)? })

@@ -679,6 +679,77 @@ class ImuExtensionsAccelGaussMarkov(Section):
     sigma: str
     """Stationary standard deviation. Takes an acceleration such as "100 ug"."""
 
+class ImuExtensionsDrawnAccelAsymmetry(Section):
+    """Asymmetry of the accelerometers' scale factors, three. Takes a table with one of normal, uniform. Left
+    out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a ratio such as "30
+    ppm". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a ratio such as "30 ppm". Left
+    out: another is given."""
+
+class ImuExtensionsDrawnAccelQuadratic(Section):
+    """Second-order coefficients of the accelerometers, three. Takes a table with one of normal, uniform. Left
+    out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a second-order
+    coefficient such as "10 ug/g^2". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a second-order coefficient
+    such as "10 ug/g^2". Left out: another is given."""
+
+class ImuExtensionsDrawnGyroAsymmetry(Section):
+    """Asymmetry of the gyros' scale factors, three. Takes a table with one of normal, uniform. Left out: as
+    given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a ratio such as "30
+    ppm". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a ratio such as "30 ppm". Left
+    out: another is given."""
+
+class ImuExtensionsDrawnLeverArm(Section):
+    """Positions of the accelerometers, nine. Takes a table with one of normal, uniform. Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a length such as
+    "0.15 m". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a length such as "0.15 m".
+    Left out: another is given."""
+
+class ImuExtensionsDrawn(Section):
+    """Errors that the seed draws, each group from its own stream; they add to the values given above. Takes a
+    table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic. Left out: nothing is drawn."""
+
+    @property
+    def accel_asymmetry(self) -> ImuExtensionsDrawnAccelAsymmetry:
+        """Asymmetry of the accelerometers' scale factors, three. Takes a table with one of normal, uniform. Left
+        out: as given."""
+    @accel_asymmetry.setter
+    def accel_asymmetry(self, value: ImuExtensionsDrawnAccelAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_quadratic(self) -> ImuExtensionsDrawnAccelQuadratic:
+        """Second-order coefficients of the accelerometers, three. Takes a table with one of normal, uniform.
+        Left out: as given."""
+    @accel_quadratic.setter
+    def accel_quadratic(self, value: ImuExtensionsDrawnAccelQuadratic | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_asymmetry(self) -> ImuExtensionsDrawnGyroAsymmetry:
+        """Asymmetry of the gyros' scale factors, three. Takes a table with one of normal, uniform. Left out: as
+        given."""
+    @gyro_asymmetry.setter
+    def gyro_asymmetry(self, value: ImuExtensionsDrawnGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def lever_arm(self) -> ImuExtensionsDrawnLeverArm:
+        """Positions of the accelerometers, nine. Takes a table with one of normal, uniform. Left out: as given."""
+    @lever_arm.setter
+    def lever_arm(self, value: ImuExtensionsDrawnLeverArm | Mapping[str, Any]) -> None: ...
+
 class ImuExtensionsGyroGaussMarkov(Section):
     """First-order Gauss-Markov gyro bias. Takes a table with sigma, correlation_time. Left out: none."""
 
@@ -740,7 +811,7 @@ class ImuExtensions(Section):
     """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
     accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
     gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
-    gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew."""
+    gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew, drawn."""
 
     accel_asymmetry: Sequence[str]
     """Asymmetry of the accelerometers' scale factors a, x, y, z: a reading is too large by a |specific force|.
@@ -763,6 +834,12 @@ class ImuExtensions(Section):
     accel_range: str
     """Specific force at which the accelerometers saturate; 0: the format's own range. Takes an acceleration such
     as "9.81 m/s^2". Default: "40 g"."""
+    @property
+    def drawn(self) -> ImuExtensionsDrawn:
+        """Errors that the seed draws, each group from its own stream; they add to the values given above. Takes
+        a table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic. Left out: nothing is drawn."""
+    @drawn.setter
+    def drawn(self, value: ImuExtensionsDrawn | Mapping[str, Any]) -> None: ...
     gyro_asymmetry: Sequence[str]
     """Asymmetry of the gyros' scale factors a, x, y, z: a reading is too large by a |rate|. Takes an array of 3,
     each a ratio such as "30 ppm". Default: ["0 ppm", "0 ppm", "0 ppm"]."""
@@ -891,7 +968,7 @@ class Imu(Section):
         """What the sensors have and the filter doesn't model. Takes a table with gyro_gauss_markov,
         accel_gauss_markov, gyro_rate_random_walk, gyro_bias_instability, accel_bias_instability,
         gyro_quantization, accel_quantization, gyro_range, accel_range, temperature, vibration, lever_arm,
-        gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew."""
+        gyro_asymmetry, accel_asymmetry, accel_quadratic, time_skew, drawn."""
     @extensions.setter
     def extensions(self, value: ImuExtensions | Mapping[str, Any]) -> None: ...
     @property
@@ -1440,15 +1517,57 @@ class Screening(Section):
     """Identical counts in a row that make a channel stuck. Takes "off", or a whole number from 2 to 1000000.
     Default: 8."""
 
+class SiteDrawnDeflection(Section):
+    """Deflection of the vertical, north and east. Takes a table with one of normal, uniform. Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an angle such as "40 arcsec".
+    Left out: another is given."""
+
+class SiteDrawnGravityAnomaly(Section):
+    """True minus normal gravity. Takes a table with one of normal, uniform. Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an acceleration such
+    as "100 ug". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an acceleration such as "100
+    ug". Left out: another is given."""
+
+class SiteDrawn(Section):
+    """Errors of gravity that the seed draws, each group from its own stream; they add to the values given above.
+    Takes a table with deflection, gravity_anomaly. Left out: nothing is drawn."""
+
+    @property
+    def deflection(self) -> SiteDrawnDeflection:
+        """Deflection of the vertical, north and east. Takes a table with one of normal, uniform. Left out: as
+        given."""
+    @deflection.setter
+    def deflection(self, value: SiteDrawnDeflection | Mapping[str, Any]) -> None: ...
+    @property
+    def gravity_anomaly(self) -> SiteDrawnGravityAnomaly:
+        """True minus normal gravity. Takes a table with one of normal, uniform. Left out: as given."""
+    @gravity_anomaly.setter
+    def gravity_anomaly(self, value: SiteDrawnGravityAnomaly | Mapping[str, Any]) -> None: ...
+
 class Site(Section):
     """Where the instrument stands. Takes a table with latitude, longitude, height, deflection_north,
-    deflection_east, gravity_anomaly."""
+    deflection_east, gravity_anomaly, drawn."""
 
     deflection_east: str
     """Deflection of the vertical to the east (η). Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
     deflection_north: str
     """Deflection of the vertical to the north (ξ): positive where the astronomic zenith is north of the geodetic
     one. Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    @property
+    def drawn(self) -> SiteDrawn:
+        """Errors of gravity that the seed draws, each group from its own stream; they add to the values given
+        above. Takes a table with deflection, gravity_anomaly. Left out: nothing is drawn."""
+    @drawn.setter
+    def drawn(self, value: SiteDrawn | Mapping[str, Any]) -> None: ...
     gravity_anomaly: str
     """True minus normal gravity. Takes an acceleration such as "100 ug". Default: "0 ug"."""
     height: str
@@ -2336,7 +2455,7 @@ class Scenario(Section):
     @property
     def site(self) -> Site:
         """Where the instrument stands. Takes a table with latitude, longitude, height, deflection_north,
-        deflection_east, gravity_anomaly."""
+        deflection_east, gravity_anomaly, drawn."""
     @site.setter
     def site(self, value: Site | Mapping[str, Any]) -> None: ...
     @property

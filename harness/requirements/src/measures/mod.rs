@@ -96,7 +96,8 @@ fn keys(place: &Place) -> Vec<&'static str> {
         Place::Each { names: Names::Parameters, .. } => NAMES.to_vec(),
         Place::Each { names: Names::Further, .. } => FURTHER_NAMES.to_vec(),
         Place::Each { names: Names::Groups, .. } => {
-            ParameterGroup::ALL.map(ParameterGroup::name).to_vec()
+            let further = FurtherGroup::ALL.map(FurtherGroup::name);
+            ParameterGroup::ALL.map(ParameterGroup::name).into_iter().chain(further).collect()
         }
     }
 }

@@ -1,7 +1,8 @@
-//! Keys of the errors that a filter can take into account beside the thirty parameters.
+//! Keys of the errors that a filter can take into account beside the thirty parameters, and of their draws.
 
 use super::definition::Bounds;
 use super::table::{keys, si, table};
+use crate::model::ParameterDistribution;
 use crate::quantity::UnitDimension;
 use octant_calibration::config::FurtherUse;
 
@@ -61,5 +62,58 @@ keys! {
             "Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be considered.";
         gravity_anomaly: Option<AccelUse> = table::<AccelUse>(), absent("off"),
             "True minus normal gravity. On a base at rest it can't be told from a common scale factor of the accelerometers: to be considered.";
+    }
+}
+
+/// Keys of the draw of one group of errors.
+macro_rules! drawn {
+    ($name:ident, $dimension:expr) => {
+        keys! {
+            /// Distribution of a group's draws.
+            pub(crate) one of $name {
+                normal: Option<f64> = si(&[$dimension], Bounds::NotNegative),
+                    "Drawn from a normal distribution of this standard deviation, each entry alone.";
+                uniform: Option<f64> = si(&[$dimension], Bounds::NotNegative),
+                    "Drawn evenly within plus and minus this half width, each entry alone.";
+            }
+        }
+
+        impl $name {
+            /// Distribution of each entry.
+            pub(crate) fn distribution(&self) -> ParameterDistribution {
+                let uniform = self.uniform.map(ParameterDistribution::Uniform);
+                uniform.unwrap_or(ParameterDistribution::Normal(self.normal.unwrap_or(0.0)))
+            }
+        }
+    };
+}
+drawn!(DrawnLengths, UnitDimension::LENGTH);
+drawn!(DrawnRatios, UnitDimension::RATIO);
+drawn!(DrawnQuadratics, UnitDimension::ACCEL_QUADRATIC);
+drawn!(DrawnAngles, UnitDimension::SMALL_ANGLE);
+drawn!(DrawnAccelerations, UnitDimension::ACCEL_BIAS);
+
+keys! {
+    /// `[imu.extensions.drawn]`.
+    pub(crate) struct DrawnExtensionsKeys {
+        lever_arm: Option<DrawnLengths> = table::<DrawnLengths>(), absent("as given"),
+            "Positions of the accelerometers, nine.";
+        gyro_asymmetry: Option<DrawnRatios> = table::<DrawnRatios>(), absent("as given"),
+            "Asymmetry of the gyros' scale factors, three.";
+        accel_asymmetry: Option<DrawnRatios> = table::<DrawnRatios>(), absent("as given"),
+            "Asymmetry of the accelerometers' scale factors, three.";
+        accel_quadratic: Option<DrawnQuadratics> = table::<DrawnQuadratics>(), absent("as given"),
+            "Second-order coefficients of the accelerometers, three.";
+    }
+}
+
+keys! {
+    /// `[site.drawn]`.
+    pub(crate) struct DrawnSiteKeys {
+        deflection: Option<DrawnAngles> = table::<DrawnAngles>(), absent("as given"),
+            "Deflection of the vertical, north and east.";
+        gravity_anomaly: Option<DrawnAccelerations>
+            = table::<DrawnAccelerations>(), absent("as given"),
+            "True minus normal gravity.";
     }
 }

@@ -2,6 +2,7 @@
 
 use super::definition::Bounds;
 use super::drive::DriveKeys;
+use super::further::DrawnExtensionsKeys;
 use super::table::{At, choice, keys, si, si_array, si_list, table, time, within};
 use crate::model::ParameterDistribution;
 use crate::quantity::UnitDimension;
@@ -118,6 +119,9 @@ keys! {
             "Second-order coefficients of the accelerometers (K2), x, y, z.";
         time_skew: f64 = time(-1.0, 1.0, "within ±1 s"), "0 s",
             "Stamp minus true time of validity of the inertial data, against the gimbal angles.";
+        drawn: Option<DrawnExtensionsKeys>
+            = table::<DrawnExtensionsKeys>(), absent("nothing is drawn"),
+            "Errors that the seed draws, each group from its own stream; they add to the values given above.";
     }
 }
 

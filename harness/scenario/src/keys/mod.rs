@@ -38,7 +38,10 @@ pub(crate) use drive::DriveKeys;
 pub use faults::dimension as fault_dimension;
 pub(crate) use faults::{Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
-pub(crate) use further::FurtherKeys;
+pub(crate) use further::{
+    AccelUse, AngleUse, DrawnAccelerations, DrawnAngles, DrawnLengths, DrawnQuadratics,
+    DrawnRatios, FurtherKeys, GyroUse, LeverUse, QuadraticUse, RatioUse,
+};
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;
 pub(crate) use run::{

@@ -4,6 +4,7 @@ use super::calibration::{BASELINE, ProcedureKeys};
 use super::definition::{Bounds, Kind, SCHEMA};
 use super::faults::FAULT;
 use super::fmu::EndpointFmuKeys;
+use super::further::DrawnSiteKeys;
 use super::instrument::{ImuKeys, TurntableKeys};
 use super::link::LinkKeys;
 use super::screening::{ScreeningKeys, on_off};
@@ -107,6 +108,8 @@ keys! {
         gravity_anomaly: f64
             = within(&[UnitDimension::ACCEL_BIAS], -0.01, 0.01, "within ±0.01 m/s^2 (1000 mGal)"), "0 ug",
             "True minus normal gravity.";
+        drawn: Option<DrawnSiteKeys> = table::<DrawnSiteKeys>(), absent("nothing is drawn"),
+            "Errors of gravity that the seed draws, each group from its own stream; they add to the values given above.";
     }
 }
 

@@ -14,6 +14,8 @@ use octant_calibration::config as core;
 use octant_faults::station::FaultSpec;
 use octant_faults::{FaultBuildError, Setup, Station};
 use octant_plant::config as plant;
+#[cfg(doc)]
+use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
 use std::path::PathBuf;
 
@@ -35,6 +37,9 @@ pub struct Scenario {
     pub imu: plant::Imu,
     /// Distribution of each group of true parameters, in the order of [`ParameterGroup::ALL`].
     pub parameters: [ParameterDistribution; 7],
+    /// Draws of the errors beside the parameters about those in `imu` and `site`, in the order of
+    /// [`FurtherGroup::ALL`]; `None`: not drawn.
+    pub further: [Option<ParameterDistribution>; 8],
     /// The two gimbals.
     pub turntable: plant::TurntableConfig,
     /// Real table with these gimbals, if there is one.
@@ -162,13 +167,15 @@ fn known_faults(id: &str, known: &[String]) -> String {
 }
 
 impl Scenario {
-    /// Returns whether a filter of the scenario considers or estimates errors beside the parameters.
+    /// Returns whether the filter of a method considers or estimates errors beside the parameters.
     #[must_use]
-    pub fn has_further_states(&self) -> bool {
-        let filters = [&self.calibration, &self.baseline].into_iter().flatten();
-        filters.map(|calibration| &calibration.estimator).any(|estimator| {
-            matches!(estimator, core::Estimator::Kalman(of) if of.further != core::Further::default())
-        })
+    pub fn has_further_states(&self, method: Method) -> bool {
+        let calibration = match method {
+            Method::Primary => &self.calibration,
+            Method::Baseline => &self.baseline,
+        };
+        let estimator = calibration.as_ref().map(|calibration| &calibration.estimator);
+        matches!(estimator, Some(core::Estimator::Kalman(of)) if of.further != core::Further::default())
     }
 
     /// Makes the same scenario without its faults.

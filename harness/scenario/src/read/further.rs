@@ -1,8 +1,12 @@
 //! The errors that a filter takes into account beside the thirty parameters.
 
 use crate::error::Problem;
-use crate::keys::{At, CalibrationKeys, EstimatorName, FurtherKeys};
-use crate::model::Scenario;
+use crate::keys::{
+    AccelUse, AngleUse, At, CalibrationKeys, DrawnAccelerations, DrawnAngles, DrawnLengths,
+    DrawnQuadratics, DrawnRatios, EstimatorName, FurtherKeys, GyroUse, LeverUse, QuadraticUse,
+    RatioUse, ScenarioKeys,
+};
+use crate::model::{Method, ParameterDistribution, Scenario};
 use octant_calibration::config as core;
 use octant_calibration::further::FurtherGroup;
 
@@ -28,28 +32,24 @@ pub(super) fn further(keys: &CalibrationKeys) -> Result<core::Further, Problem> 
 }
 
 fn of(keys: &FurtherKeys) -> core::Further {
-    let off = core::FurtherUse::Off;
-    let groups = FurtherGroup::ALL.map(|group| match group {
-        FurtherGroup::AccelLever => keys.accel_lever.as_ref().map_or(off, |of| of.treatment()),
-        FurtherGroup::GyroAsymmetry => {
-            keys.gyro_asymmetry.as_ref().map_or(off, |of| of.treatment())
-        }
-        FurtherGroup::AccelAsymmetry => {
-            keys.accel_asymmetry.as_ref().map_or(off, |of| of.treatment())
-        }
-        FurtherGroup::AccelQuadratic => {
-            keys.accel_quadratic.as_ref().map_or(off, |of| of.treatment())
-        }
-        FurtherGroup::GyroGaussMarkov => {
-            keys.gyro_gauss_markov.as_ref().map_or(off, |of| of.treatment())
-        }
-        FurtherGroup::AccelGaussMarkov => {
-            keys.accel_gauss_markov.as_ref().map_or(off, |of| of.treatment())
-        }
-        FurtherGroup::Deflection => keys.deflection.as_ref().map_or(off, |of| of.treatment()),
-        FurtherGroup::GravityAnomaly => {
-            keys.gravity_anomaly.as_ref().map_or(off, |of| of.treatment())
-        }
+    let groups = FurtherGroup::ALL.map(|group| {
+        let found = match group {
+            FurtherGroup::AccelLever => keys.accel_lever.as_ref().map(LeverUse::treatment),
+            FurtherGroup::GyroAsymmetry => keys.gyro_asymmetry.as_ref().map(RatioUse::treatment),
+            FurtherGroup::AccelAsymmetry => keys.accel_asymmetry.as_ref().map(RatioUse::treatment),
+            FurtherGroup::AccelQuadratic => {
+                keys.accel_quadratic.as_ref().map(QuadraticUse::treatment)
+            }
+            FurtherGroup::GyroGaussMarkov => {
+                keys.gyro_gauss_markov.as_ref().map(GyroUse::treatment)
+            }
+            FurtherGroup::AccelGaussMarkov => {
+                keys.accel_gauss_markov.as_ref().map(AccelUse::treatment)
+            }
+            FurtherGroup::Deflection => keys.deflection.as_ref().map(AngleUse::treatment),
+            FurtherGroup::GravityAnomaly => keys.gravity_anomaly.as_ref().map(AccelUse::treatment),
+        };
+        found.unwrap_or_default()
     });
     // A time without its process is none, so that a table without groups is as good as no table.
     let time = |is_there: bool, time_s| if is_there { time_s } else { 0.0 };
@@ -64,9 +64,33 @@ fn of(keys: &FurtherKeys) -> core::Further {
     }
 }
 
+/// Draws of the errors beside the parameters, group by group; `None`: not drawn. Gauss-Markov biases are processes, which
+/// the plant draws.
+pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 8] {
+    let (imu, site) = (keys.imu.extensions.drawn.as_ref(), keys.site.drawn.as_ref());
+    FurtherGroup::ALL.map(|group| match group {
+        FurtherGroup::AccelLever => imu?.lever_arm.as_ref().map(DrawnLengths::distribution),
+        FurtherGroup::GyroAsymmetry => imu?.gyro_asymmetry.as_ref().map(DrawnRatios::distribution),
+        FurtherGroup::AccelAsymmetry => {
+            imu?.accel_asymmetry.as_ref().map(DrawnRatios::distribution)
+        }
+        FurtherGroup::AccelQuadratic => {
+            imu?.accel_quadratic.as_ref().map(DrawnQuadratics::distribution)
+        }
+        FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => None,
+        FurtherGroup::Deflection => site?.deflection.as_ref().map(DrawnAngles::distribution),
+        FurtherGroup::GravityAnomaly => {
+            site?.gravity_anomaly.as_ref().map(DrawnAccelerations::distribution)
+        }
+    })
+}
+
 /// Refuses further states for a core that isn't called directly.
 pub(super) fn check_endpoint(uri: &At<String>, scenario: &Scenario) -> Result<(), Problem> {
-    if scenario.endpoint.is_in_process() || !scenario.has_further_states() {
+    let has_states = |method| scenario.has_further_states(method);
+    if scenario.endpoint.is_in_process()
+        || !(has_states(Method::Primary) || has_states(Method::Baseline))
+    {
         return Ok(());
     }
     Err(uri.problem(format!(

@@ -67,6 +67,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         sample_period_ns,
         site,
         parameters: instrument::parameters(&keys.imu),
+        further: further::drawn(&keys),
         imu: instrument::imu(&keys.imu)?,
         turntable,
         drive,

@@ -20,7 +20,7 @@ use crate::error_model::{MotionInterval, advance_columns};
 use crate::further::compensation::FurtherIntegrals;
 use crate::further::size_effect::SizeEffect;
 use crate::further::{FURTHER_COUNT, FurtherEstimates, FurtherGroup};
-use columns::{Effects, FurtherRow, ROW};
+pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 
@@ -54,7 +54,7 @@ pub(super) struct FurtherStates {
     size_effect: SizeEffect,
     /// The older and the newer checkpoint.
     checkpoints: Option<[Border; 2]>,
-    effects: Effects,
+    effects: FurtherEffects,
     estimated: [bool; FURTHER_COUNT],
     processes: [Option<Process>; 2],
 }
@@ -70,7 +70,7 @@ impl FurtherStates {
             time_s: 0.0,
             value: [0.0; FURTHER_COUNT],
             cross: [[0.0; 40]; FURTHER_COUNT],
-            own: [[0.0; ROW]; FURTHER_COUNT],
+            own: [[0.0; FURTHER_ROW]; FURTHER_COUNT],
         };
         let mut estimated = [false; FURTHER_COUNT];
         for group in FurtherGroup::ALL {
@@ -81,13 +81,13 @@ impl FurtherStates {
             }
         }
         Some(Self {
-            columns: [[0.0; ROW]; MOVING],
+            columns: [[0.0; FURTHER_ROW]; MOVING],
             elapsed_s: 0.0,
             integrals: FurtherIntegrals::default(),
             size_effect: SizeEffect::default(),
             checkpoints: checkpoints.then(|| [border.clone(), border.clone()]),
             border,
-            effects: Effects::new(further),
+            effects: FurtherEffects::new(further),
             estimated,
             processes: processes(further),
         })
@@ -135,7 +135,7 @@ impl FurtherStates {
             // As in `Transition::advance_bridged`.
             interval.delta_velocity_n = Vector3::zeros();
         }
-        advance_columns(&mut self.columns, kalman_model, &interval, earth, input, 0..ROW);
+        advance_columns(&mut self.columns, kalman_model, &interval, earth, input, 0..FURTHER_ROW);
     }
 
     /// Propagates to the present, after the covariance of the 39 states was by `transition`, and adds
@@ -146,12 +146,12 @@ impl FurtherStates {
         elapsed_s: f64,
         errors: &mut Covariance,
     ) {
-        let columns = core::mem::replace(&mut self.columns, [[0.0; ROW]; MOVING]);
+        let columns = core::mem::replace(&mut self.columns, [[0.0; FURTHER_ROW]; MOVING]);
         self.elapsed_s = 0.0;
         let Border { cross, own, .. } = &mut self.border;
         // Covariance with the moving states: by the transition alone, and with the columns too.
-        let mut carried = [[0.0; ROW]; MOVING];
-        let mut moved = [[0.0; ROW]; MOVING];
+        let mut carried = [[0.0; FURTHER_ROW]; MOVING];
+        let mut moved = [[0.0; FURTHER_ROW]; MOVING];
         for i in 0..MOVING {
             for k in 0..FURTHER_COUNT {
                 carried[i][k] = dot(&transition.rows[i], &cross[k]);
@@ -198,7 +198,7 @@ impl FurtherStates {
         let (row, scale) = errors.gain_row(s, r);
         let of_errors = row.map(|value| value * scale);
         let Border { value, cross, own, .. } = &mut self.border;
-        let mut gain = [0.0; ROW];
+        let mut gain = [0.0; FURTHER_ROW];
         for (gain, row) in gain.iter_mut().zip(cross.iter()) {
             *gain = row[s] * scale;
         }
@@ -212,7 +212,7 @@ impl FurtherStates {
         if held {
             return;
         }
-        let mut moved = [0.0; ROW];
+        let mut moved = [0.0; FURTHER_ROW];
         for k in 0..FURTHER_COUNT {
             if self.estimated[k] {
                 value[k] += gain[k] * (scale * innovation);
@@ -250,7 +250,7 @@ impl FurtherStates {
         self.border.clone_from(older);
         self.border.time_s = time_s;
         for process in self.processes.iter().flatten() {
-            self.border.wander(process, since_s, &[[0.0; ROW]; MOVING], errors);
+            self.border.wander(process, since_s, &[[0.0; FURTHER_ROW]; MOVING], errors);
         }
     }
 

@@ -32,7 +32,7 @@ pub fn add_process_noise(
 /// Adds the noise of gyro biases that walked by this variance, (rad/s)², evenly over the time of a
 /// transition. The moving states receive half of the biases' effect in it times that, and a third of
 /// its square.
-pub(super) fn add_bias_walk(covariance: &mut Covariance, variance: f64, transition: &Transition) {
+pub fn add_bias_walk(covariance: &mut Covariance, variance: f64, transition: &Transition) {
     for bias in PARAMETERS..PARAMETERS + 3 {
         covariance.add(bias, bias, variance);
         for i in 0..MOVING {

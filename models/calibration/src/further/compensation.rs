@@ -140,15 +140,15 @@ impl FurtherCompensation {
 /// Integrals over samples by which the further states drive attitude and velocity.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct FurtherIntegrals {
+pub struct FurtherIntegrals {
     /// ∫([ω̇×] + [ω×]²) dt, 1/s.
-    pub(crate) size: Matrix3<f64>,
+    pub size: Matrix3<f64>,
     /// ∫|ω_i| dt, rad.
-    pub(crate) turned: Vector3<f64>,
+    pub turned: Vector3<f64>,
     /// ∫|f_i| dt, m/s.
-    pub(crate) pushed: Vector3<f64>,
+    pub pushed: Vector3<f64>,
     /// ∫f_i² dt, (m/s²)² s.
-    pub(crate) squared: Vector3<f64>,
+    pub squared: Vector3<f64>,
 }
 
 impl Default for FurtherIntegrals {

@@ -7,16 +7,18 @@ use crate::further::compensation::FurtherIntegrals;
 use octant_earth::ellipsoid::Ellipsoid;
 
 /// Row length in memory, a multiple of the vector registers' width.
-pub(super) const ROW: usize = 28;
+pub const FURTHER_ROW: usize = 28;
 /// One padded row over the further states.
-pub(super) type FurtherRow = [f64; ROW];
+pub type FurtherRow = [f64; FURTHER_ROW];
 
 /// Groups that are on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Effects([bool; 8]);
+pub struct FurtherEffects([bool; 8]);
 
-impl Effects {
-    pub(super) fn new(further: &Further) -> Self {
+impl FurtherEffects {
+    /// Makes the effects of the groups that aren't off.
+    #[must_use]
+    pub fn new(further: &Further) -> Self {
         Self(further.groups.map(|group| group != FurtherUse::Off))
     }
 
@@ -30,7 +32,8 @@ impl Effects {
     ///
     /// The computed gravity lacks the disturbance, so that its error is the negative one:
     /// `δg = (ξ g, η g, −Δg)`. Where known motion replaced the accelerometers, gravity has no effect.
-    pub(super) fn input(
+    #[must_use]
+    pub fn input(
         &self,
         interval: &MotionInterval,
         integrals: &FurtherIntegrals,
@@ -39,7 +42,7 @@ impl Effects {
         decay: [f64; 2],
     ) -> [FurtherRow; 6] {
         let h = interval.interval_s;
-        let mut input = [[0.0; ROW]; 6];
+        let mut input = [[0.0; FURTHER_ROW]; 6];
         for i in 0..3 {
             let c = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
             for axis in 0..3 {

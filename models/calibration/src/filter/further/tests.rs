@@ -169,7 +169,7 @@ fn propagation_is_that_of_one_filter_with_all_states() {
             assert!((found - full[(i, j)]).abs() < 1e-7, "{i}, {j}: {found} {}", full[(i, j)]);
         }
     }
-    assert_eq!(states.columns, [[0.0; ROW]; MOVING]);
+    assert_eq!(states.columns, [[0.0; FURTHER_ROW]; MOVING]);
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn the_way_back_restores_what_was_and_ages_what_wanders() {
     states.border.time_s += 60.0;
     states.border.value = [9.0; FURTHER_COUNT];
     states.border.cross = [[1.0; 40]; FURTHER_COUNT];
-    states.border.own = [[2.0; ROW]; FURTHER_COUNT];
+    states.border.own = [[2.0; FURTHER_ROW]; FURTHER_COUNT];
     states.go_back(&mut errors);
     for group in FurtherGroup::ALL {
         let tau = match group {
