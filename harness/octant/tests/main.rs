@@ -74,6 +74,7 @@ mod measures;
 mod messages;
 mod new_scenario;
 mod nightly;
+mod observe_protection;
 mod own_sequences;
 mod progress_bar;
 mod qualification;
