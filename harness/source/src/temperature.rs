@@ -88,7 +88,7 @@ mod tests {
         let said = take(&[(0, 25.0)], TemperatureUnit::Kelvin);
         assert!(said.starts_with("temperature 25 K, expected 173.15 to 473.15 K"), "{said}");
         let said = take(&[(0, 298.0)], TemperatureUnit::Celsius);
-        assert!(said.starts_with("temperature 298 degC, expected -100 to 200 degC"), "{said}");
+        assert!(said.starts_with("temperature 298 degC, expected −100 to 200 degC"), "{said}");
         let said = take(&[(0, f64::NAN)], TemperatureUnit::Celsius);
         assert!(said.contains("expected a finite number"), "{said}");
         let said = take(&[(0, 25.0), (1, 32.0)], TemperatureUnit::Celsius);
