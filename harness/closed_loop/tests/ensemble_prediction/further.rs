@@ -60,7 +60,7 @@ fn with(errors: &str, filter: &str, navigation_h: u32) -> Scenario {
         "{UNSCREENED}{errors}[procedure.calibration]\n{ONE_HOUR}refuse_above_mean_nis = 1e9\n{filter}\
          [procedure.navigation]\nduration = \"{navigation_h} h\"\n"
     );
-    scenario_at(FURTHER_RATE, &text.replace("", ""))
+    scenario_at(FURTHER_RATE, &text)
 }
 
 #[test]
