@@ -85,7 +85,7 @@ fn further_errors_that_the_filter_has_come_out_as_the_mean() {
 fn further_errors_tilt_a_coarse_alignment() {
     let given = GIVEN.split("[procedure.alignment]").next().unwrap();
     let errors = format!(
-        "{given}{GIVEN_FURTHER}[procedure.alignment]\nmethod = \"coarse\"\nduration = \"300 s\"\n"
+        "{given}{GIVEN_FURTHER}[procedure.alignment]\nmethod = \"coarse\"\nduration = \"150 s\"\n"
     );
     let scenario = with(&errors, FILTER, 2);
     assert_same(&ensemble(&scenario, Method::Primary).unwrap(), &run(&scenario, 1, silent), 0.05);
