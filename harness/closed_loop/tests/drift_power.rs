@@ -219,7 +219,7 @@ fn study_of_faults() {
 #[ignore = "minutes: a study"]
 fn study_of_clean_calibrations() {
     for (moored, hours, n) in
-        [(false, 4.0, draws(3000, 20)), (false, 0.5, draws(1000, 20)), (true, 4.0, draws(300, 4))]
+        [(false, 4.0, draws(3000, 20)), (false, 0.5, draws(1000, 20)), (true, 4.0, draws(100, 4))]
     {
         let seeds: Vec<u64> = (1..=n).collect();
         let mut all = on_two_threads(&seeds, |seed| {

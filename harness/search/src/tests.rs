@@ -102,7 +102,7 @@ fn a_journal_of_another_search_is_refused() {
 fn a_pair_is_made_a_single_fault_that_runs_again() {
     let bench = bench(2);
     let space = space(&["asymmetry", "noise-gain"]);
-    // All gyros for two minutes; beside them a fault that does nothing to speak of.
+    // All gyros for the time of a turn; beside them a fault that does nothing to speak of.
     let placed = |kind: &str, set: &[(&str, f64)]| {
         let form = space.forms.iter().position(|form| form.kind.name == kind).unwrap();
         let keys = space.forms[form].keys.iter();
@@ -118,7 +118,7 @@ fn a_pair_is_made_a_single_fault_that_runs_again() {
         };
         PlacedFault { form, places: keys.map(of).collect() }
     };
-    let gyros = [("channels", 0.9), ("error", 127.0), ("onset", 366.0), ("duration", 131.0)];
+    let gyros = [("channels", 0.9), ("error", 93.8), ("onset", 537.66), ("duration", 12.6)];
     let noise = [("onset", 1200.0), ("gain", 300.0), ("duration", 1.0)];
     let faults = vec![placed("asymmetry", &gyros), placed("noise-gain", &noise)];
     let tried = bench.run(&space, vec![FaultCandidate { faults }], &Control::default()).unwrap();

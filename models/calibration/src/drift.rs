@@ -33,9 +33,9 @@ use octant_sample::parameters::PARAMETER_COUNT;
 /// Corrections above this many standard deviations are a drift. Of 3000 clean calibrations of 4 h one is above it, of 1000 of
 /// half an hour one.
 pub const LIMIT_SIGMAS: f64 = 5.0;
-/// The same on a ship, with [`DriftWeights::Own`]: its sway isn't the white noise that the filter assumes, and tails are
-/// longer. The largest of twenty clean calibrations of 4 h is 5.0.
-pub const LIMIT_MOVING_SIGMAS: f64 = 8.0;
+/// The same on a ship, with [`DriftWeights::Own`]: its sway isn't the white noise that the filter assumes. The largest of a
+/// hundred clean calibrations of 4 h is 4.3.
+pub const LIMIT_MOVING_SIGMAS: f64 = 6.0;
 
 /// Number of marks kept; when they are full, every other one is dropped.
 const MARKS: usize = 24;
