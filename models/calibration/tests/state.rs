@@ -152,6 +152,11 @@ fn cores() -> Vec<(&'static str, Core)> {
         ("external turntable", after(&config(external, Screening::none()), 5_003)),
         ("navigating", navigating),
         ("refused", refused),
+        // The drift test has its first mark after 150 s.
+        (
+            "kalman, marked",
+            after(&config(kalman(), hardened()), (160_000_000_000 / PERIOD_NS) as usize),
+        ),
     ]
 }
 
@@ -266,7 +271,7 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
         assert_eq!(
             Core::load(&stored).unwrap_err().to_string(),
             format!(
-                "the state of a calibration core has version {version}, this program reads version 3"
+                "the state of a calibration core has version {version}, this program reads version 4"
             )
         );
     }
