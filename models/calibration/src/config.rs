@@ -5,6 +5,7 @@ mod further;
 mod stored;
 
 pub use further::{Further, FurtherUse};
+pub use octant_positions::rates::TurntableRates;
 
 use crate::sequence::Sequence;
 use octant_earth::{UnitQuaternion, Vector3};
@@ -255,16 +256,6 @@ pub struct NavigationPlan {
     pub rotation: Sequence,
     /// Dwell at each stop of weight 1, s.
     pub dwell_s: f64,
-}
-
-/// Rates of the turntable.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub struct TurntableRates {
-    /// Largest rate of a move, rad/s.
-    pub rate_radps: f64,
-    /// Acceleration of a move, rad/s².
-    pub acceleration_radps2: f64,
 }
 
 /// Noise of the sensors.

@@ -10,8 +10,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`config`] | configuration of the core, given before the first sample |
-//! | [`sequence`], [`positions`], [`schedule`] | stops, published sequences, timing of the moves |
-//! | [`visits`] | positions that the stops of a sequence visit, for those who describe it |
+//! | [`sequence`], [`positions`], [`schedule`], [`visits`] | `octant_positions`: stops, published sequences, timing of the moves |
 //! | [`monitor`] | plain faults of a sample: gaps, stuck channels, saturation |
 //! | [`screen`] | increments that jump further than any motion allows |
 //! | [`continuity`] | discontinuities of rates, by spikes too small to show in a single sample |
@@ -43,17 +42,14 @@ pub mod further;
 pub mod inertial_alignment;
 pub mod least_squares;
 pub mod monitor;
-pub mod positions;
-pub mod schedule;
 pub mod screen;
-pub mod sequence;
 pub mod standstill;
 pub mod state_machine;
 pub mod strapdown;
 pub mod table;
-pub mod visits;
 
 pub use config::CoreConfig;
+pub use octant_positions::{positions, schedule, sequence, visits};
 pub use state_machine::Core;
 
 // The tests name the crate as its users do. They are a part of it because what they look at is

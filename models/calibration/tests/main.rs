@@ -9,7 +9,6 @@ mod jacobian;
 mod least_squares;
 mod mechanization;
 mod real_recording;
-mod schedule;
 mod standstill;
 #[cfg(feature = "state")]
 mod state;

@@ -15,8 +15,8 @@ const SAME_RAD: f64 = 1.0 / 60.0 * core::f64::consts::PI / 180.0;
 /// Positions that the stops of a sequence visit, numbered from 1 by their first visits.
 ///
 /// ```
-/// use octant_calibration::positions::{EIGHT, from_degrees};
-/// use octant_calibration::visits::VisitedPositions;
+/// use octant_positions::positions::{EIGHT, from_degrees};
+/// use octant_positions::visits::VisitedPositions;
 ///
 /// let eight = from_degrees(EIGHT, 1).unwrap();
 /// let visited = VisitedPositions::of(eight.stops());

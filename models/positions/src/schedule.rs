@@ -1,7 +1,7 @@
 //! Timing of the gimbals: dwell times that fill the calibration, and a cursor that visits the
 //! stops.
 
-use crate::config::TurntableRates;
+use crate::rates::TurntableRates;
 use crate::sequence::{STOPS_MAX, Sequence, Stop};
 use octant_sample::{GimbalAngles, GimbalCommand};
 

@@ -1,8 +1,9 @@
 //! Timing of the gimbals: dwells fill the time, and the cursor visits every stop.
+#![allow(clippy::unwrap_used)]
 
-use octant_calibration::config::TurntableRates;
-use octant_calibration::positions::{EIGHT, SIX, SIXTEEN, from_degrees};
-use octant_calibration::schedule::{Cursor, dwell_s, move_s, moves_s};
+use octant_positions::positions::{EIGHT, SIX, SIXTEEN, from_degrees};
+use octant_positions::rates::TurntableRates;
+use octant_positions::schedule::{Cursor, dwell_s, move_s, moves_s};
 use octant_sample::GimbalAngles;
 
 const DT: f64 = 0.005;
