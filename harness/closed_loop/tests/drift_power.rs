@@ -18,6 +18,8 @@ use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::NAMES;
 use octant_sample::{Mode, Sample};
 use octant_scenario::{Method, Scenario};
+use octant_smoother::constancy;
+use octant_smoother::history::History;
 use std::path::Path;
 
 /// Samples a second: the least at which the filter's sub-steps are those of faster ones.
@@ -211,6 +213,62 @@ fn study_of_faults() {
             print!(" ({:.1} σ, known {:.2}, z {:.2})", e.shift_sigmas, e.known, e.drift_sigmas);
         }
         println!();
+    }
+}
+
+fn smoothed(seed: u64, fault: Option<&Fault>, hours: f64, moored: bool) -> Vec<(String, f64)> {
+    let mut run = start(seed, hours, moored);
+    let mut injector = Injector::new(fault, seed);
+    let mut history = History::new(run.core.config(), 48).unwrap();
+    loop {
+        run.step_altered(|mut sample, aiding| {
+            injector.alter(&mut sample);
+            Some((sample, aiding))
+        });
+        if !matches!(run.output.mode, Mode::Aligning | Mode::Calibrating) {
+            break;
+        }
+        if run.output.sequence.is_multiple_of(HZ) {
+            history.watch(&run.core).unwrap();
+        }
+    }
+    let smoothed = history.smooth().unwrap();
+    let mut best: std::collections::BTreeMap<String, f64> = Default::default();
+    let prior = *history.prior();
+    constancy::test(&smoothed, &prior, |found| {
+        let name = format!("{:?}", found.change);
+        let best = best.entry(name).or_insert(0.0);
+        *best = best.max(found.sigmas);
+    });
+    best.into_iter().collect()
+}
+
+#[test]
+#[ignore = "minutes: a study"]
+fn study_of_smoothed_tests() {
+    let faults = faults();
+    let cases = std::iter::once(None)
+        .chain(faults.iter().map(Some).take(if std::env::var("CLEAN").is_ok() { 0 } else { 8 }));
+    for fault in cases {
+        let n = if fault.is_none() { draws(1000, 4) } else { draws(50, 2) };
+        let seeds: Vec<u64> = (1..=n).collect();
+        let all = on_two_threads(&seeds, |seed| smoothed(*seed, fault, HOURS, false));
+        println!("{}", fault.map_or("clean", |fault| fault.name));
+        for k in 0..all[0].len() {
+            let mut z: Vec<f64> = all.iter().map(|e| e[k].1).collect();
+            z.sort_by(f64::total_cmp);
+            let share = |l: f64| z.iter().filter(|z| **z > l).count() as f64 / z.len() as f64;
+            println!(
+                "  {:45} median {:.2} largest {:.2}; above 4.5 {:.2} 5 {:.2} 5.5 {:.2} 6 {:.2}",
+                all[0][k].0,
+                z[z.len() / 2],
+                z[z.len() - 1],
+                share(4.5),
+                share(5.0),
+                share(5.5),
+                share(6.0)
+            );
+        }
     }
 }
 

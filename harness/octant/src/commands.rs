@@ -5,7 +5,7 @@ use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, characterise, compare, completions, design, diff, doctor, export, faults, fmu, new,
     nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score, selftest,
-    serve, turntable, verify, watch,
+    serve, smooth, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -36,6 +36,8 @@ enum Command {
     Diff(diff::Arguments),
     /// Run the core again on a recorded stream, and compare the outputs.
     Replay(replay::Arguments),
+    /// Smooth the calibration of a run, and test what it takes for constant.
+    Smooth(smooth::SmoothArguments),
     /// Run a campaign of many cases: plan it, run it on any number of hosts, merge and report results.
     Campaign(campaign::Arguments),
     /// Run the nightly regression: a fault suite and campaigns, compared with the accepted baseline.
@@ -178,6 +180,7 @@ pub(crate) fn status() -> u8 {
         Command::Requirements(arguments) => requirements::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
+        Command::Smooth(arguments) => smooth::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
         Command::Diff(arguments) => diff::command(&arguments),

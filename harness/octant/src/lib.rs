@@ -50,6 +50,7 @@ mod selftest;
 mod serve;
 mod side_by_side;
 mod signing;
+mod smooth;
 pub mod source_uri;
 mod sweep;
 pub mod terminal;

@@ -48,6 +48,9 @@ pub enum RunError {
     /// A navigation can't be scored.
     #[error(transparent)]
     Drift(#[from] octant_score::drift::DriftError),
+    /// A calibration can't be smoothed.
+    #[error(transparent)]
+    Smoother(#[from] octant_smoother::refusal::SmootherError),
     /// A recorded event of the unit can't be repeated.
     #[error(transparent)]
     Unit(#[from] UnitEventError),

@@ -42,6 +42,7 @@ mod recording;
 pub mod replayed;
 pub mod rotation;
 pub mod scores_text;
+pub mod smoothed;
 mod solution;
 pub mod stem;
 pub mod stepped;

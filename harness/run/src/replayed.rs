@@ -41,7 +41,7 @@ pub fn replay<E: Endpoint + ?Sized>(
 
 /// Events of the unit in a recording, before the sample that the loop has.
 #[derive(Debug, Default)]
-struct Recorded(Vec<UnitEvent>);
+pub(super) struct Recorded(Vec<UnitEvent>);
 
 impl<E: ?Sized> Injects<Replay, E> for Recorded {
     fn unit_events(&mut self, source: &Replay) -> Result<&[UnitEvent], RunError> {

@@ -9,6 +9,7 @@ mod further;
 mod measurement;
 mod noise;
 mod oscillator;
+mod passage;
 mod recovery;
 mod solution;
 mod sub_step;
@@ -17,6 +18,7 @@ mod sway;
 pub use further::{FURTHER_ROW, FurtherEffects, FurtherRow};
 pub use measurement::MeasurementResult;
 pub use noise::{add_bias_walk, add_process_noise};
+pub use passage::Passage;
 pub use sub_step::{SensorIntegrals, sub_step_samples};
 
 use crate::config::{
@@ -76,6 +78,8 @@ pub struct CalibrationFilter {
     covariance: Covariance,
     transition: Transition,
     sub_step: SubStep,
+    /// No part of a stored state: a smoother follows a filter from its start.
+    passage: Passage,
     /// Time and velocity change by specific force in n since the last propagation.
     elapsed_s: f64,
     force_sum: Vector3<f64>,
@@ -102,7 +106,7 @@ octant_state::state! {
         values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, keeps_attitude, tally;
         parts: covariance, transition, sub_step, drift, sway, checkpoints;
         kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s,
-            walk_variance_per_s, further;
+            walk_variance_per_s, further, passage;
         check: Self::check_counts
     }
 }
@@ -173,6 +177,7 @@ impl CalibrationFilter {
             walk_variance_per_s: walk * walk,
             covariance,
             transition: Transition::identity(),
+            passage: Passage::new(),
             sub_step: SubStep::new(sub_step_samples(sample_period_ns, kalman.aiding_period_ns)),
             elapsed_s: 0.0,
             force_sum: Vector3::zeros(),
@@ -314,6 +319,7 @@ impl CalibrationFilter {
             &self.force_sum,
         );
         self.time_s += self.elapsed_s;
+        self.passage.go_on(&self.transition);
         self.transition = Transition::identity();
         self.elapsed_s = 0.0;
         self.force_sum = Vector3::zeros();
@@ -371,6 +377,12 @@ impl CalibrationFilter {
     #[must_use]
     pub fn parameter_sigmas(&self) -> [f64; PARAMETER_COUNT] {
         core::array::from_fn(|i| self.covariance.sigma(PARAMETERS + i))
+    }
+
+    /// Transition of the errors up to the last measurement that was used.
+    #[must_use]
+    pub fn passage(&self) -> &Passage {
+        &self.passage
     }
 
     /// Counts since the start.

@@ -230,11 +230,15 @@ fn navigations_are_planned_anew() {
     assert_eq!(bytes(&core), before, "a plan that is refused changes nothing");
 }
 
-/// Every field of a core but the covariance at the end of its calibration.
+/// Every field of a core but those of its past: the covariance at the end of its calibration, and the filter's last
+/// passage.
 fn shown(core: &Core) -> String {
     let text = format!("{core:?}");
     let (before, rest) = text.split_once("concluded: ").unwrap();
     let (_, after) = rest.split_once(", gimbals: ").unwrap();
+    let text = format!("{before}{after}");
+    let Some((before, rest)) = text.split_once("passage: ") else { return text };
+    let (_, after) = rest.split_once(", elapsed_s: ").unwrap();
     format!("{before}{after}")
 }
 

@@ -99,6 +99,7 @@ impl CalibrationFilter {
         }
         let turned_rad = self.feed_back(&x, strapdown, parameters);
         self.tally.used += 1;
+        self.passage.end();
         if held {
             self.tally.held += 1;
         } else {

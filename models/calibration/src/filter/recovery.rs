@@ -104,6 +104,7 @@ impl CalibrationFilter {
     /// are undone.
     pub(super) fn go_back(&mut self, parameters: &mut Parameters) {
         let Some([older, newer]) = &mut self.checkpoints else { return };
+        self.passage.break_off();
         newer.clone_from(older);
         *parameters = older.parameters;
         self.covariance.clone_from(&older.covariance);
@@ -196,6 +197,7 @@ impl CalibrationFilter {
     }
 
     fn reopen(&mut self, attitude_rad: [f64; 3], velocity_mps: f64, position_m: f64) {
+        self.passage.break_off();
         for axis in 0..3 {
             self.covariance.reopen(PHI + axis, attitude_rad[axis]);
             self.covariance.reopen(DV + axis, velocity_mps);

@@ -1,0 +1,57 @@
+//! Runs the core again on a recording, and keeps its filter's history for the smoother.
+
+use super::drive::{Ended, InStep, Keeps, RunError, drive};
+use super::replayed::{Recorded, Replayed};
+use octant_calibration::CoreConfig;
+use octant_endpoint::InProcess;
+use octant_sample::{Epoch, Mode, Output};
+use octant_smoother::history::History;
+use octant_source::Replay;
+
+/// A calibration of a recording, made again.
+#[derive(Debug)]
+pub struct RepeatedCalibration {
+    /// History of the filter.
+    pub history: History,
+    /// Comparison of the core's answers with the recorded ones, up to the end of the calibration.
+    pub replayed: Replayed,
+    /// Mode after the calibration; that of the calibration if the recording ends before.
+    pub mode: Mode,
+}
+
+/// Repeats a recording up to the end of its calibration, with `nodes` looks at the filter.
+///
+/// # Errors
+/// If the core has no filter that can be smoothed, or the recording can't be read.
+pub fn repeat_calibration(
+    source: &mut Replay,
+    endpoint: &mut InProcess,
+    config: &CoreConfig,
+    nodes: usize,
+) -> Result<RepeatedCalibration, RunError> {
+    let mut repeated = RepeatedCalibration {
+        history: History::new(config, nodes)?,
+        replayed: Replayed::default(),
+        mode: Mode::Aligning,
+    };
+    drive(source, &mut Recorded::default(), endpoint, &mut repeated)?;
+    Ok(repeated)
+}
+
+impl Keeps<Replay, InProcess> for RepeatedCalibration {
+    fn answered(
+        &mut self,
+        source: &Replay,
+        endpoint: &InProcess,
+        (step, sent): (InStep<'_>, &Epoch),
+        output: &Output,
+    ) -> Result<Option<Ended>, RunError> {
+        self.replayed.answered(source, endpoint, (step, sent), output)?;
+        self.mode = output.mode;
+        if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
+            return Ok(Some(Ended::Done));
+        }
+        self.history.watch(endpoint.core())?;
+        Ok(None)
+    }
+}

@@ -1,0 +1,1 @@
+//! Tests of the smoother, in one program.
