@@ -15,4 +15,5 @@ mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
 mod further_states;
+mod smoothing;
 mod state_core;

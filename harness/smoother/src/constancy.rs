@@ -152,25 +152,34 @@ impl Tested<'_> {
 /// Runs all tests and calls `found` with the result of each.
 pub fn test(smoothed: &SmoothedCalibration, prior: &Row, mut found: impl FnMut(Finding)) {
     for parameter in 0..PARAMETER_COUNT {
-        let state = PARAMETERS + parameter;
-        let known = |node: &Smoothed| {
-            node.node.covariance[state][state] <= KNOWN * prior[state] * prior[state]
-        };
-        let Some(first) = smoothed.nodes.iter().position(known) else { continue };
-        let n = smoothed.nodes.len() - first;
-        if prior[state] == 0.0 || n > NODES_MAX {
-            continue;
-        }
-        let covariance = Nodes::from_fn(|j, l| {
-            if j < n && l < n { smoothed.covariance(state, first + j, first + l) } else { 0.0 }
-        });
-        let tested = Tested { nodes: &smoothed.nodes, state, first, covariance };
-        courses(&tested, &mut found);
-        walk(&tested).map(&mut found);
-        let whole_s = tested.end_s();
-        for share in CORRELATION_TIMES {
-            wander(&tested, share * whole_s).map(&mut found);
-        }
+        test_parameter(smoothed, prior, parameter, &mut found);
+    }
+}
+
+/// Runs the tests of one parameter.
+pub fn test_parameter(
+    smoothed: &SmoothedCalibration,
+    prior: &Row,
+    parameter: usize,
+    found: &mut impl FnMut(Finding),
+) {
+    let state = PARAMETERS + parameter;
+    let known =
+        |node: &Smoothed| node.node.covariance[state][state] <= KNOWN * prior[state] * prior[state];
+    let Some(first) = smoothed.nodes.iter().position(known) else { return };
+    let n = smoothed.nodes.len() - first;
+    if prior[state] == 0.0 || n > NODES_MAX {
+        return;
+    }
+    let covariance = Nodes::from_fn(|j, l| {
+        if j < n && l < n { smoothed.covariance(state, first + j, first + l) } else { 0.0 }
+    });
+    let tested = Tested { nodes: &smoothed.nodes, state, first, covariance };
+    courses(&tested, found);
+    walk(&tested).map(&mut *found);
+    let whole_s = tested.end_s();
+    for share in CORRELATION_TIMES {
+        wander(&tested, share * whole_s).map(&mut *found);
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The saddlepoint approximation of Lugannani and Rice in the form of Kuonen (1999, Biometrika 86): with the cumulant
 //! function K(s) = −½ Σ ln(1 − 2 s λᵢ) and K′(ŝ) = q, w = ±√(2 (ŝ q − K(ŝ))), v = ŝ √K″(ŝ) the probability above q is
-//! 1 − Φ(w + ln(v/w)/w). Its relative error is some percent in the tail, at any number of terms.
+//! 1 − Φ(w + ln(v/w)/w). Its relative error is below six percent
+//! however far in the tail, also for few terms.
 
 use octant_statistics::normal;
 
