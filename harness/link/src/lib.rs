@@ -21,6 +21,7 @@ pub mod harness;
 pub mod load;
 pub mod port;
 pub mod uri;
+mod waited;
 pub mod wire;
 
 pub use port::PortError;

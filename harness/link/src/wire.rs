@@ -1,6 +1,7 @@
 //! Messages across a port, and counts of losses.
 
 use crate::port::{BusEvent, BusTrouble, Bytes, Frames, Port, PortError};
+use crate::waited::Waited;
 use octant_faults::wire::Wired;
 use octant_wire::can::{self, Bits, Bus, CanVersion, Reassembler};
 use octant_wire::message::{ClockTime, EndRole, Message};
@@ -58,7 +59,9 @@ pub struct Wire {
     medium: Medium,
     begun: Instant,
     last_sent: Option<Instant>,
-    last_received: Option<Instant>,
+    waited: Waited,
+    /// Waiting time up to the last intact message.
+    waited_before: Duration,
     counts: TrafficCounts,
     /// Bit rates of the bus, for its load.
     bus: Option<Bus>,
@@ -127,7 +130,8 @@ impl Wire {
             medium,
             begun: Instant::now(),
             last_sent: None,
-            last_received: None,
+            waited: Waited::default(),
+            waited_before: Duration::ZERO,
             counts: TrafficCounts::default(),
             bus: None,
             off: None,
@@ -173,10 +177,22 @@ impl Wire {
         self.last_sent.unwrap_or(self.begun).elapsed()
     }
 
-    /// Time since the last intact message was received.
+    /// Time for which this end has waited since the last intact message was received. A time in which it did something
+    /// else, or in which its process was stopped, is no silence of the other end.
     #[must_use]
     pub fn silence(&self) -> Duration {
-        self.last_received.unwrap_or(self.begun).elapsed()
+        self.waited.total().saturating_sub(self.waited_before)
+    }
+
+    /// Time for which this end has waited for the port, all in all.
+    #[must_use]
+    pub fn waited(&self) -> Duration {
+        self.waited.total()
+    }
+
+    /// Counts a wait that began at this time, without the port.
+    pub(crate) fn wait_without_port(&mut self, begun: Instant, wait: Duration) {
+        self.waited.add(begun, wait);
     }
 
     /// Sends a message. False: the port did not accept the whole message within the time.
@@ -194,6 +210,7 @@ impl Wire {
             }
             Medium::Frames(medium) => medium.send(message, wait, self.bus, &mut self.counts)?,
         };
+        self.waited.add(now, wait);
         *(if taken { &mut self.counts.sent } else { &mut self.counts.not_sent }) += 1;
         Ok(taken)
     }
@@ -203,7 +220,17 @@ impl Wire {
     /// # Errors
     /// If the port is gone.
     pub fn receive(&mut self, wait: Duration) -> Result<Option<Incoming>, PortError> {
-        let until = Instant::now().checked_add(wait);
+        let begun = Instant::now();
+        let incoming = self.next(begun, wait);
+        self.waited.add(begun, wait);
+        if let Ok(Some(_)) = &incoming {
+            self.waited_before = self.waited.total();
+        }
+        incoming
+    }
+
+    fn next(&mut self, begun: Instant, wait: Duration) -> Result<Option<Incoming>, PortError> {
+        let until = begun.checked_add(wait);
         let mut left = wait;
         let mut lost = 0;
         loop {
@@ -226,7 +253,6 @@ impl Wire {
             };
             match incoming {
                 Next::Incoming(incoming) => {
-                    self.last_received = Some(Instant::now());
                     self.counts.received += 1;
                     return Ok(Some(incoming));
                 }

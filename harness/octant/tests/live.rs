@@ -334,6 +334,35 @@ fn grows(recording: &Path) {
 }
 
 #[test]
+fn a_stop_of_both_ends_is_no_silence() {
+    let bench = Bench::new(&std::fs::read_to_string(LOCKSTEP).unwrap());
+    let expected = bench.hash("in-process", &[]);
+    let served = Served::new("udp:0", &bench.scenario);
+    let out = bench.folder.path().join("stopped");
+    let mut child = Command::new(OCTANT)
+        .args(["run", "--set", "endpoint.link.answer=2 s", "--endpoint", &served.uri, "--out"])
+        .arg(&out)
+        .arg(&bench.scenario)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    grows(&bench.folder.path().join("stopped.partial/recording.mcap"));
+    let signal_both = |signal: &str| {
+        let all = [child.id(), served.child.id()].map(|pid| pid.to_string());
+        assert!(Command::new("kill").arg(signal).args(all).status().unwrap().success());
+    };
+    signal_both("-STOP");
+    // Twice as long as either end waits for the other.
+    std::thread::sleep(Duration::from_secs(4));
+    signal_both("-CONT");
+    assert!(child.wait().unwrap().success());
+    assert_eq!(bench.summary("stopped")["stream_hash"].as_str().unwrap(), expected);
+    let (status, said) = served.stop("-TERM");
+    assert_eq!(status, Some(0), "{said}");
+    assert!(!said.contains("nothing heard"), "{said}");
+}
+
+#[test]
 fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     let bench = Bench::new(SHORT);
     let served = Served::new("udp:0", &bench.scenario);

@@ -453,7 +453,9 @@ pub fn serve(
                 return Ok(());
             }
             device.look_for_silence();
+            let begun = Instant::now();
             std::thread::sleep(REOPEN_EVERY);
+            device.wire.wait_without_port(begun, REOPEN_EVERY);
         }
         (device.notice)(&Notice::Listening(device.wire.reached_at()));
     }

@@ -67,7 +67,7 @@ pub(super) fn say_hello(
     stale: &mut Option<Reason>,
 ) -> Result<Hello, SessionError> {
     let before = wire.counts();
-    let begun = Instant::now();
+    let waited_before = wire.waited();
     let mut intervals = Taken::default().ask(patience.repeat, patience.hello);
     let (mut asked, mut newer_seen) = (0, None);
     loop {
@@ -104,7 +104,7 @@ pub(super) fn say_hello(
             }
         }
         intervals.again();
-        let waited = begun.elapsed();
+        let waited = wire.waited() - waited_before;
         if waited >= patience.hello {
             return Err(SessionError::NoAnswer {
                 port: wire.name().to_owned(),

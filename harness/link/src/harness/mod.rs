@@ -263,12 +263,6 @@ impl Harness {
         Ok(())
     }
 
-    /// Time since the last intact message was received.
-    #[must_use]
-    pub fn silence(&self) -> Duration {
-        self.wire.silence()
-    }
-
     /// Asks the other end for the time; the answer arrives as an [`LinkEvent::Time`].
     ///
     /// # Errors
@@ -388,9 +382,11 @@ impl Harness {
         let mut intervals = self.taken.ask(repeat, answer);
         let before = self.wire.counts();
         let begun = Instant::now();
+        // Patience is for the device: a time in which this process is stopped doesn't count.
+        let waited_before = self.wire.waited();
         let (mut asked_at, mut asked, mut anew) = (begun, 1, 0);
         loop {
-            let left = answer.saturating_sub(begun.elapsed());
+            let left = answer.saturating_sub(self.wire.waited() - waited_before);
             let mut wait = intervals.now().saturating_sub(asked_at.elapsed()).min(left);
             if !silence.is_zero() {
                 // The wait may be longer than the silence after which the device gives up this harness.
@@ -411,7 +407,7 @@ impl Harness {
                     return Err(self.started_anew());
                 }
             }
-            let waited = begun.elapsed();
+            let waited = self.wire.waited() - waited_before;
             if waited >= answer {
                 // One is enough where no answer came.
                 if anew > 0 {
