@@ -19,7 +19,7 @@ use octant_sample::parameters::NAMES;
 use octant_sample::{Mode, Sample};
 use octant_scenario::{Method, Scenario};
 use octant_smoother::constancy;
-use octant_smoother::history::History;
+use octant_smoother::history::FilterHistory;
 use std::path::Path;
 
 /// Samples a second: the least at which the filter's sub-steps are those of faster ones.
@@ -219,7 +219,7 @@ fn study_of_faults() {
 fn smoothed(seed: u64, fault: Option<&Fault>, hours: f64, moored: bool) -> Vec<(String, f64)> {
     let mut run = start(seed, hours, moored);
     let mut injector = Injector::new(fault, seed);
-    let mut history = History::new(run.core.config(), 48).unwrap();
+    let mut history = FilterHistory::new(run.core.config(), 48).unwrap();
     loop {
         run.step_altered(|mut sample, aiding| {
             injector.alter(&mut sample);

@@ -15,7 +15,7 @@ use octant_sample::Mode;
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_smoother::backward::SmoothedCalibration;
-use octant_smoother::history::History;
+use octant_smoother::history::FilterHistory;
 
 /// Samples a second.
 const HZ: u64 = 20;
@@ -54,7 +54,7 @@ fn run(seed: u64, hours: f64, walk: f64, nodes: usize) -> Run {
     let (plant, core) = configuration(seed, hours, walk);
     let parameters = plant.imu.parameters.to_array();
     let mut run = ClosedLoop::new(&plant, &core);
-    let mut history = History::new(&core, nodes).unwrap();
+    let mut history = FilterHistory::new(&core, nodes).unwrap();
     let noise = Triad::new(seed, "smoothing.walk");
     let (mut bias, mut carried) = ([0.0; 3], [0.0; 3]);
     let interval_s = 1.0 / HZ as f64;
@@ -250,7 +250,7 @@ fn standard_deviations_are_those_of_a_batch_solution() {
     let (plant, core) = configuration(1, 0.5, 0.0);
     let mut run = ClosedLoop::new(&plant, &core);
     // A node at each measurement of the first 150 s.
-    let mut history = History::new(&core, 1800).unwrap();
+    let mut history = FilterHistory::new(&core, 1800).unwrap();
     let mut transitions = Vec::new();
     while history.len() < SECONDS {
         run.step();

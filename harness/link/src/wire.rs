@@ -59,9 +59,7 @@ pub struct Wire {
     medium: Medium,
     begun: Instant,
     last_sent: Option<Instant>,
-    waited: Waited,
-    /// Waiting time up to the last intact message.
-    waited_before: Duration,
+    pub(crate) waited: Waited,
     counts: TrafficCounts,
     /// Bit rates of the bus, for its load.
     bus: Option<Bus>,
@@ -131,7 +129,6 @@ impl Wire {
             begun: Instant::now(),
             last_sent: None,
             waited: Waited::default(),
-            waited_before: Duration::ZERO,
             counts: TrafficCounts::default(),
             bus: None,
             off: None,
@@ -177,24 +174,6 @@ impl Wire {
         self.last_sent.unwrap_or(self.begun).elapsed()
     }
 
-    /// Time for which this end has waited since the last intact message was received. A time in which it did something
-    /// else, or in which its process was stopped, is no silence of the other end.
-    #[must_use]
-    pub fn silence(&self) -> Duration {
-        self.waited.total().saturating_sub(self.waited_before)
-    }
-
-    /// Time for which this end has waited for the port, all in all.
-    #[must_use]
-    pub fn waited(&self) -> Duration {
-        self.waited.total()
-    }
-
-    /// Counts a wait that began at this time, without the port.
-    pub(crate) fn wait_without_port(&mut self, begun: Instant, wait: Duration) {
-        self.waited.add(begun, wait);
-    }
-
     /// Sends a message. False: the port did not accept the whole message within the time.
     ///
     /// # Errors
@@ -224,7 +203,7 @@ impl Wire {
         let incoming = self.next(begun, wait);
         self.waited.add(begun, wait);
         if let Ok(Some(_)) = &incoming {
-            self.waited_before = self.waited.total();
+            self.waited.heard();
         }
         incoming
     }

@@ -17,7 +17,9 @@ use octant_requirements::Verdict;
 use octant_run::smoothed::repeat_calibration;
 use octant_sample::Mode;
 use octant_smoother::backward::SmoothedCalibration;
-use octant_smoother::constancy::{self, Change, Finding, LIMIT_SIGMAS, NODES_MAX};
+use octant_smoother::constancy::{
+    self, ConstancyFinding, LIMIT_SIGMAS, NODES_MAX, ParameterChange,
+};
 use octant_source::Replay;
 use octant_source::configure::configurations;
 use serde::Serialize;
@@ -150,7 +152,7 @@ fn moving_states(smoothed: &SmoothedCalibration, walks: bool) -> Vec<StateRow> {
 
 /// The largest finding of each kind.
 fn changes(smoothed: &SmoothedCalibration, prior: &[f64; STATE_COUNT]) -> Vec<ChangeRow> {
-    let mut largest: Vec<Finding> = Vec::new();
+    let mut largest: Vec<ConstancyFinding> = Vec::new();
     constancy::test(smoothed, prior, |found| {
         match largest.iter_mut().find(|known| known.change == found.change) {
             Some(known) if known.sigmas >= found.sigmas => {}
@@ -161,14 +163,16 @@ fn changes(smoothed: &SmoothedCalibration, prior: &[f64; STATE_COUNT]) -> Vec<Ch
     largest.iter().map(change_row).collect()
 }
 
-fn change_row(found: &Finding) -> ChangeRow {
+fn change_row(found: &ConstancyFinding) -> ChangeRow {
     let (unit, si) = state_unit(PARAMETERS + found.parameter);
     let (change, correlation_time_s, per) = match found.change {
-        Change::Jump => ("jump", None, ""),
-        Change::Pulse => ("jump and back", None, ""),
-        Change::Ramp => ("ramp", None, ""),
-        Change::Walk => ("random walk", None, "/√h"),
-        Change::Wander { correlation_time_s } => ("Gauss-Markov", Some(correlation_time_s), ""),
+        ParameterChange::Jump => ("jump", None, ""),
+        ParameterChange::Pulse => ("jump and back", None, ""),
+        ParameterChange::Ramp => ("ramp", None, ""),
+        ParameterChange::Walk => ("random walk", None, "/√h"),
+        ParameterChange::Wander { correlation_time_s } => {
+            ("Gauss-Markov", Some(correlation_time_s), "")
+        }
     };
     // A walk is a change in the square root of a time.
     let time = if per.is_empty() { 1.0 } else { 60.0 };

@@ -100,6 +100,7 @@ mod scenario_schema;
 mod score;
 mod score_solution;
 mod selftest;
+mod smooth;
 mod solution;
 mod source_uri;
 mod system;

@@ -5,14 +5,14 @@ use super::replayed::{Recorded, Replayed};
 use octant_calibration::CoreConfig;
 use octant_endpoint::InProcess;
 use octant_sample::{Epoch, Mode, Output};
-use octant_smoother::history::History;
+use octant_smoother::history::FilterHistory;
 use octant_source::Replay;
 
 /// A calibration of a recording, made again.
 #[derive(Debug)]
 pub struct RepeatedCalibration {
     /// History of the filter.
-    pub history: History,
+    pub history: FilterHistory,
     /// Comparison of the core's answers with the recorded ones, up to the end of the calibration.
     pub replayed: Replayed,
     /// Mode after the calibration; that of the calibration if the recording ends before.
@@ -30,7 +30,7 @@ pub fn repeat_calibration(
     nodes: usize,
 ) -> Result<RepeatedCalibration, RunError> {
     let mut repeated = RepeatedCalibration {
-        history: History::new(config, nodes)?,
+        history: FilterHistory::new(config, nodes)?,
         replayed: Replayed::default(),
         mode: Mode::Aligning,
     };

@@ -88,7 +88,7 @@ impl SmoothedCalibration {
 struct Backward {
     adjoint: StateVector,
     information: States,
-    /// Change of the errors from here to the node that was met last.
+    /// ParameterChange of the errors from here to the node that was met last.
     onward: States,
     nis: f64,
 }

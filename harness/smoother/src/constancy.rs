@@ -41,7 +41,7 @@ type Nodes = SMatrix<f64, NODES_MAX, NODES_MAX>;
 
 /// How a parameter changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Change {
+pub enum ParameterChange {
     /// It jumps, and stays.
     Jump,
     /// It jumps, and jumps back.
@@ -59,11 +59,11 @@ pub enum Change {
 
 /// What a test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finding {
+pub struct ConstancyFinding {
     /// Index of the parameter.
     pub parameter: usize,
     /// How it changes.
-    pub change: Change,
+    pub change: ParameterChange,
     /// Start and end of the change, s of the filter's time; of all that is tested for a walk or a wandering.
     pub between_s: (f64, f64),
     /// Size in σ of a normal variable, positive: |z|, or that with the same probability on both sides as the tail above Q.
@@ -107,16 +107,16 @@ impl Tested<'_> {
     /// The course with this weighted sum of adjoints, its variance, and a change of one.
     fn course(
         &self,
-        change: Change,
+        change: ParameterChange,
         at: (usize, usize),
         sum: f64,
         variance: f64,
-    ) -> Option<Finding> {
+    ) -> Option<ConstancyFinding> {
         if !(variance * self.variance(at.0) >= GAIN_MIN) {
             return None;
         }
         let until_s = if at.1 < self.len() { self.time_s(at.1) } else { self.end_s() };
-        Some(Finding {
+        Some(ConstancyFinding {
             parameter: self.state - PARAMETERS,
             change,
             between_s: (self.time_s(at.0), until_s),
@@ -129,16 +129,16 @@ impl Tested<'_> {
     /// A random course: Q and its eigenvalues, with the mean and the slope of Q by the variance of the course.
     fn random(
         &self,
-        change: Change,
+        change: ParameterChange,
         q: f64,
         form: &Nodes,
         mean: f64,
         slope: f64,
-    ) -> Option<Finding> {
+    ) -> Option<ConstancyFinding> {
         let weights = SymmetricEigen::new(*form).eigenvalues;
         let p = probability_above(weights.as_slice(), q);
         let size = libm::sqrt(((q - mean) / slope).max(0.0));
-        size.is_finite().then(|| Finding {
+        size.is_finite().then(|| ConstancyFinding {
             parameter: self.state - PARAMETERS,
             change,
             between_s: (self.time_s(0), self.end_s()),
@@ -150,7 +150,7 @@ impl Tested<'_> {
 }
 
 /// Runs all tests and calls `found` with the result of each.
-pub fn test(smoothed: &SmoothedCalibration, prior: &Row, mut found: impl FnMut(Finding)) {
+pub fn test(smoothed: &SmoothedCalibration, prior: &Row, mut found: impl FnMut(ConstancyFinding)) {
     for parameter in 0..PARAMETER_COUNT {
         test_parameter(smoothed, prior, parameter, &mut found);
     }
@@ -161,7 +161,7 @@ pub fn test_parameter(
     smoothed: &SmoothedCalibration,
     prior: &Row,
     parameter: usize,
-    found: &mut impl FnMut(Finding),
+    found: &mut impl FnMut(ConstancyFinding),
 ) {
     let state = PARAMETERS + parameter;
     let known =
@@ -184,21 +184,21 @@ pub fn test_parameter(
 }
 
 /// Jumps, pulses and ramps between all pairs of nodes.
-fn courses(tested: &Tested<'_>, found: &mut impl FnMut(Finding)) {
+fn courses(tested: &Tested<'_>, found: &mut impl FnMut(ConstancyFinding)) {
     let (n, c) = (tested.len(), &tested.covariance);
     for j in 0..n {
-        let jump = tested.course(Change::Jump, (j, n), tested.adjoint(j), c[(j, j)]);
+        let jump = tested.course(ParameterChange::Jump, (j, n), tested.adjoint(j), c[(j, j)]);
         jump.map(&mut *found);
         // The ramp changes at j, j + 1, … l − 1.
         let (mut sum, mut variance) = (tested.adjoint(j), c[(j, j)]);
         for l in j + 1..n {
             let back = tested.adjoint(j) - tested.adjoint(l);
             let of_back = c[(j, j)] + c[(l, l)] - 2.0 * c[(j, l)];
-            tested.course(Change::Pulse, (j, l), back, of_back).map(&mut *found);
+            tested.course(ParameterChange::Pulse, (j, l), back, of_back).map(&mut *found);
             if l > j + 1 {
                 let steps = (l - j) as f64;
                 let mean = (sum / steps, variance / (steps * steps));
-                tested.course(Change::Ramp, (j, l), mean.0, mean.1).map(&mut *found);
+                tested.course(ParameterChange::Ramp, (j, l), mean.0, mean.1).map(&mut *found);
             }
             variance += c[(l, l)] + 2.0 * (j..l).map(|m| c[(m, l)]).sum::<f64>();
             sum += tested.adjoint(l);
@@ -207,7 +207,7 @@ fn courses(tested: &Tested<'_>, found: &mut impl FnMut(Finding)) {
 }
 
 /// Random walk: a change at each node, with a variance as the time to the next.
-fn walk(tested: &Tested<'_>) -> Option<Finding> {
+fn walk(tested: &Tested<'_>) -> Option<ConstancyFinding> {
     let n = tested.len();
     if n < 2 {
         return None;
@@ -215,11 +215,11 @@ fn walk(tested: &Tested<'_>) -> Option<Finding> {
     let spacing_s = (tested.end_s() - tested.time_s(0)) / (n - 1) as f64;
     let q: f64 = (0..n).map(|j| tested.adjoint(j) * tested.adjoint(j)).sum();
     let c = &tested.covariance;
-    tested.random(Change::Walk, q, c, c.trace(), spacing_s * c.norm_squared())
+    tested.random(ParameterChange::Walk, q, c, c.trace(), spacing_s * c.norm_squared())
 }
 
 /// Gauss-Markov process: a level between each two nodes.
-fn wander(tested: &Tested<'_>, correlation_time_s: f64) -> Option<Finding> {
+fn wander(tested: &Tested<'_>, correlation_time_s: f64) -> Option<ConstancyFinding> {
     let n = tested.len();
     if n < 2 {
         return None;
@@ -244,7 +244,7 @@ fn wander(tested: &Tested<'_>, correlation_time_s: f64) -> Option<Finding> {
     let form = shaped * tested.covariance * shaped.transpose();
     let form = 0.5 * (form + form.transpose());
     tested.random(
-        Change::Wander { correlation_time_s },
+        ParameterChange::Wander { correlation_time_s },
         q,
         &form,
         form.trace(),

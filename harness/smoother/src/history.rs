@@ -12,7 +12,7 @@ use octant_sample::InnovationOf;
 
 /// History of a filter, taken from the core that holds it.
 #[derive(Debug)]
-pub struct History {
+pub struct FilterHistory {
     store: Store,
     prior: Row,
     variance: f64,
@@ -36,7 +36,7 @@ fn filter_of(config: &CoreConfig) -> Result<(&Calibration, &Kalman), SmootherErr
     Err(SmootherError::NoFilter { found })
 }
 
-impl History {
+impl FilterHistory {
     /// Makes an empty history for a core with this configuration, with `nodes` looks at the filter over the calibration.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use crate::linear::Linear;
 use octant_calibration::covariance::PARAMETERS;
 use octant_smoother::backward::smooth;
-use octant_smoother::constancy::{Change, Finding, test_parameter};
+use octant_smoother::constancy::{ConstancyFinding, ParameterChange, test_parameter};
 
 const COUNT: usize = 200;
 const NODE: usize = 5;
@@ -13,7 +13,7 @@ const CHANGES: usize = 4;
 fn findings(
     seed: u64,
     alter: impl FnMut(usize, &mut octant_smoother::StateVector),
-) -> Vec<Finding> {
+) -> Vec<ConstancyFinding> {
     let system = Linear::new(0.0);
     let (mut store, _) = system.run(seed, COUNT, NODE, alter);
     let mut all = Vec::new();
@@ -22,8 +22,12 @@ fn findings(
     all
 }
 
-fn of(all: &[Finding], change: Change, between_s: Option<(f64, f64)>) -> Finding {
-    let is = |found: &&Finding| {
+fn of(
+    all: &[ConstancyFinding],
+    change: ParameterChange,
+    between_s: Option<(f64, f64)>,
+) -> ConstancyFinding {
+    let is = |found: &&ConstancyFinding| {
         found.change == change && between_s.is_none_or(|between_s| found.between_s == between_s)
     };
     *all.iter().find(is).unwrap()
@@ -37,10 +41,10 @@ fn moments(values: &[f64]) -> (f64, f64) {
 }
 
 /// The courses whose size is known: at 100 s, to 150 s.
-const COURSES: [(Change, (f64, f64)); 3] = [
-    (Change::Jump, (100.0, 200.0)),
-    (Change::Pulse, (100.0, 150.0)),
-    (Change::Ramp, (100.0, 150.0)),
+const COURSES: [(ParameterChange, (f64, f64)); 3] = [
+    (ParameterChange::Jump, (100.0, 200.0)),
+    (ParameterChange::Pulse, (100.0, 150.0)),
+    (ParameterChange::Ramp, (100.0, 150.0)),
 ];
 
 #[test]
@@ -53,8 +57,8 @@ fn sizes_are_unbiased_and_scatter_as_they_say() {
             let all = findings(seed, |k, truth| {
                 // Step k goes from second k − 1 to k.
                 let at = |k: usize| match change {
-                    Change::Jump => f64::from(u8::from(k > 100)),
-                    Change::Pulse => f64::from(u8::from(k > 100 && k <= 150)),
+                    ParameterChange::Jump => f64::from(u8::from(k > 100)),
+                    ParameterChange::Pulse => f64::from(u8::from(k > 100 && k <= 150)),
                     // The ramp that is tested has its changes at the nodes.
                     _ => (((k as f64 - 101.0) / 5.0).floor() + 1.0).clamp(0.0, 10.0) / 10.0,
                 };
@@ -81,7 +85,7 @@ fn without_a_change_every_test_is_normal_and_every_tail_uniform() {
         for (square, (change, between_s)) in squares.iter_mut().zip(COURSES) {
             *square += of(&all, change, Some(between_s)).sigmas.powi(2) / seeds as f64;
         }
-        let walk = of(&all, Change::Walk, None);
+        let walk = of(&all, ParameterChange::Walk, None);
         tails.push(libm::erfc(walk.sigmas / std::f64::consts::SQRT_2));
     }
     for square in squares {
@@ -104,7 +108,7 @@ fn a_random_walk_and_a_wandering_are_seen_and_measured() {
         let all = findings(seed, |k, truth| {
             truth[PARAMETERS + CHANGES] += WALK * noise.at(k as u64)[0];
         });
-        let walk = of(&all, Change::Walk, None);
+        let walk = of(&all, ParameterChange::Walk, None);
         squares.push(walk.size * walk.size);
         seen += u32::from(walk.sigmas > 3.0);
     }
@@ -126,7 +130,7 @@ fn a_random_walk_and_a_wandering_are_seen_and_measured() {
             last = level;
             level = decay * level + sigma * (1.0 - decay * decay).sqrt() * noise.at(k as u64)[0];
         });
-        let found = of(&all, Change::Wander { correlation_time_s: tau }, None);
+        let found = of(&all, ParameterChange::Wander { correlation_time_s: tau }, None);
         squares.push(found.size * found.size);
     }
     let (mean, scatter) = moments(&squares);

@@ -368,7 +368,7 @@ impl<'a> Device<'a> {
     fn look_after(&mut self) -> Result<(), PortError> {
         let Some(session) = &mut self.session else { return Ok(()) };
         let silence = Duration::from_millis(self.facts.limits.silence_ms.into());
-        if !silence.is_zero() && self.wire.silence() >= silence {
+        if !silence.is_zero() && self.wire.waited.silence() >= silence {
             let text = format!("nothing heard for {:.1} s", silence.as_secs_f64());
             return self.leave(Reason::SILENCE, &text);
         }
@@ -455,7 +455,7 @@ pub fn serve(
             device.look_for_silence();
             let begun = Instant::now();
             std::thread::sleep(REOPEN_EVERY);
-            device.wire.wait_without_port(begun, REOPEN_EVERY);
+            device.wire.waited.add(begun, REOPEN_EVERY);
         }
         (device.notice)(&Notice::Listening(device.wire.reached_at()));
     }
@@ -469,7 +469,7 @@ impl Device<'_> {
     /// Gives up a harness that is silent for too long while the port is away.
     fn look_for_silence(&mut self) {
         let silence = Duration::from_millis(self.facts.limits.silence_ms.into());
-        if !silence.is_zero() && self.wire.silence() >= silence {
+        if !silence.is_zero() && self.wire.waited.silence() >= silence {
             self.over("the port was away for too long");
         }
     }

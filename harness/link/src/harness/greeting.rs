@@ -67,7 +67,7 @@ pub(super) fn say_hello(
     stale: &mut Option<Reason>,
 ) -> Result<Hello, SessionError> {
     let before = wire.counts();
-    let waited_before = wire.waited();
+    let waited_before = wire.waited.total();
     let mut intervals = Taken::default().ask(patience.repeat, patience.hello);
     let (mut asked, mut newer_seen) = (0, None);
     loop {
@@ -104,7 +104,7 @@ pub(super) fn say_hello(
             }
         }
         intervals.again();
-        let waited = wire.waited() - waited_before;
+        let waited = wire.waited.total() - waited_before;
         if waited >= patience.hello {
             return Err(SessionError::NoAnswer {
                 port: wire.name().to_owned(),

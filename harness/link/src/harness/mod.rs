@@ -383,10 +383,10 @@ impl Harness {
         let before = self.wire.counts();
         let begun = Instant::now();
         // Patience is for the device: a time in which this process is stopped doesn't count.
-        let waited_before = self.wire.waited();
+        let waited_before = self.wire.waited.total();
         let (mut asked_at, mut asked, mut anew) = (begun, 1, 0);
         loop {
-            let left = answer.saturating_sub(self.wire.waited() - waited_before);
+            let left = answer.saturating_sub(self.wire.waited.total() - waited_before);
             let mut wait = intervals.now().saturating_sub(asked_at.elapsed()).min(left);
             if !silence.is_zero() {
                 // The wait may be longer than the silence after which the device gives up this harness.
@@ -407,7 +407,7 @@ impl Harness {
                     return Err(self.started_anew());
                 }
             }
-            let waited = self.wire.waited() - waited_before;
+            let waited = self.wire.waited.total() - waited_before;
             if waited >= answer {
                 // One is enough where no answer came.
                 if anew > 0 {
