@@ -18,8 +18,9 @@ use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::NAMES;
 use octant_sample::{Mode, Sample};
 use octant_scenario::{Method, Scenario};
-use octant_smoother::constancy;
+use octant_smoother::constancy::{self, NODES_MAX};
 use octant_smoother::history::FilterHistory;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Samples a second: the least at which the filter's sub-steps are those of faster ones.
@@ -216,10 +217,11 @@ fn study_of_faults() {
     }
 }
 
-fn smoothed(seed: u64, fault: Option<&Fault>, hours: f64, moored: bool) -> Vec<(String, f64)> {
-    let mut run = start(seed, hours, moored);
+/// Largest result of each kind of test of the smoother, on a calibration.
+fn smoothed(seed: u64, fault: Option<&Fault>) -> BTreeMap<String, f64> {
+    let mut run = start(seed, HOURS, false);
     let mut injector = Injector::new(fault, seed);
-    let mut history = FilterHistory::new(run.core.config(), 48).unwrap();
+    let mut history = FilterHistory::new(run.core.config(), NODES_MAX).unwrap();
     loop {
         run.step_altered(|mut sample, aiding| {
             injector.alter(&mut sample);
@@ -232,44 +234,51 @@ fn smoothed(seed: u64, fault: Option<&Fault>, hours: f64, moored: bool) -> Vec<(
             history.watch(&run.core).unwrap();
         }
     }
-    let smoothed = history.smooth().unwrap();
-    let mut best: std::collections::BTreeMap<String, f64> = Default::default();
+    let mut largest = BTreeMap::new();
     let prior = *history.prior();
-    constancy::test(&smoothed, &prior, |found| {
-        let name = format!("{:?}", found.change);
-        let best = best.entry(name).or_insert(0.0);
-        *best = best.max(found.sigmas);
+    constancy::test(&history.smooth().unwrap(), &prior, |found| {
+        for name in [format!("{:?}", found.change), "all".to_owned()] {
+            let largest = largest.entry(name).or_insert(0.0);
+            *largest = found.sigmas.max(*largest);
+        }
     });
-    best.into_iter().collect()
+    largest
 }
 
+fn print_smoothed(seeds: u64, fault: Option<&Fault>) {
+    let seeds: Vec<u64> = (1..=seeds).collect();
+    let all = on_two_threads(&seeds, |seed| smoothed(*seed, fault));
+    println!("{}, {} seeds", fault.map_or("clean", |fault| fault.name), seeds.len());
+    for name in all[0].keys() {
+        let mut sigmas: Vec<f64> = all.iter().map(|largest| largest[name]).collect();
+        sigmas.sort_by(f64::total_cmp);
+        let above = |limit: f64| {
+            sigmas.iter().filter(|sigmas| **sigmas > limit).count() as f64 / sigmas.len() as f64
+        };
+        println!(
+            "  {name:45} median {:.2}, largest {:?}; above 5 {:.3}, 5.5 {:.3}",
+            sigmas[sigmas.len() / 2],
+            &sigmas[sigmas.len().saturating_sub(3)..],
+            above(5.0),
+            above(5.5),
+        );
+    }
+}
+
+/// Prints the table of docs/smoothing.md.
 #[test]
 #[ignore = "minutes: a study"]
-fn study_of_smoothed_tests() {
-    let faults = faults();
-    let cases = std::iter::once(None)
-        .chain(faults.iter().map(Some).take(if std::env::var("CLEAN").is_ok() { 0 } else { 8 }));
-    for fault in cases {
-        let n = if fault.is_none() { draws(1000, 4) } else { draws(50, 2) };
-        let seeds: Vec<u64> = (1..=n).collect();
-        let all = on_two_threads(&seeds, |seed| smoothed(*seed, fault, HOURS, false));
-        println!("{}", fault.map_or("clean", |fault| fault.name));
-        for k in 0..all[0].len() {
-            let mut z: Vec<f64> = all.iter().map(|e| e[k].1).collect();
-            z.sort_by(f64::total_cmp);
-            let share = |l: f64| z.iter().filter(|z| **z > l).count() as f64 / z.len() as f64;
-            println!(
-                "  {:45} median {:.2} largest {:.2}; above 4.5 {:.2} 5 {:.2} 5.5 {:.2} 6 {:.2}",
-                all[0][k].0,
-                z[z.len() / 2],
-                z[z.len() - 1],
-                share(4.5),
-                share(5.0),
-                share(5.5),
-                share(6.0)
-            );
-        }
+fn study_of_faults_in_the_smoother() {
+    for fault in &faults() {
+        print_smoothed(draws(50, 2), Some(fault));
     }
+}
+
+/// Prints the largest results of the smoother's tests on clean calibrations.
+#[test]
+#[ignore = "minutes: a study"]
+fn study_of_clean_calibrations_in_the_smoother() {
+    print_smoothed(draws(1000, 4), None);
 }
 
 /// Prints the distribution of the largest correction of clean calibrations.
