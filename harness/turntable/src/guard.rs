@@ -29,6 +29,7 @@ fn failed(reason: impl ToString) -> Error {
 #[derive(Debug)]
 pub struct Guard {
     child: Child,
+    silence: Duration,
     pipe: Option<ChildStdin>,
 }
 
@@ -57,13 +58,22 @@ impl Guard {
         head.extend(bytes);
         let written = pipe.as_mut().map(|pipe| pipe.write_all(&head).and_then(|()| pipe.flush()));
         written.unwrap_or(Err(io::ErrorKind::BrokenPipe.into())).map_err(failed)?;
-        Ok(Self { child, pipe })
+        Ok(Self { child, silence, pipe })
     }
 
     /// Sends a sign of life.
     pub(crate) fn alive(&mut self) -> Result<(), Error> {
         if let Some(status) = self.child.try_wait().map_err(failed)? {
-            return Err(failed(format!("it ended: {status}")));
+            // Status 1 is that of `run_guard` where the table had to be stopped.
+            return Err(failed(if status.code() == Some(1) {
+                format!(
+                    "it stopped the table, because this program gave no sign of life for {} s: it stood still, stopped, \
+                     suspended or short of processor time",
+                    self.silence.as_secs_f64()
+                )
+            } else {
+                format!("it ended without being asked to: {status}")
+            }));
         }
         let pipe = self.pipe.as_mut().ok_or_else(|| failed("it was released"))?;
         pipe.write_all(&[ALIVE]).map_err(failed)

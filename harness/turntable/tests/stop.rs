@@ -118,9 +118,13 @@ mod processes {
     }
 
     fn start(name: &str, guarded: bool) -> Child {
+        start_with(name, guarded, Stdio::null())
+    }
+
+    fn start_with(name: &str, guarded: bool, stderr: Stdio) -> Child {
         let mut command = Command::new(std::env::current_exe().unwrap());
         command.args(["--exact", "stop::processes::harness", "--ignored", "--nocapture"]);
-        command.env(ADDRESS, name).stdout(Stdio::null()).stderr(Stdio::null());
+        command.env(ADDRESS, name).stdout(Stdio::null()).stderr(stderr);
         if guarded {
             command.env(GUARDED, "1");
         }
@@ -161,6 +165,21 @@ mod processes {
     #[test]
     fn the_guard_stops_it_when_the_harness_hangs() {
         ended_by("-STOP", true);
+    }
+
+    #[test]
+    fn a_harness_that_goes_on_after_a_pause_is_told_that_the_guard_has_acted() {
+        let (server, name) = tcp(ensemble());
+        let mut child = start_with(&name, true, Stdio::piped());
+        wait_for("the rate", || turns(&server, TableAxis::Roll));
+        signal(&child, "-STOP");
+        wait_for("rest", || rests(&server));
+        signal(&child, "-CONT");
+        let mut said = String::new();
+        std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut said).unwrap();
+        assert!(!child.wait().unwrap().success());
+        let expected = "it stopped the table, because this program gave no sign of life for 5 s";
+        assert!(said.contains(expected), "{said}");
     }
 
     #[test]
