@@ -17,9 +17,7 @@ use octant_requirements::Verdict;
 use octant_run::smoothed::repeat_calibration;
 use octant_sample::Mode;
 use octant_smoother::backward::SmoothedCalibration;
-use octant_smoother::constancy::{
-    self, ConstancyFinding, LIMIT_SIGMAS, NODES_MAX, ParameterChange,
-};
+use octant_smoother::constancy::{self, ConstancyFinding, NODES_MAX, ParameterChange};
 use octant_source::Replay;
 use octant_source::configure::configurations;
 use serde::Serialize;
@@ -51,7 +49,6 @@ struct Report {
     /// True if the calibration isn't there to its end.
     cut_short: bool,
     states: Vec<StateRow>,
-    limit_sigmas: f64,
     changes: Vec<ChangeRow>,
 }
 
@@ -73,10 +70,18 @@ struct ChangeRow {
     parameter: &'static str,
     between_s: (f64, f64),
     sigmas: f64,
+    /// Above it the change isn't noise.
+    limit_sigmas: f64,
     size: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     size_sigma: Option<f64>,
     unit: String,
+}
+
+impl ChangeRow {
+    fn is_found(&self) -> bool {
+        self.sigmas > self.limit_sigmas
+    }
 }
 
 pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
@@ -105,7 +110,6 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
         equal_to_recording: repeated.replayed.first_difference_sample.is_none(),
         cut_short: matches!(repeated.mode, Mode::Aligning | Mode::Calibrating),
         states: moving_states(&smoothed, walks),
-        limit_sigmas: LIMIT_SIGMAS,
         changes: changes(&smoothed, history.prior()),
     };
     if let Some(file) = &arguments.csv {
@@ -116,7 +120,7 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
     } else {
         print(&text(&report))?
     }
-    let changed = report.changes.iter().any(|change| change.sigmas > LIMIT_SIGMAS);
+    let changed = report.changes.iter().any(ChangeRow::is_found);
     Ok(match (changed, report.cut_short) {
         (true, _) => Verdict::Fail,
         (false, true) => Verdict::Inconclusive,
@@ -182,6 +186,7 @@ fn change_row(found: &ConstancyFinding) -> ChangeRow {
         parameter: octant_sample::parameters::NAMES[found.parameter],
         between_s: found.between_s,
         sigmas: found.sigmas,
+        limit_sigmas: found.change.limit_sigmas(),
         size: found.size * time / si,
         size_sigma: found.size_sigma.map(|sigma| sigma * time / si),
         unit: format!("{unit}{per}"),
@@ -237,25 +242,14 @@ fn text(report: &Report) -> String {
             .map_or_else(String::new, |sigma| format!(" ± {}", significant(sigma, 2)));
         let _ = writeln!(
             out,
-            "  {name:24} {:>6.2}  {:24} {span:>14}  {size}{sigma} {}",
-            change.sigmas, change.parameter, change.unit
+            "  {name:24} {:>6.2} {:>6.1}  {:24} {span:>14}  {size}{sigma} {}",
+            change.sigmas, change.limit_sigmas, change.parameter, change.unit
         );
     }
-    let above = report.changes.iter().filter(|change| change.sigmas > report.limit_sigmas).count();
-    let _ = match above {
-        0 if report.changes.is_empty() => {
-            writeln!(out, "  no parameter is known well enough to be tested")
-        }
-        0 => writeln!(
-            out,
-            "  none is above {} σ: the data agree with constants",
-            report.limit_sigmas
-        ),
-        _ => writeln!(
-            out,
-            "  above {} σ: what the calibration takes for constant has changed",
-            report.limit_sigmas
-        ),
+    out += match report.changes.iter().any(ChangeRow::is_found) {
+        _ if report.changes.is_empty() => "  no parameter is known well enough to be tested\n",
+        false => "  none is above its limit: the data agree with constants\n",
+        true => "  above its limit: what the calibration takes for constant has changed\n",
     };
     out
 }
