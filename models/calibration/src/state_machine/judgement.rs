@@ -140,6 +140,10 @@ pub(super) fn judge(
     if !filter.is_finite() {
         return Err(CalibrationRefusal::Numeric);
     }
+    if total == 0 {
+        // Where the stream ends before the first is due too: a calibration rests on one at least.
+        return Err(CalibrationRefusal::AidingLost { used: 0, expected: expected.max(1) });
+    }
     let estimating = tally.used - tally.held;
     if (total as f64) >= MEASURED_SHARE_MIN * expected as f64
         && (estimating as f64) < ESTIMATING_SHARE_MIN * expected as f64
