@@ -251,7 +251,7 @@ fn every_ready_description_says_where_it_is_from_and_what_it_never_met() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(60))]
 
     /// Arbitrary bytes are counted, cause no panic, and give the same in pieces of any length.
     #[test]

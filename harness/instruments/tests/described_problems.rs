@@ -125,7 +125,7 @@ fn what_is_wrong_is_told_with_line_and_key() {
         (
             "at = 10, type = \"i32\"",
             "at = 10, type = \"int32\"",
-            "unit.toml:11: frame[0].field[2].type: found \"int32\"; did you mean",
+            "unit.toml:11: frame[0].field[2].type: found \"int32\"; expected one of: i8, u8",
         ),
         (
             "at = 10, type = \"i32\", unit = \"rad\", scale = 1e-9",

@@ -74,7 +74,16 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     same_quantity(quantity, other)?;
     check_rate(&keys.rate, keys.split, sample_period_ns)?;
     let time = match &*keys.time_column {
+        RecordedColumn::Name(name) if name == NO_TIME && !keys.rate.given => {
+            return Err(keys.rate.problem(
+                "missing, expected the rate of the rows: time_column is \"none\", and the time of a row is its \
+                 number over the rate",
+            ));
+        }
         RecordedColumn::Name(name) if name == NO_TIME => None,
+        time if measured_columns(keys).iter().any(|(_, column)| *column == time) => {
+            return Err(no_time(keys, time));
+        }
         _ => Some(TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit }),
     };
     let gimbal = keys.gimbal.as_ref().map(|gimbal| {
@@ -107,6 +116,35 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         gimbal: gimbal.transpose()?,
         temperature,
     })
+}
+
+/// Columns of the gyros, and of accelerometers in the same file, by their keys.
+fn measured_columns(keys: &TextKeys) -> Vec<(&'static str, &RecordedColumn)> {
+    let (gyro, accelerometer) = (&keys.gyro, &keys.accelerometer);
+    let mut all = vec![("gyro.x", &*gyro.x), ("gyro.y", &*gyro.y), ("gyro.z", &*gyro.z)];
+    if accelerometer.file == gyro.file {
+        let [x, y, z] = [&accelerometer.x, &accelerometer.y, &accelerometer.z];
+        all.extend([
+            ("accelerometer.x", &**x),
+            ("accelerometer.y", &**y),
+            ("accelerometer.z", &**z),
+        ]);
+    }
+    all
+}
+
+/// Problem of a time in the column of a measured value, which a file without a column of times has by the default.
+fn no_time(keys: &TextKeys, time: &RecordedColumn) -> Problem {
+    let of = measured_columns(keys).into_iter().find(|(_, column)| *column == time);
+    let of = of.map_or("", |(key, _)| key);
+    let column = match time {
+        RecordedColumn::Number(number) => number.to_string(),
+        RecordedColumn::Name(name) => format!("{name:?}"),
+    };
+    keys.time_column.problem(format!(
+        "found column {column}, which is {of} too, expected a column of times, or \"none\" with source.text.rate for \
+         rows without one"
+    ))
 }
 
 fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Problem> {

@@ -18,6 +18,7 @@ use self::clock::Clock;
 use self::feed::Feed;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
+use crate::described::decoder;
 use crate::rate_check::RateCheck;
 use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
@@ -63,8 +64,9 @@ impl LiveSource {
     /// # Errors
     /// If a file can't be read or isn't valid.
     pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
-        if let Speaks::Can(messages) = &instrument.speaks {
-            bus::check(messages, &scenario.folder)?;
+        match &instrument.speaks {
+            Speaks::Can(messages) => bus::check(messages, &scenario.folder)?,
+            line => drop(decoder(line, instrument.count, &scenario.folder)?),
         }
         match &scenario.drive {
             Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
@@ -125,7 +127,7 @@ impl LiveSource {
         self.gone(format!(
             "no reading for {} s; {}",
             self.instrument.silence_s,
-            self.feed.said(self.instrument.speaks.name())
+            self.feed.said(&self.instrument.speaks.told())
         ))
     }
 }
@@ -193,7 +195,7 @@ impl Source for LiveSource {
         // The table is stopped before anything else is done.
         let ended = table.and_then(|table| table.end(broken).err());
         let counters = self.sampler.counters();
-        let protocol = self.instrument.speaks.name();
+        let protocol = self.instrument.speaks.told();
         let (instruments_clock, clock) = self.clock.told().unzip();
         let (table, tables_angles, turntable) = match told {
             Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
