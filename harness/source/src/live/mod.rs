@@ -280,6 +280,39 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn a_described_unit_is_read_over_udp() {
+        // A frame of a KVH 1750 in the unit test of a ROS driver.
+        let frame: [u8; 36] = [
+            0xFE, 0x81, 0xFF, 0x55, 0x37, 0xA9, 0x6A, 0x6E, 0x38, 0x58, 0x6C, 0x1F, 0xB7, 0x5B,
+            0xF8, 0x62, 0xBF, 0x80, 0x3E, 0x78, 0xBB, 0x65, 0x0D, 0x28, 0x3B, 0x0A, 0x37, 0xAC,
+            0x77, 0x3D, 0x00, 0x28, 0x4B, 0xFA, 0x34, 0xD8,
+        ];
+        let choice = octant_scenario::DescriptionChoice::Ready("kvh-1775-rate".to_owned());
+        let instrument = Instrument {
+            uri: "udp:127.0.0.1:0".parse().unwrap(),
+            speaks: Speaks::Described(choice),
+            count: None,
+            axes: Axes::SAME,
+            silence_s: 0.3,
+        };
+        let mut source = LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(2)).unwrap();
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.connect(source.reached_at().strip_prefix("udp:").unwrap()).unwrap();
+        socket.send(&frame).unwrap();
+        let mut epoch = Epoch::default();
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        // 2.019593e-5 rad/s over 5 ms in counts of 2^-36 rad; −1.0019064 g in counts of 2^-30 m/s.
+        assert_eq!(epoch.sample.delta_theta[0], 6939);
+        assert_eq!(epoch.sample.delta_velocity[0], -52_749_421);
+        socket.send(&frame[..20]).unwrap();
+        let error = source.next(&GimbalCommand::default(), &mut epoch).unwrap_err().to_string();
+        assert!(
+            error.contains("1 reading, 0 other frames of protocol described as kvh-1775-rate"),
+            "{error}"
+        );
+    }
+
+    #[test]
     fn a_gap_stays_one_and_a_silence_ends_it() {
         let (mut source, socket) = source(Protocol::VectorNav, 1000);
         let mut encoder = AnyEncoder::new(Protocol::VectorNav);
