@@ -1,8 +1,13 @@
 //! Names of the channels: the body's axis, and beside it the name that the file of the recording has for it.
 
-use super::analysis::NAMES;
 use super::deviations::CHANNELS;
+use octant_scenario::SourceSpec;
+use octant_scenario::recorded::{AxisColumn, MappedField, RecordedColumn};
 use serde::Serialize;
+
+/// Names of the channels.
+pub const NAMES: [&str; CHANNELS] =
+    ["gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"];
 
 /// Names that the file has for gyros x, y, z and accelerometers x, y, z of the body; none where it names none.
 ///
@@ -13,6 +18,35 @@ use serde::Serialize;
 pub struct FileNames(pub Option<[String; CHANNELS]>);
 
 impl FileNames {
+    /// Names in the columns or fields that a source maps.
+    #[must_use]
+    pub fn of(source: &SourceSpec) -> Self {
+        let signed = |scale: f64, name: String| match scale < 0.0 {
+            true => format!("−{name}"),
+            false => name,
+        };
+        let of_text = |axis: &AxisColumn| {
+            let name = match &axis.column {
+                RecordedColumn::Number(number) => format!("column {number}"),
+                RecordedColumn::Name(name) => name.clone(),
+            };
+            signed(axis.scale, name)
+        };
+        let of_mcap = |field: &MappedField| signed(field.scale, field.path.clone());
+        let [[a, b, c], [d, e, f]] = match source {
+            SourceSpec::Text(mapping) => {
+                let accelerometer = mapping.accelerometer.each_ref().map(of_text);
+                [mapping.gyro.each_ref().map(of_text), accelerometer]
+            }
+            SourceSpec::Replay { mapping: Some(mapping), .. } => {
+                let accelerometer = mapping.accelerometer.each_ref().map(of_mcap);
+                [mapping.gyro.each_ref().map(of_mcap), accelerometer]
+            }
+            _ => return Self(None),
+        };
+        Self(Some([a, b, c, d, e, f]))
+    }
+
     fn of_file(&self, index: usize) -> Option<&str> {
         self.0.as_ref()?.get(index).map(String::as_str)
     }

@@ -88,7 +88,7 @@ impl RestingRecording {
             }
         };
         // Columns of octant export have the names of the channels.
-        let names = FileNames(scenario.source.channel_names().filter(|_| !of_table));
+        let names = if of_table { FileNames(None) } else { FileNames::of(&scenario.source) };
         let mut recording = Self { name: name.clone(), scenario: unsplit(scenario)?, names };
         recording.refuse_others()?;
         let found_s = recording.probe().map_err(|error| match error {

@@ -57,6 +57,8 @@ fn what_is_no_recording_is_refused() {
 const NAMED: &str = "
 [source]
 uri = \"text:unit.csv\"
+[source.reference]
+kind = \"static\"
 [source.text]
 delimiter = \"comma\"
 header = true

@@ -259,13 +259,13 @@ fn rows_without_a_time_have_their_number_over_the_rate_and_all_who_read_it_are_t
         (
             "time_column = \"none\"\n",
             "",
-            "source.text.time_column: found column 1, which is gyro.x too, expected a column of times, or \"none\" \
-             with source.text.rate for rows without one",
+            "source.text.time_column: found a column of a gyro or accelerometer, expected one of times, or \"none\" with \
+             source.text.rate",
         ),
         (
             "time_column = \"none\"\n",
             "time_column = 5\n",
-            "source.text.time_column: found column 5, which is accelerometer.y too",
+            "source.text.time_column: found a column of a gyro or accelerometer",
         ),
     ] {
         std::fs::write(&scenario, UNTIMED.replacen(from, to, 1)).unwrap();

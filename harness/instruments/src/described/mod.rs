@@ -103,7 +103,7 @@ pub struct FrameDescription<'a> {
 
 /// Reason why frames are no description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum DescriptionError {
+pub enum RecordDescriptionError {
     /// There is no frame, or there are too many frames or fields.
     #[error("found {found} {what}, expected 1 to {most}")]
     Count {
@@ -176,10 +176,10 @@ impl RecordDescription {
         frames: &[FrameDescription<'_>],
         counter: Rollover,
         stamp: Rollover,
-    ) -> Result<Self, DescriptionError> {
+    ) -> Result<Self, RecordDescriptionError> {
         let within = |found, most, what| match found {
             found if (1..=most).contains(&found) => Ok(()),
-            found => Err(DescriptionError::Count { found, what, most }),
+            found => Err(RecordDescriptionError::Count { found, what, most }),
         };
         within(frames.len(), FRAMES_MAX, "frames")?;
         let nothing = FrameField {
@@ -204,14 +204,14 @@ impl RecordDescription {
                 let end = number.at.saturating_add(number.number.bytes());
                 if end > frame.bytes {
                     let (at, bytes) = (number.at, frame.bytes);
-                    return Err(DescriptionError::Outside { frame: index + 1, at, bytes });
+                    return Err(RecordDescriptionError::Outside { frame: index + 1, at, bytes });
                 }
             }
             let alike = |other: &FrameDescription<'_>| {
                 other.sync.starts_with(frame.sync) || frame.sync.starts_with(other.sync)
             };
             if let Some(first) = frames[..index].iter().position(alike) {
-                return Err(DescriptionError::Alike { first: first + 1, second: index + 1 });
+                return Err(RecordDescriptionError::Alike { first: first + 1, second: index + 1 });
             }
             let mut sync = [0; SYNC_BYTES_MAX];
             sync[..frame.sync.len()].copy_from_slice(frame.sync);

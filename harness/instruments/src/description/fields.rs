@@ -1,6 +1,6 @@
 //! Fields of a frame.
 
-use super::DescriptionProblem;
+use super::problem::DescriptionProblem;
 use super::table::Table;
 use crate::ReadingKind;
 use crate::described::{ByteOrder, FieldMeaning, FrameField, FrameNumber, NumberType};

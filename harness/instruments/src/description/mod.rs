@@ -19,27 +19,16 @@
 //! that isn't known, a value that isn't possible, and a description of a newer version are errors with file and line.
 
 mod fields;
+mod problem;
 mod read;
 mod ready;
 mod table;
 
+pub use problem::{DescriptionProblem, VERSION};
 pub use ready::READY;
 
 use crate::described::{Described, DescribedDecoder, RecordDescription};
 use std::string::String;
-
-/// Version of the format of descriptions.
-pub const VERSION: i64 = 1;
-
-/// Error of a description.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{place}: {what}")]
-pub struct DescriptionProblem {
-    /// File with line.
-    pub place: String,
-    /// Key, what was found, what was expected.
-    pub what: String,
-}
 
 /// Description of a unit.
 #[derive(Clone, Debug)]
@@ -56,7 +45,8 @@ impl UnitDescription {
     /// # Errors
     /// If the text is no description, with file, line and key.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionProblem> {
-        read::read(file, text)
+        let (name, record) = read::read(file, text)?;
+        Ok(Self { name, record })
     }
 
     /// Reads a description that is part of the program, if there is one of the name.

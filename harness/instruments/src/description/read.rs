@@ -1,8 +1,8 @@
 //! A description from its text.
 
 use super::fields::{ORDERS, ReadField, fields, place};
+use super::problem::{DescriptionProblem, VERSION};
 use super::table::{Table, Text};
-use super::{DescriptionProblem, UnitDescription, VERSION};
 use crate::described::{
     ByteOrder, ChecksumKind, CrcParameters, DescribedCrc, FRAME_BYTES_MAX, FieldMeaning,
     FrameChecksum, FrameDescription, FrameField, FrameNumber, NumberType, RecordDescription,
@@ -11,7 +11,7 @@ use crate::described::{
 use crate::rollover::Rollover;
 use std::borrow::ToOwned;
 use std::format;
-use std::string::ToString as _;
+use std::string::{String, ToString as _};
 use std::vec::Vec;
 use toml::de::DeTable;
 
@@ -23,7 +23,11 @@ struct ReadFrame {
     fields: Vec<FrameField>,
 }
 
-pub(super) fn read(file: &str, text: &str) -> Result<UnitDescription, DescriptionProblem> {
+/// Reads the name and the frames of a unit.
+pub(super) fn read(
+    file: &str,
+    text: &str,
+) -> Result<(String, RecordDescription), DescriptionProblem> {
     let text = Text { file, text };
     let table = DeTable::parse(text.text).map_err(|error| {
         let offset = error.span().map_or(text.text.len(), |span| span.start);
@@ -81,7 +85,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<UnitDescription, Descriptio
     };
     let record = RecordDescription::new(&views, rollover(ranges.counter), rollover(ranges.stamp))
         .map_err(|error| root.problem("frame", error.to_string()))?;
-    Ok(UnitDescription { name, record })
+    Ok((name, record))
 }
 
 /// Ranges of counter and clock, which are the same in all frames.

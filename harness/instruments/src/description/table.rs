@@ -1,6 +1,6 @@
 //! Tables of a description with the places of their keys.
 
-use super::DescriptionProblem;
+use super::problem::DescriptionProblem;
 use octant_base::names::suggestion;
 use std::borrow::ToOwned as _;
 use std::format;

@@ -3,7 +3,7 @@
 use super::file_name::FileName;
 use super::fmu::Fmu;
 use super::instrument::{Instrument, InstrumentLog};
-use crate::recorded::{AxisColumn, MappedField, McapMapping, RecordedColumn, TextMapping};
+use crate::recorded::{McapMapping, TextMapping};
 use crate::trajectory::SolutionSpec;
 
 /// Source of the samples.
@@ -122,36 +122,6 @@ impl SourceSpec {
             "no time stamps: the time is assumed, not measured, the row's number over {} Hz",
             octant_base::number::plain(mapping.nominal_rate_hz, 9)
         ))
-    }
-
-    /// Names that the file has for gyros x, y, z and accelerometers x, y, z of the body, with a minus where the body's
-    /// axis is the opposite; `None` for a recording that names none.
-    #[must_use]
-    pub fn channel_names(&self) -> Option<[String; 6]> {
-        let signed = |scale: f64, name: String| match scale < 0.0 {
-            true => format!("−{name}"),
-            false => name,
-        };
-        let of_text = |axis: &AxisColumn| {
-            let name = match &axis.column {
-                RecordedColumn::Number(number) => format!("column {number}"),
-                RecordedColumn::Name(name) => name.clone(),
-            };
-            signed(axis.scale, name)
-        };
-        let of_mcap = |field: &MappedField| signed(field.scale, field.path.clone());
-        let [[a, b, c], [d, e, f]] = match self {
-            Self::Text(mapping) => [
-                mapping.gyro.each_ref().map(of_text),
-                mapping.accelerometer.each_ref().map(of_text),
-            ],
-            Self::Replay { mapping: Some(mapping), .. } => [
-                mapping.gyro.each_ref().map(of_mcap),
-                mapping.accelerometer.each_ref().map(of_mcap),
-            ],
-            _ => return None,
-        };
-        Some([a, b, c, d, e, f])
     }
 
     /// Reason for having no truth; `None` if there is some. An FMU without a map may be Octant's

@@ -81,8 +81,10 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
             ));
         }
         RecordedColumn::Name(name) if name == NO_TIME => None,
-        time if measured_columns(keys).iter().any(|(_, column)| *column == time) => {
-            return Err(no_time(keys, time));
+        time if is_measured(keys, time) => {
+            return Err(keys.time_column.problem(
+                "found a column of a gyro or accelerometer, expected one of times, or \"none\" with source.text.rate",
+            ));
         }
         _ => Some(TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit }),
     };
@@ -118,33 +120,12 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     })
 }
 
-/// Columns of the gyros, and of accelerometers in the same file, by their keys.
-fn measured_columns(keys: &TextKeys) -> Vec<(&'static str, &RecordedColumn)> {
-    let (gyro, accelerometer) = (&keys.gyro, &keys.accelerometer);
-    let mut all = vec![("gyro.x", &*gyro.x), ("gyro.y", &*gyro.y), ("gyro.z", &*gyro.z)];
-    if accelerometer.file == gyro.file {
-        let [x, y, z] = [&accelerometer.x, &accelerometer.y, &accelerometer.z];
-        all.extend([
-            ("accelerometer.x", &**x),
-            ("accelerometer.y", &**y),
-            ("accelerometer.z", &**z),
-        ]);
-    }
-    all
-}
-
-/// Problem of a time in the column of a measured value, which a file without a column of times has by the default.
-fn no_time(keys: &TextKeys, time: &RecordedColumn) -> Problem {
-    let of = measured_columns(keys).into_iter().find(|(_, column)| *column == time);
-    let of = of.map_or("", |(key, _)| key);
-    let column = match time {
-        RecordedColumn::Number(number) => number.to_string(),
-        RecordedColumn::Name(name) => format!("{name:?}"),
-    };
-    keys.time_column.problem(format!(
-        "found column {column}, which is {of} too, expected a column of times, or \"none\" with source.text.rate for \
-         rows without one"
-    ))
+/// True if a column is one of a gyro, or of an accelerometer in the same file.
+fn is_measured(keys: &TextKeys, column: &RecordedColumn) -> bool {
+    let (gyro, accel) = (&keys.gyro, &keys.accelerometer);
+    let of_gyro = [&gyro.x, &gyro.y, &gyro.z].iter().any(|x| ***x == *column);
+    let of_accel = [&accel.x, &accel.y, &accel.z].iter().any(|x| ***x == *column);
+    of_gyro || (of_accel && accel.file == gyro.file)
 }
 
 fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Problem> {
