@@ -145,7 +145,7 @@ fn what_is_wrong_is_told_with_line_and_key() {
         (
             "mask = 0x7F",
             "unit = \"s\"",
-            "unit.toml:15: frame[0].field[6].unit: unknown key; did you mean",
+            "unit.toml:15: frame[0].field[6].unit: unknown key; known keys: is, at, type, byte_order, mask, modulo",
         ),
         (
             "is = \"counter\"",
