@@ -66,7 +66,9 @@ impl LiveSource {
     pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
         match &instrument.speaks {
             Speaks::Can(messages) => bus::check(messages, &scenario.folder)?,
-            line => drop(decoder(line, instrument.count, &scenario.folder)?),
+            line => {
+                decoder(line, instrument.count, &scenario.folder)?;
+            }
         }
         match &scenario.drive {
             Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
