@@ -5,6 +5,7 @@ use super::drift::{BlockMeans, RampEstimate};
 use super::error::CharacteriseError;
 use super::fit::{NoiseFitter, RandomTermsFit};
 use super::freedom::{VarianceKind, degrees_of_freedom, interval};
+pub use super::names::NAMES;
 use super::recording::RestingRecording;
 use super::spectrum::{SpectrumLine, WelchSpectrum};
 use super::survey::RestSurvey;
@@ -15,9 +16,6 @@ use serde::Serialize;
 const KEPT: u64 = 4000;
 /// Bins of a spectrum in the result, in a third of an octave.
 const THIRDS: f64 = 3.0;
-/// Names of the channels.
-pub const NAMES: [&str; CHANNELS] =
-    ["gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"];
 
 /// A deviation with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

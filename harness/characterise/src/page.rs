@@ -3,6 +3,7 @@
 use super::analysis::ChannelAnalysis;
 use super::fit::variance_of;
 use super::kernel::{DifferenceOrder, RandomTerm};
+use super::names::FileNames;
 use super::result::Characterisation;
 use super::text::{estimate, title, unit};
 use maud::{Markup, html};
@@ -24,7 +25,11 @@ pub fn render(result: &Characterisation, command: &str) -> String {
         PageSection::new(
             "temperature",
             "Temperature",
-            temperature::section(&result.temperature, &result.analysis.channels),
+            temperature::section(
+                &result.temperature,
+                &result.analysis.channels,
+                &result.names_in_file,
+            ),
         ),
         PageSection::new("twin", "Simulated twin", twin(result)),
         PageSection::new("imu", "Instrument of a scenario", instrument(result)),
@@ -48,6 +53,7 @@ pub fn render(result: &Characterisation, command: &str) -> String {
                 @if result.gaps > 0 { " Gaps: " (result.gaps) "." }
                 @if result.invalid > 0 { " Invalid or saturated samples: " (result.invalid) "." }
                 @if let Some(cut) = &result.cut_short { " Cut short: " (cut) "." }
+                @if let Some(time) = &result.assumed_time { " The recording has " (time) "." }
             }
         }
         (sections(&all))
@@ -59,6 +65,11 @@ fn triads(result: &Characterisation) -> impl Iterator<Item = (&'static str, &[Ch
     ["Gyro", "Accelerometer"].into_iter().zip(result.analysis.channels.chunks(3))
 }
 
+/// Header of a table with a column for each axis of a triad: the body's axis, and the file's name of it.
+fn axes(names: &FileNames, triad: usize) -> Markup {
+    html! { @for axis in 0..3 { th.n { (names.axis(triad, axis)) } } }
+}
+
 fn terms(result: &Characterisation) -> Markup {
     html! {
         p.hint { "Coefficients of IEEE Std 952 with their intervals of 95 %. A term that the recording doesn't show has the \
@@ -67,7 +78,7 @@ fn terms(result: &Characterisation) -> Markup {
         @for (triad, channels) in triads(result) {
             @let is_gyro = triad == "Gyro";
             table {
-                thead { tr { th { (triad) } @for axis in ["x", "y", "z"] { th.n { (axis) } } } }
+                thead { tr { th { (triad) } (axes(&result.names_in_file, usize::from(!is_gyro))) } }
                 tbody {
                     @for term in RandomTerm::ALL {
                         @let (name, size) = unit(Some(term), is_gyro);
@@ -127,11 +138,18 @@ fn deviations(result: &Characterisation) -> Markup {
             Modified Allan and Hadamard deviations are in the JSON." }
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
-                @let title = format!("{triad} {}, {}", &channel.name[channel.name.len() - 1..], channel.unit);
+                @let title = format!("{triad} {}, {}", axis(result, channel), channel.unit);
                 (deviation_chart(&title, channel, result).render())
             } }
         }
     }
+}
+
+/// Axis of a channel with the file's name.
+fn axis(result: &Characterisation, channel: &ChannelAnalysis) -> String {
+    let index = result.analysis.channels.iter().position(|other| other.name == channel.name);
+    let index = index.unwrap_or_default();
+    result.names_in_file.axis(index / 3, index % 3)
 }
 
 fn deviation_chart(title: &str, channel: &ChannelAnalysis, result: &Characterisation) -> Chart {
@@ -182,7 +200,7 @@ fn spectra(result: &Characterisation) -> Markup {
             (result.analysis.segments) " segments of " (plain(1.0 / result.analysis.bin_hz, 4)) " s. Grey: the simulated twin." } }
         @for (triad, channels) in triads(result) {
             div.multiples { @for channel in channels {
-                @let title = format!("{triad} {}, {}/√Hz", &channel.name[channel.name.len() - 1..], channel.unit);
+                @let title = format!("{triad} {}, {}/√Hz", axis(result, channel), channel.unit);
                 (spectrum_chart(&title, channel, result).render())
             } }
         }
@@ -222,7 +240,7 @@ fn lines(result: &Characterisation) -> Markup {
                 thead { tr { th { "Channel" } th.n { "Frequency, Hz" } th.n { "Resolution, Hz" } th.n { "Amplitude" } th { "Unit" }
                     th.n { "False alarm" } th { "Mains" } } }
                 tbody { @for (channel, line) in found { tr {
-                    td { (channel.name) }
+                    td { (result.names_in_file.channel(channel.name)) }
                     td.n { (plain(line.frequency_hz, 6)) }
                     td.n { (significant(line.resolution_hz, 2)) }
                     td.n { (significant(line.amplitude, 3)) }
@@ -263,7 +281,7 @@ fn twin(result: &Characterisation) -> Markup {
             thead { tr { th { "Channel" } th { "Allan deviations" } th.n { "Within intervals" } th.n { "Worst ratio" } th { "Spectrum" }
                 th.n { "Worst ratio" } th { "Increments" } th.n { "Distance" } } }
             tbody { @for c in &twin.channels { tr {
-                td { (c.name) }
+                td { (result.names_in_file.channel(c.name)) }
                 td { (said(c.allan_probability)) }
                 td.n { (c.allan_within) " of " (c.allan_points) }
                 td.n { (significant(c.allan_ratio, 3)) }

@@ -2,6 +2,7 @@
 
 use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
+use super::names::FileNames;
 use octant_recorder::reader::Recording;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
@@ -30,6 +31,7 @@ const GAP: f64 = 1.5;
 pub struct RestingRecording {
     name: String,
     scenario: Scenario,
+    names: FileNames,
 }
 
 /// A sample as rates.
@@ -85,7 +87,9 @@ impl RestingRecording {
                 parse(&format!("{PLAIN}{EXPORTED}"), std::slice::from_ref(&uri))?
             }
         };
-        let mut recording = Self { name: name.clone(), scenario: unsplit(scenario)? };
+        // Columns of octant export have the names of the channels.
+        let names = if of_table { FileNames(None) } else { FileNames::of(&scenario.source) };
+        let mut recording = Self { name: name.clone(), scenario: unsplit(scenario)?, names };
         recording.refuse_others()?;
         let found_s = recording.probe().map_err(|error| match error {
             CharacteriseError::Source(error) if of_table && path.exists() => fail(format!(
@@ -117,6 +121,12 @@ impl RestingRecording {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Names that the file has for the channels.
+    #[must_use]
+    pub fn names(&self) -> &FileNames {
+        &self.names
     }
 
     /// Nominal period, s.

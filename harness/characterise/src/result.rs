@@ -4,6 +4,7 @@ use super::analysis::{RestAnalysis, analyse};
 use super::earth_rate::{EarthRateCheck, check};
 use super::error::CharacteriseError;
 use super::instrument::instrument_file;
+use super::names::FileNames;
 use super::recording::RestingRecording;
 use super::survey::{RestStretch, survey};
 use super::temperature::{self, TemperatureDependence};
@@ -22,6 +23,10 @@ pub struct Characterisation {
     pub octant: &'static str,
     /// Recording.
     pub recording: String,
+    /// Names that its file has for the channels, in the order of the analysis; `null` where it names none.
+    pub names_in_file: FileNames,
+    /// Words for the times of a recording that has no stamps; `null` where it has them.
+    pub assumed_time: Option<String>,
     /// Sample rate, Hz.
     pub rate_hz: f64,
     /// Length of the recording, s.
@@ -87,6 +92,8 @@ pub fn characterise(
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION"),
         recording: recording.name().to_owned(),
+        names_in_file: recording.names().clone(),
+        assumed_time: scenario.source.assumed_time(),
         rate_hz: 1.0 / period_s,
         duration_s: survey.samples as f64 * period_s,
         rest_s: rest as f64 * period_s,

@@ -204,7 +204,7 @@ fn stretches(
         if stuck && let Some(first) = first {
             return Err(recording.unusable(format!(
                 "{} is {} in every sample of every second, expected noise: the channel is stuck",
-                NAMES[c],
+                recording.names().channel(NAMES[c]),
                 plain(first.mean[c], 6)
             )));
         }

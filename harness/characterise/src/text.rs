@@ -79,10 +79,14 @@ pub fn of(result: &Characterisation) -> String {
     if let Some(cut) = &result.cut_short {
         let _ = writeln!(out, "  cut short: {cut}");
     }
+    if let Some(time) = &result.assumed_time {
+        let _ = writeln!(out, "  {time}");
+    }
     let _ = writeln!(out, "noise terms, [interval of 95 %]");
-    for (triad, channels) in
-        ["gyro", "accelerometer"].iter().zip(result.analysis.channels.chunks(3))
+    for (number, (triad, channels)) in
+        ["gyro", "accelerometer"].iter().zip(result.analysis.channels.chunks(3)).enumerate()
     {
+        columns(&mut out, result, number, triad);
         for term in RandomTerm::ALL {
             let (name, size) = unit(Some(term), *triad == "gyro");
             let cell = |channel: &ChannelAnalysis| match &channel.noise {
@@ -113,16 +117,25 @@ pub fn of(result: &Characterisation) -> String {
             let _ = writeln!(
                 out,
                 "  {}: the terms don't describe it (probability {})",
-                channel.name,
+                result.names_in_file.channel(channel.name),
                 significant(noise.probability.max(1e-12), 2)
             );
         }
     }
     lines(&mut out, result);
     earth(&mut out, result);
-    temperature(&mut out, &result.temperature);
+    temperature(&mut out, result);
     twin(&mut out, result);
     out
+}
+
+/// Row with the file's names of a triad's axes, where it has any.
+fn columns(out: &mut String, result: &Characterisation, number: usize, triad: &str) {
+    let names = (0..3).map(|axis| result.names_in_file.column(number, axis));
+    if let Some(names) = names.collect::<Option<Vec<&str>>>() {
+        let cells = ["x", "y", "z"].iter().zip(names).map(|(axis, name)| format!("{axis}: {name}"));
+        row(out, &format!("{triad} x, y, z: columns of the file"), cells);
+    }
 }
 
 fn row(out: &mut String, name: &str, cells: impl Iterator<Item = String>) {
@@ -149,7 +162,7 @@ fn lines(out: &mut String, result: &Characterisation) {
             let _ = writeln!(
                 out,
                 "  {} {} ± {} Hz, amplitude {} {}{mains}",
-                channel.name,
+                result.names_in_file.channel(channel.name),
                 plain(line.frequency_hz, 6),
                 significant(line.resolution_hz, 2),
                 significant(line.amplitude, 3),
@@ -242,7 +255,8 @@ pub fn steadiness(found: &TemperatureDependence) -> Option<String> {
     ))
 }
 
-fn temperature(out: &mut String, found: &TemperatureDependence) {
+fn temperature(out: &mut String, result: &Characterisation) {
+    let found = &result.temperature;
     if let Some(reason) = &found.reason {
         let _ = writeln!(out, "temperature: not told, {reason}");
         return;
@@ -250,7 +264,10 @@ fn temperature(out: &mut String, found: &TemperatureDependence) {
     let [low, high] = found.range_c.unwrap_or_default().map(|t| plain(t, 4));
     let _ =
         writeln!(out, "temperature from {low} to {high} degC, bias per kelvin, [interval of 95 %]");
-    for (triad, fits) in ["gyro", "accelerometer"].iter().zip(found.channels.chunks(3)) {
+    for (number, (triad, fits)) in
+        ["gyro", "accelerometer"].iter().zip(found.channels.chunks(3)).enumerate()
+    {
+        columns(out, result, number, triad);
         let (name, size) = unit_per_k(*triad == "gyro");
         row(out, &format!("{triad} bias, {name}"), fits.iter().map(|fit| per_k(fit, size)));
     }
@@ -270,12 +287,15 @@ fn twin(out: &mut String, result: &Characterisation) {
         twin.seed,
         plain(100.0 * twin.level, 2)
     );
+    let named = |name: &str| result.names_in_file.channel(name);
+    let width =
+        twin.channels.iter().map(|c| named(c.name).chars().count()).max().unwrap_or(0).max(16);
     for channel in &twin.channels {
         let said = |probability: f64| if probability >= twin.level { "agrees" } else { "differs" };
         let _ = writeln!(
             out,
-            "  {:16} Allan deviations {} ({} of {} within), spectrum {}, increments {}",
-            channel.name,
+            "  {:width$} Allan deviations {} ({} of {} within), spectrum {}, increments {}",
+            named(channel.name),
             said(channel.allan_probability),
             channel.allan_within,
             channel.allan_points,

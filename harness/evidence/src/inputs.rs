@@ -11,6 +11,9 @@ pub struct InputFacts {
     pub file: String,
     /// SHA-256, hexadecimal.
     pub sha256: String,
+    /// Words for the times of samples whose file has none; omitted where it has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
 }
 
 /// Reason why a recording can't be hashed.
@@ -37,17 +40,19 @@ pub enum InputHashError {
 /// # Errors
 /// If one can't be read.
 pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputHashError> {
-    let one = |name: FileName| {
+    let time = scenario.source.assumed_time();
+    let one = |name: FileName, time: Option<String>| {
         let path = name
             .path(&scenario.folder)
             .map_err(|reason| InputHashError::Name { reason: reason.to_string() })?;
         let file = path.display().to_string();
         match sha256(&path) {
-            Ok(sha256) => Ok(InputFacts { file, sha256 }),
+            Ok(sha256) => Ok(InputFacts { file, sha256, time }),
             Err(error) => Err(InputHashError::Read { file, error }),
         }
     };
     let reference = scenario.reference.as_ref().and_then(|reference| reference.own_file());
     let reference = reference.map(|file| FileName(file.display().to_string()));
-    scenario.source.recordings().into_iter().chain(reference).map(one).collect()
+    let samples = scenario.source.recordings().into_iter().map(|name| one(name, time.clone()));
+    samples.chain(reference.into_iter().map(|name| one(name, None))).collect()
 }

@@ -1,6 +1,7 @@
 //! The list of the protocols, and the choice of one by its name.
 
 use crate::Reading;
+use crate::described::DescribedDecoder;
 use crate::encoding::CannotCarry;
 use crate::facts::ProtocolFacts;
 use crate::framing::{FramingEvent, ReadingCounters};
@@ -37,6 +38,8 @@ macro_rules! protocols {
         )]
         pub enum AnyDecoder {
             $(#[doc = concat!("[`crate::", stringify!($module), "`].")] $variant(crate::$module::$decoder),)+
+            /// [`crate::described`], which no [`Protocol`] names: it needs a description.
+            Described(DescribedDecoder),
         }
 
         impl AnyDecoder {
@@ -54,6 +57,7 @@ macro_rules! protocols {
             pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent> {
                 match self {
                     $(Self::$variant(decoder) => decoder.next(bytes),)+
+                    Self::Described(decoder) => decoder.next(bytes),
                 }
             }
 
@@ -61,6 +65,7 @@ macro_rules! protocols {
             pub fn end(&mut self) -> Option<FramingEvent> {
                 match self {
                     $(Self::$variant(decoder) => decoder.end(),)+
+                    Self::Described(decoder) => decoder.end(),
                 }
             }
 
@@ -69,6 +74,7 @@ macro_rules! protocols {
             pub fn counters(&self) -> &ReadingCounters {
                 match self {
                     $(Self::$variant(decoder) => decoder.counters(),)+
+                    Self::Described(decoder) => decoder.counters(),
                 }
             }
         }

@@ -68,12 +68,12 @@ pub trait Framing {
     const EMPTY: Self::Room;
 
     /// True if a frame may begin with this byte.
-    fn begins(byte: u8) -> bool;
+    fn begins(&self, byte: u8) -> bool;
 
     /// Length of the frame that begins with these bytes, of which the first one passed
     /// [`Framing::begins`]. Never longer than the buffer, and with [`Extent::Open`] never more than its
     /// room. More bytes don't change an answer other than [`Extent::Open`].
-    fn extent(bytes: &[u8]) -> Extent;
+    fn extent(&self, bytes: &[u8]) -> Extent;
 
     /// Reads a frame of that length; `None`: it is intact and holds no reading.
     ///
@@ -213,7 +213,8 @@ impl<P: Framing> FrameDecoder<P> {
                     Step::Wait => return None,
                 }
             }
-            let skipped = bytes.iter().position(|byte| P::begins(*byte)).unwrap_or(bytes.len());
+            let skipped =
+                bytes.iter().position(|byte| self.protocol.begins(*byte)).unwrap_or(bytes.len());
             if skipped > 0 {
                 self.take(bytes, skipped);
                 self.counters.bytes_lost += skipped as u64;
@@ -222,7 +223,7 @@ impl<P: Framing> FrameDecoder<P> {
                 return None;
             }
             let all = bytes.len();
-            match P::extent(bytes) {
+            match self.protocol.extent(bytes) {
                 Extent::Bytes(length) if length <= all => {
                     let outcome = self.protocol.read(&bytes[..length]);
                     let intact = self.conclude(&outcome, length);
@@ -259,7 +260,7 @@ impl<P: Framing> FrameDecoder<P> {
 
     /// Makes one step with the bytes held.
     fn complete(&mut self, bytes: &mut &[u8]) -> Step {
-        match P::extent(&self.held.as_ref()[..self.length]) {
+        match self.protocol.extent(&self.held.as_ref()[..self.length]) {
             Extent::None => {
                 self.drop_held(1);
                 Step::Go
@@ -321,7 +322,7 @@ impl<P: Framing> FrameDecoder<P> {
     fn remove_held(&mut self, count: usize) {
         let held = &mut self.held.as_mut()[..self.length];
         let rest = held.get(count..).unwrap_or_default();
-        let lost = rest.iter().position(|byte| P::begins(*byte)).unwrap_or(rest.len());
+        let lost = rest.iter().position(|byte| self.protocol.begins(*byte)).unwrap_or(rest.len());
         self.length = rest.len() - lost;
         held.copy_within(count + lost.., 0);
         self.counters.bytes_lost += lost as u64;

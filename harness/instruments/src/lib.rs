@@ -18,11 +18,13 @@
 //! that a unit at rest with z down shows −g on z. If a protocol sends another order or sign (NovAtel:
 //! z, −y, x), the codec corrects it. The mounting of the unit is set at the [`Sampler`] ([`Axes`]).
 //!
-//! Nothing in this crate allocates, waits or depends on a port, except `dbc`: with the feature of that
-//! name, any CAN database is read on a host, through a mapping of its signals.
+//! [`described`] is any other record protocol, by a description of its frames.
+//!
+//! Nothing in this crate allocates, waits or depends on a port, except two features of a host: with `dbc` any CAN
+//! database is read, through a mapping of its signals; with `descriptions` descriptions are read from TOML.
 #![no_std]
 
-#[cfg(feature = "dbc")]
+#[cfg(any(feature = "dbc", feature = "descriptions"))]
 extern crate std;
 
 pub mod align;
@@ -30,6 +32,9 @@ pub mod any;
 pub mod checksum;
 #[cfg(feature = "dbc")]
 pub mod dbc;
+pub mod described;
+#[cfg(feature = "descriptions")]
+pub mod description;
 pub mod framing;
 pub mod novatel;
 pub mod own;
@@ -45,6 +50,8 @@ mod encoding;
 mod facts;
 mod reading;
 mod sampler;
+#[cfg(any(feature = "dbc", feature = "descriptions"))]
+mod units;
 
 pub use any::{AnyDecoder, AnyEncoder, Protocol};
 pub use axes::{Axes, AxesError};

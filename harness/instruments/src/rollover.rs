@@ -7,7 +7,7 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Rollover {
     /// Largest value.
-    mask: u64,
+    largest: u64,
     last: Option<u64>,
 }
 
@@ -16,7 +16,14 @@ impl Rollover {
     #[must_use]
     pub const fn new(bits: u32) -> Self {
         let unused = 64u32.saturating_sub(bits);
-        Self { mask: u64::MAX >> unused, last: None }
+        Self { largest: u64::MAX >> unused, last: None }
+    }
+
+    /// Makes a counter that goes from 0 to `modulo` − 1, two values at least.
+    #[must_use]
+    pub const fn modulo(modulo: u64) -> Self {
+        let modulo = if modulo < 2 { 2 } else { modulo };
+        Self { largest: modulo - 1, last: None }
     }
 
     /// Value that the counter was continued to last.
@@ -31,16 +38,28 @@ impl Rollover {
         let next = match self.last {
             None => counter,
             Some(last) => {
-                let ahead = counter.wrapping_sub(last) & self.mask;
-                if ahead <= self.mask / 2 {
+                let ahead = self.ahead(counter, last);
+                if ahead <= self.largest / 2 {
                     last.saturating_add(ahead)
                 } else {
                     // A step back beyond the beginning means that the counter was restarted.
-                    last.checked_sub((self.mask - ahead).saturating_add(1)).unwrap_or(counter)
+                    last.checked_sub((self.largest - ahead).saturating_add(1)).unwrap_or(counter)
                 }
             }
         };
         self.last = Some(next);
         next
+    }
+
+    /// Steps forward from the continued value `last` to the counter's value.
+    #[inline]
+    fn ahead(&self, counter: u64, last: u64) -> u64 {
+        if self.largest & self.largest.wrapping_add(1) == 0 {
+            return counter.wrapping_sub(last) & self.largest;
+        }
+        // Not all of 64 bits, which the case above has: the range itself is a number.
+        let range = self.largest + 1;
+        let (now, before) = (counter % range, last % range);
+        if now >= before { now - before } else { range - (before - now) }
     }
 }

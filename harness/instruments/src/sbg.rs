@@ -80,12 +80,12 @@ impl Framing for Sbg {
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
     #[inline]
-    fn begins(byte: u8) -> bool {
+    fn begins(&self, byte: u8) -> bool {
         byte == SYNC[0]
     }
 
     #[inline]
-    fn extent(bytes: &[u8]) -> Extent {
+    fn extent(&self, bytes: &[u8]) -> Extent {
         match bytes.get(1) {
             None => return Extent::Open(1),
             Some(second) if *second != SYNC[1] => return Extent::None,

@@ -141,12 +141,12 @@ impl Framing for VectorNav {
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
     #[inline]
-    fn begins(byte: u8) -> bool {
+    fn begins(&self, byte: u8) -> bool {
         byte == SYNC
     }
 
     #[inline]
-    fn extent(bytes: &[u8]) -> Extent {
+    fn extent(&self, bytes: &[u8]) -> Extent {
         let header = match header(bytes) {
             Ok(header) => header,
             Err(extent) => return extent,

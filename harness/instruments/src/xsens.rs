@@ -142,12 +142,12 @@ impl Framing for Xsens {
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
     #[inline]
-    fn begins(byte: u8) -> bool {
+    fn begins(&self, byte: u8) -> bool {
         byte == HEAD[0]
     }
 
     #[inline]
-    fn extent(bytes: &[u8]) -> Extent {
+    fn extent(&self, bytes: &[u8]) -> Extent {
         let known = bytes.len().min(3);
         if bytes[..known] != HEAD[..known] {
             return Extent::None;

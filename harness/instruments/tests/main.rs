@@ -8,6 +8,10 @@ mod common;
 mod damage;
 #[cfg(feature = "dbc")]
 mod dbc;
+#[cfg(feature = "descriptions")]
+mod described;
+#[cfg(feature = "descriptions")]
+mod described_problems;
 mod fuzz_corpus;
 mod manuals;
 mod no_allocation;

@@ -67,3 +67,26 @@ fn nothing_is_allocated() {
     black_box(vec![0u8; 10]);
     assert!(COUNT.with(Cell::get) > before);
 }
+
+#[cfg(feature = "descriptions")]
+#[test]
+fn a_described_decoder_allocates_nothing() {
+    use octant_instruments::description::UnitDescription;
+    let mut decoder = UnitDescription::ready("kvh-1775-rate").unwrap().unwrap().decoder();
+    // A frame of a KVH 1750, as in the test of its description, cut in two, with a damaged one before it.
+    let frame = common::unhex(
+        "FE81FF55 37A96A6E 38586C1F B75BF862 BF803E78 BB650D28 3B0A37AC 77 3D 0028 4BFA34D8",
+    );
+    let mut damaged = frame.clone();
+    damaged[9] ^= 1;
+    let before = COUNT.with(Cell::get);
+    let mut readings = 0;
+    for _ in 0..100 {
+        for mut piece in [&damaged[..], &frame[..11], &frame[11..]] {
+            while let Some(event) = decoder.next(&mut piece) {
+                readings += u64::from(matches!(event, FramingEvent::Reading(_)));
+            }
+        }
+    }
+    assert_eq!((COUNT.with(Cell::get) - before, readings), (0, 100));
+}

@@ -16,3 +16,16 @@ fn a_counter_is_continued_across_its_end_and_goes_back_when_it_does() {
         assert_eq!(whole.continued(counter), counter);
     }
 }
+
+#[test]
+fn a_range_that_is_no_power_of_two_is_continued_too() {
+    let mut counter = Rollover::modulo(1000);
+    let raw = [998, 999, 0, 1, 1, 0, 400, 850, 3];
+    let continued = raw.map(|raw| counter.continued(raw));
+    assert_eq!(continued, [998, 999, 1000, 1001, 1001, 1000, 1400, 1850, 2003]);
+    // A power of two gives what so many bits give.
+    let (mut modulo, mut bits) = (Rollover::modulo(128), Rollover::new(7));
+    for raw in [120, 127, 3, 2, 70, 5, 0] {
+        assert_eq!(modulo.continued(raw), bits.continued(raw));
+    }
+}

@@ -53,6 +53,81 @@ fn what_is_no_recording_is_refused() {
     }
 }
 
+/// Columns of another program's names, its axes forward, right and down for a body of forward, left and up.
+const NAMED: &str = "
+[source]
+uri = \"text:unit.csv\"
+[source.reference]
+kind = \"static\"
+[source.text]
+delimiter = \"comma\"
+header = true
+time_column = \"device_time_s\"
+[source.text.gyro]
+x = \"GyroXCalib\"
+y = \"GyroYCalib\"
+z = \"GyroZCalib\"
+unit = \"rad\"
+quantity = \"increment\"
+axes = [\"x\", \"-y\", \"-z\"]
+[source.text.accelerometer]
+x = \"AccelYCalib\"
+y = \"AccelXCalib\"
+z = \"AccelZCalib\"
+unit = \"m/s\"
+quantity = \"increment\"
+axes = [\"y\", \"x\", \"z\"]
+";
+
+#[test]
+fn channels_have_the_names_of_the_files_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("rest.toml"), AT_REST).unwrap();
+    octant_in(here, &["run", "rest.toml", "--out", "rest"]);
+    octant_in(here, &["export", "rest", "--to", "csv", "--tables", "samples", "--out", "csv"]);
+    let mut text = std::fs::read_to_string(here.join("csv/samples.csv")).unwrap();
+    for axis in ["x", "y", "z"] {
+        let capital = axis.to_uppercase();
+        text = text
+            .replacen(&format!("delta_theta_{axis}_rad"), &format!("Gyro{capital}Calib"), 1)
+            .replacen(&format!("delta_velocity_{axis}_mps"), &format!("Accel{capital}Calib"), 1);
+    }
+    std::fs::write(here.join("unit.csv"), text).unwrap();
+    std::fs::write(here.join("unit.toml"), format!("{AT_REST}{NAMED}")).unwrap();
+    let call = |arguments: &[&str], status| ended(octant_in(here, arguments), status);
+    let (out, _) = call(&["characterise", "unit.toml", "--html", "page.html"], 0);
+    let lines: Vec<&str> = out.lines().collect();
+    // Body x is the instrument's x; its accelerometer x is the instrument's y, whose key names the column of x.
+    for words in [
+        "gyro x, y, z: columns of the file",
+        "x: GyroXCalib",
+        "y: −GyroYCalib",
+        "z: −GyroZCalib",
+        "x: AccelXCalib",
+        "y: AccelYCalib",
+        "z: AccelZCalib",
+        "gyro_y (−GyroYCalib) ",
+        "accelerometer_x (AccelXCalib) ",
+    ] {
+        assert!(lines.iter().any(|line| line.contains(words)), "{words}: {out}");
+    }
+    let page = std::fs::read_to_string(here.join("page.html")).unwrap();
+    for words in
+        [">y (−GyroYCalib)<", "<td>gyro_z (−GyroZCalib)</td>", "Gyro x (GyroXCalib), rad/s"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    let (out, _) = call(&["characterise", "unit.toml", "--no-twin", "--json"], 0);
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let names =
+        ["GyroXCalib", "−GyroYCalib", "−GyroZCalib", "AccelXCalib", "AccelYCalib", "AccelZCalib"];
+    assert_eq!(json["names_in_file"], serde_json::json!(names));
+    // A table of octant export has the names of the channels, and they aren't repeated.
+    let (out, _) = call(&["characterise", "csv/samples.csv", "--no-twin"], 0);
+    assert!(!out.contains("columns of the file") && !out.contains("delta_theta"), "{out}");
+}
+
 /// Scenario of a unit at rest whose gyro x follows its temperature.
 const WARM: &str = "schema = 1
 [imu]

@@ -30,6 +30,7 @@ mod crate_targets;
 mod dashboard;
 #[cfg(feature = "dashboard")]
 mod dashboard_small;
+mod described_source;
 mod design;
 mod diff;
 mod diff_fields;

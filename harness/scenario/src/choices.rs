@@ -3,11 +3,16 @@
 use octant_instruments::Protocol;
 use octant_link::uri::SCHEMES;
 
+/// Name of a protocol by a description of its frames.
+pub(crate) const DESCRIBED: &str = "described";
+const DESCRIBED_DOC: &str = "records on a line of bytes, by a description of their frames";
+
 /// Names of what an instrument speaks: the protocols on a line of bytes, that of this program first as
 /// it is the default, and `dbc` on a CAN bus.
-pub(crate) const PROTOCOLS: [(&str, &str); Protocol::ALL.len() + 1] = {
+pub(crate) const PROTOCOLS: [(&str, &str); Protocol::ALL.len() + 2] = {
     let dbc = ("dbc", "messages on a CAN bus, by a database and a mapping");
-    let mut choices = [dbc; Protocol::ALL.len() + 1];
+    let mut choices = [dbc; Protocol::ALL.len() + 2];
+    choices[Protocol::ALL.len()] = (DESCRIBED, DESCRIBED_DOC);
     let (mut from, mut to) = (0, 1);
     while from < Protocol::ALL.len() {
         let facts = Protocol::ALL[from].facts();
@@ -23,8 +28,8 @@ pub(crate) const PROTOCOLS: [(&str, &str); Protocol::ALL.len() + 1] = {
 };
 
 /// The protocols on a line of bytes alone.
-pub(crate) const LINES: [(&str, &str); Protocol::ALL.len()] = {
-    let mut choices = [("", ""); Protocol::ALL.len()];
+pub(crate) const LINES: [(&str, &str); Protocol::ALL.len() + 1] = {
+    let mut choices = [(DESCRIBED, DESCRIBED_DOC); Protocol::ALL.len() + 1];
     let mut at = 0;
     while at < Protocol::ALL.len() {
         let facts = Protocol::ALL[at].facts();

@@ -8,6 +8,7 @@ use super::keys::{
 };
 use super::quantity::{self, UnitDimension};
 use super::recorded::NO_TIME;
+use crate::choices::DESCRIBED;
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
 /// kind are left for the check.
@@ -281,6 +282,11 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
             &["database", "mapping"],
             "without effect: source.live.protocol is not \"dbc\"",
         );
+    }
+    for table in ["source.live", "source.log"] {
+        if !is(&format!("{table}.protocol"), DESCRIBED) {
+            add(table, &["description"], "without effect: the protocol is not \"described\"");
+        }
     }
     if !text(document, "endpoint.uri").is_some_and(|uri| uri.starts_with("fmu:")) {
         add("endpoint", &["fmu"], "without effect: endpoint.uri is not fmu:FILE");

@@ -1,12 +1,12 @@
 //! Files that a scenario names: listed, and read from other places than those that it names.
 
 use super::document::{DocumentTable, DocumentValue};
-use super::model::{FileName, Scenario};
+use super::model::{DescriptionChoice, FileName, Scenario};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Keys whose text is the name of a file, or a URI with one.
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 11] = [
     "source.uri",
     "endpoint.uri",
     "source.text.gyro.file",
@@ -14,6 +14,8 @@ const KEYS: [&str; 9] = [
     "source.reference.file",
     "source.live.database",
     "source.live.mapping",
+    "source.live.description",
+    "source.log.description",
     "turntable.drive.dialect",
     "procedure.initial_parameters.table",
 ];
@@ -77,6 +79,11 @@ pub(crate) fn replace(document: &mut DocumentTable, mut place: impl FnMut(&str) 
             ("turntable.drive.dialect", _) if written == octant_turntable::Dialect::BUILT_IN => {
                 continue;
             }
+            ("source.live.description" | "source.log.description", _)
+                if !DescriptionChoice::is_file(written) =>
+            {
+                continue;
+            }
             ("source.uri" | "endpoint.uri", None) => continue,
             // A port, which is no file.
             ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
@@ -138,5 +145,12 @@ duration = \"1 min\"
             let mut document = crate::document::parse(&text).unwrap();
             replace(&mut document, |name| panic!("{name}"));
         }
+        let text = "[source]\n[source.log]\ndescription = \"kvh-1775-rate\"\n[source.live]\ndescription = \"own.toml\"\n";
+        let mut names = Vec::new();
+        replace(&mut crate::document::parse(text).unwrap(), |name| {
+            names.push(name.to_owned());
+            None
+        });
+        assert_eq!(names, ["own.toml"]);
     }
 }

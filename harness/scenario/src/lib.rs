@@ -39,11 +39,11 @@ pub use files::FilePlaces;
 pub use grades::{FLICKER, GRADES, GradeSheet};
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
-    AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
-    EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog, InterfaceChoice,
-    Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpec, NumberedStops,
-    ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting,
-    ShipSpectrum, SourceSpec, Speaks, UnknownFault,
+    AlignmentSpec, CalibrationSpec, ChannelElement, Code, DescriptionChoice, DocksideSpec, Drive,
+    EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog,
+    InterfaceChoice, Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpec,
+    NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
+    Set, Setting, ShipSpectrum, SourceSpec, Speaks, UnknownFault,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;

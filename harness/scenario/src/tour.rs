@@ -73,6 +73,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("source.live.gyro_count", r#""0.000390625 arcsec""#),
     ("source.live.accel_count", r#""1.5e-6 m/s""#),
     ("source.log.protocol", r#""vectornav""#),
+    ("source.log.description", r#""unit.toml""#),
+    ("source.live.description", r#""unit.toml""#),
     ("source.log.gyro_count", r#""0.000390625 arcsec""#),
     ("source.log.accel_count", r#""1.5e-6 m/s""#),
     ("source.live.database", r#""unit.dbc""#),

@@ -86,7 +86,8 @@ fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySou
             Ok(Some(TextSource::open(&mapping)?.into()))
         }
         scenario::SourceSpec::Log(log) => {
-            Ok(Some(LogSource::open(&path(&log.file)?, log, scenario.sample_period_ns)?.into()))
+            let (file, period_ns) = (path(&log.file)?, scenario.sample_period_ns);
+            Ok(Some(LogSource::open(&file, log, &scenario.folder, period_ns)?.into()))
         }
         scenario::SourceSpec::Solution(spec) => {
             Ok(Some(SolutionSource::open(scenario, spec)?.into()))

@@ -4,6 +4,7 @@
 mod any;
 pub mod configure;
 mod counting;
+mod described;
 mod fields;
 mod fmu;
 mod foreign;

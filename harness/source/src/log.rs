@@ -3,14 +3,15 @@
 //! Damaged frames are skipped, and a gap stays a gap, as on a port. The file has no time of its own: stamps
 //! are those of the readings, and where the protocol has none, readings follow each other.
 
+use crate::described::decoder;
 use crate::rate_check::RateCheck;
 use crate::temperature::TemperatureCheck;
 use crate::traffic::traffic;
 use crate::{Epoch, Source, SourceError};
 use octant_base::number::counted;
 use octant_instruments::{
-    AnyDecoder, FramingEvent, Protocol, Reading, ReadingDefect, Sampler, SamplerCounters,
-    SamplerSettings, Unusable,
+    AnyDecoder, FramingEvent, Reading, ReadingDefect, Sampler, SamplerCounters, SamplerSettings,
+    Unusable,
 };
 use octant_plant::Truth;
 use octant_recorder::event::{BenchReadings, BenchRecord};
@@ -32,7 +33,8 @@ const MISSING_MAX: u64 = 10;
 pub struct LogSource {
     path: String,
     file: File,
-    protocol: Protocol,
+    /// Protocol, as messages name it.
+    protocol: String,
     decoder: AnyDecoder,
     /// Why the first intact frame that can't be read can't.
     unread: Option<ReadingDefect>,
@@ -50,11 +52,21 @@ pub struct LogSource {
 }
 
 impl LogSource {
-    /// Opens a file. Its samples have a period, ns.
+    /// Opens a file. Its samples have a period, ns. The name of a description's file is relative to `folder`.
     ///
     /// # Errors
-    /// If the file can't be opened.
-    pub fn open(path: &Path, log: &InstrumentLog, period_ns: u64) -> Result<Self, SourceError> {
+    /// If the file can't be opened, or the description of its frames isn't one.
+    pub fn open(
+        path: &Path,
+        log: &InstrumentLog,
+        folder: &Path,
+        period_ns: u64,
+    ) -> Result<Self, SourceError> {
+        let decoder = decoder(&log.speaks, log.count, folder)?;
+        let decoder = decoder.ok_or_else(|| SourceError::Read {
+            path: path.display().to_string(),
+            reason: "found the protocol of a CAN bus, expected one of a line of bytes".to_owned(),
+        })?;
         let name = path.display().to_string();
         let wrong =
             |e: std::io::Error| SourceError::Read { path: name.clone(), reason: e.to_string() };
@@ -67,8 +79,8 @@ impl LogSource {
         Ok(Self {
             path: name,
             file,
-            protocol: log.protocol,
-            decoder: AnyDecoder::scaled(log.protocol, log.count),
+            protocol: log.speaks.told(),
+            decoder,
             unread: None,
             buffer: vec![0; READ_BYTES].into_boxed_slice(),
             rest: 0..0,
@@ -86,7 +98,7 @@ impl LogSource {
 
     /// Describes the bytes that were decoded.
     fn said(&self) -> String {
-        traffic(self.decoder.counters(), self.unread, self.protocol.name(), "log")
+        traffic(self.decoder.counters(), self.unread, &self.protocol, "log")
     }
 
     /// Returns the next reading; `None` at the end of the file.
@@ -197,9 +209,9 @@ impl Source for LogSource {
 mod tests {
     use super::*;
     use crate::live::tests::{PERIOD_NS, sample};
-    use octant_instruments::{AnyEncoder, Axes, Stamp, StampClock};
+    use octant_instruments::{AnyEncoder, Axes, Protocol, Stamp, StampClock};
     use octant_sample::Sample;
-    use octant_scenario::FileName;
+    use octant_scenario::{FileName, Speaks};
 
     /// Frames of a protocol with the samples of these numbers, and bytes between them that are no frame.
     fn bytes(protocol: Protocol, numbers: impl Iterator<Item = u64>) -> Vec<u8> {
@@ -225,8 +237,10 @@ mod tests {
         let path = folder.path().join("unit.bin");
         std::fs::write(&path, bytes).unwrap();
         let file = FileName("unit.bin".to_owned());
-        let log = InstrumentLog { file, protocol, count: None, axes: Axes::SAME };
-        (folder, LogSource::open(&path, &log, PERIOD_NS).unwrap())
+        let speaks = Speaks::Bytes(protocol);
+        let log = InstrumentLog { file, speaks, count: None, axes: Axes::SAME };
+        let source = LogSource::open(&path, &log, folder.path(), PERIOD_NS).unwrap();
+        (folder, source)
     }
 
     fn all(source: &mut LogSource) -> Vec<Sample> {

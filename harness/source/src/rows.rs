@@ -123,10 +123,30 @@ impl Rows {
                 let header = self.header.iter().flatten();
                 header.clone().position(|found| found == name).ok_or_else(|| {
                     let names: Vec<&str> = header.collect();
-                    self.error(format!("no column {name:?}, found {}", names.join(", ")))
+                    let hint = self.other_delimiter(&names).unwrap_or_default();
+                    self.error(format!("no column {name:?}, found {}{hint}", names.join(", ")))
                 })
             }
         }
+    }
+
+    /// Hint for a header of which one name has another delimiter in it, and the names beside it aren't columns of
+    /// their own.
+    fn other_delimiter(&self, names: &[&str]) -> Option<String> {
+        const OTHERS: [(char, &str); 4] =
+            [(',', "comma"), (';', "semicolon"), ('\t', "tab"), (' ', "whitespace")];
+        let used = |other: char| match self.delimiter {
+            Delimiter::Blanks => other.is_ascii_whitespace(),
+            Delimiter::Character(delimiter) => char::from(delimiter) == other,
+        };
+        let found = OTHERS.into_iter().find(|(other, _)| {
+            !used(*other) && names.iter().any(|name| name.trim().contains(*other))
+        })?;
+        let parts =
+            names.iter().flat_map(|name| name.split(found.0)).filter(|part| !part.is_empty());
+        let columns = counted(parts.count(), "column", "columns");
+        let name = found.1;
+        Some(format!("; with delimiter = {name:?} the line has {columns}"))
     }
 
     /// Returns the text of a field of this row.

@@ -1,6 +1,7 @@
 //! Biases against temperature on the page.
 
 use crate::analysis::ChannelAnalysis;
+use crate::names::FileNames;
 use crate::temperature::TemperatureDependence;
 use crate::text::{per_k, steadiness, unit, unit_per_k};
 use maud::{Markup, html};
@@ -8,7 +9,11 @@ use octant_base::number::{plain, significant};
 use octant_report::chart::{Chart, ChartLine, ChartRole};
 
 /// Renders coefficients and plots, or the reason why there are none.
-pub(super) fn section(found: &TemperatureDependence, channels: &[ChannelAnalysis]) -> Markup {
+pub(super) fn section(
+    found: &TemperatureDependence,
+    channels: &[ChannelAnalysis],
+    names: &FileNames,
+) -> Markup {
     html! {
         @if let Some(reason) = &found.reason { p { "Not told: " (reason) "." } }
         @if !found.channels.is_empty() {
@@ -20,7 +25,11 @@ pub(super) fn section(found: &TemperatureDependence, channels: &[ChannelAnalysis
                 thead { tr { th { "Bias per kelvin" } @for axis in ["x", "y", "z"] { th.n { (axis) } } } }
                 tbody { @for (triad, fits) in ["gyro", "accelerometer"].iter().zip(found.channels.chunks(3)) {
                     @let (name, size) = unit_per_k(*triad == "gyro");
-                    tr { td { (triad) " " span.soft { (name) } } @for fit in fits { td.n { (per_k(fit, size)) } } }
+                    @let of = usize::from(*triad != "gyro");
+                    tr { td { (triad) " " span.soft { (name) } } @for (axis, fit) in fits.iter().enumerate() { td.n {
+                        (per_k(fit, size))
+                        @if let Some(column) = names.column(of, axis) { " " span.soft { (column) } }
+                    } } }
                 } }
             }
         }
@@ -28,7 +37,7 @@ pub(super) fn section(found: &TemperatureDependence, channels: &[ChannelAnalysis
             p.hint { "Temperatures at rest from " (plain(low, 4)) " to " (plain(high, 4)) " °C; the thermometer's noise in a mean is "
                 (significant(noise, 2)) " K. Plots: means without the offset of their stretch; dotted: the coefficient." }
             @for triad in channels.chunks(3) {
-                div.multiples { @for channel in triad { (chart(found, channels, channel).render()) } }
+                div.multiples { @for channel in triad { (chart(found, channels, channel, names).render()) } }
             }
         }
     }
@@ -38,12 +47,14 @@ fn chart(
     found: &TemperatureDependence,
     channels: &[ChannelAnalysis],
     channel: &ChannelAnalysis,
+    names: &FileNames,
 ) -> Chart {
     let index = channels.iter().position(|other| other.name == channel.name).unwrap_or(0);
     let is_gyro = index < 3;
     // In the unit of a bias.
     let (name, size) = unit(Some(crate::kernel::RandomTerm::BiasInstability), is_gyro);
-    let title = format!("{}, {name}", channel.name.replace('_', " "));
+    let triad = ["gyro", "accelerometer"][usize::from(!is_gyro)];
+    let title = format!("{triad} {}, {name}", names.axis(index / 3, index % 3));
     let mut chart = Chart::new(&title, "temperature, °C", &title);
     (chart.width, chart.height) = (360.0, 230.0);
     (chart.hours, chart.legend, chart.dots) = (false, false, true);

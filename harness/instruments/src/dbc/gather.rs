@@ -1,9 +1,9 @@
 //! Readings from CAN messages.
 
 use super::signal::{Extract, Named};
-use super::units::Quantity;
 use super::{Database, DbcProblem, One, SignalMapping, Three};
 use crate::rollover::Rollover;
+use crate::units::Quantity;
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use can_dbc::MessageId;
 use octant_sample::{GimbalAngles, Status};

@@ -22,7 +22,6 @@ mod database;
 mod gather;
 mod mapping;
 mod signal;
-mod units;
 
 pub use database::Database;
 pub use gather::{CanCounters, CanFrame, Gatherer};

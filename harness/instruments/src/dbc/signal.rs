@@ -1,7 +1,7 @@
 //! Bits of a signal.
 
-use super::units::{self, Quantity};
 use super::{Database, DbcProblem, SignalMapping};
+use crate::units::{self, Quantity};
 use can_dbc::{ByteOrder, Message, MultiplexIndicator, Signal, SignalExtendedValueType, ValueType};
 use std::format;
 use std::string::{String, ToString};

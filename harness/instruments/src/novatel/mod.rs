@@ -84,12 +84,12 @@ impl Framing for NovAtel {
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
     #[inline]
-    fn begins(byte: u8) -> bool {
+    fn begins(&self, byte: u8) -> bool {
         byte == SYNC[0] || ascii::begins(byte)
     }
 
     #[inline]
-    fn extent(bytes: &[u8]) -> Extent {
+    fn extent(&self, bytes: &[u8]) -> Extent {
         let Some(first) = bytes.first() else { return Extent::Open(4) };
         if ascii::begins(*first) {
             return ascii::extent(bytes, MAX_BYTES);

@@ -1842,8 +1842,8 @@ class SourceFmu(Section):
 
 class SourceLive(Section):
     """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol, database,
-    mapping, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the defaults of its
-    keys."""
+    mapping, description, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the
+    defaults of its keys."""
 
     accel_count: str
     """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
@@ -1854,22 +1854,25 @@ class SourceLive(Section):
     database: str
     """The maker's CAN database, a DBC file. Relative to the scenario. Takes a text in quotes. Left out: needed
     by protocol = "dbc"."""
+    description: str
+    """Description of the unit's frames: a TOML file, relative to the scenario, or the name of one that comes
+    with Octant, such as kvh-1775-rate. Takes a text in quotes. Left out: needed by protocol = "described"."""
     gyro_count: str
     """Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table
     lacks; with accel_count. Takes an angle such as "40 arcsec". Left out: by the kind of unit."""
     mapping: str
     """Which signals of the database are which channels, a TOML file. Relative to the scenario. Takes a text in
     quotes. Left out: needed by protocol = "dbc"."""
-    protocol: Literal["octant", "vectornav", "xsens", "novatel", "sbg", "dbc"]
-    """What the instrument speaks. Takes one of "octant", "vectornav", "xsens", "novatel", "sbg", "dbc". Default:
-    "octant"; on a CAN bus "dbc"."""
+    protocol: Literal["octant", "vectornav", "xsens", "novatel", "sbg", "described", "dbc"]
+    """What the instrument speaks. Takes one of "octant", "vectornav", "xsens", "novatel", "sbg", "described",
+    "dbc". Default: "octant"; on a CAN bus "dbc"."""
     silence: str
     """How long a reading is waited for; then the instrument is gone. Takes a time such as "12 h". Default: "5
     s"."""
 
 class SourceLog(Section):
     """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
-    protocol, axes, gyro_count, accel_count. Default: needed by log:FILE."""
+    protocol, description, axes, gyro_count, accel_count. Default: needed by log:FILE."""
 
     accel_count: str
     """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
@@ -1877,11 +1880,14 @@ class SourceLog(Section):
     axes: str
     """Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z. Takes a text in
     quotes. Default: "x y z"."""
+    description: str
+    """Description of the unit's frames: a TOML file, relative to the scenario, or the name of one that comes
+    with Octant, such as kvh-1775-rate. Takes a text in quotes. Left out: needed by protocol = "described"."""
     gyro_count: str
     """Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table
     lacks; with accel_count. Takes an angle such as "40 arcsec". Left out: by the kind of unit."""
-    protocol: Literal["vectornav", "xsens", "novatel", "sbg", "octant"]
-    """What the instrument spoke. Takes one of "vectornav", "xsens", "novatel", "sbg", "octant"."""
+    protocol: Literal["vectornav", "xsens", "novatel", "sbg", "octant", "described"]
+    """What the instrument spoke. Takes one of "vectornav", "xsens", "novatel", "sbg", "octant", "described"."""
 
 class SourceMcapAccelerometer(Section):
     """Fields of the accelerometers. Takes a table with x, y, z, unit, quantity, scale, offset, axes."""
@@ -2260,14 +2266,14 @@ class Source(Section):
     @property
     def live(self) -> SourceLive:
         """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol,
-        database, mapping, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the
-        defaults of its keys."""
+        database, mapping, description, axes, gyro_count, accel_count, silence. Default: serial, udp, can and
+        slcan: the defaults of its keys."""
     @live.setter
     def live(self, value: SourceLive | Mapping[str, Any]) -> None: ...
     @property
     def log(self) -> SourceLog:
         """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
-        protocol, axes, gyro_count, accel_count. Default: needed by log:FILE."""
+        protocol, description, axes, gyro_count, accel_count. Default: needed by log:FILE."""
     @log.setter
     def log(self, value: SourceLog | Mapping[str, Any]) -> None: ...
     @property

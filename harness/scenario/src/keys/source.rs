@@ -129,6 +129,7 @@ keys! {
 
 const AXES_DOC: &str =
     "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+const DESCRIPTION_DOC: &str = "Description of the unit's frames: a TOML file, relative to the scenario, or the name of one that comes with Octant, such as kvh-1775-rate.";
 const GYRO_COUNT_DOC: &str = "Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table lacks; with accel_count.";
 const ACCEL_COUNT_DOC: &str = "Velocity of one accelerometer count, likewise.";
 
@@ -141,6 +142,8 @@ keys! {
             "The maker's CAN database, a DBC file. Relative to the scenario.";
         mapping: At<Option<String>> = text(), absent("needed by protocol = \"dbc\""),
             "Which signals of the database are which channels, a TOML file. Relative to the scenario.";
+        description: At<Option<String>> = text(), absent("needed by protocol = \"described\""),
+            DESCRIPTION_DOC;
         axes: At<String> = text(), "x y z",
             AXES_DOC;
         gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),
@@ -157,6 +160,8 @@ keys! {
     pub(crate) struct SourceLogKeys {
         protocol: At<String> = Of::<String>::kind(Kind::Choice(&crate::choices::LINES)), required,
             "What the instrument spoke.";
+        description: At<Option<String>> = text(), absent("needed by protocol = \"described\""),
+            DESCRIPTION_DOC;
         axes: At<String> = text(), "x y z",
             AXES_DOC;
         gyro_count: At<Option<f64>> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("by the kind of unit"),

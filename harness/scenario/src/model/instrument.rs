@@ -1,6 +1,7 @@
 //! A real instrument on a port.
 
 use super::file_name::FileName;
+use crate::choices::DESCRIBED;
 use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
@@ -25,8 +26,8 @@ pub struct Instrument {
 pub struct InstrumentLog {
     /// The file, as written.
     pub file: FileName,
-    /// Protocol of the instrument.
-    pub protocol: Protocol,
+    /// Protocol of the instrument; never messages on a CAN bus.
+    pub speaks: Speaks,
     /// Size of one count, where the scenario gives it in place of the protocol's table.
     pub count: Option<CountScale>,
     /// Mounting.
@@ -38,6 +39,8 @@ pub struct InstrumentLog {
 pub enum Speaks {
     /// A protocol on a line of bytes.
     Bytes(Protocol),
+    /// Records on a line of bytes, by a description of their frames.
+    Described(DescriptionChoice),
     /// Messages on a CAN bus.
     Can(Messages),
 }
@@ -48,8 +51,46 @@ impl Speaks {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Bytes(protocol) => protocol.name(),
+            Self::Described(_) => DESCRIBED,
             Self::Can(_) => "dbc",
         }
+    }
+
+    /// Name for people: of a described protocol its description.
+    #[must_use]
+    pub fn told(&self) -> String {
+        match self {
+            Self::Described(DescriptionChoice::Ready(name)) => format!("{DESCRIBED} as {name}"),
+            Self::Described(DescriptionChoice::File(file)) => {
+                format!("{DESCRIBED} by {}", file.0)
+            }
+            other => other.name().to_owned(),
+        }
+    }
+
+    /// File of the description, if there is one.
+    pub(crate) fn described_by(&self) -> Option<&FileName> {
+        match self {
+            Self::Described(DescriptionChoice::File(file)) => Some(file),
+            _ => None,
+        }
+    }
+}
+
+/// Description of a unit's frames.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DescriptionChoice {
+    /// One that comes with the program, by its name.
+    Ready(String),
+    /// A file.
+    File(FileName),
+}
+
+impl DescriptionChoice {
+    /// True for a text that names a file, and not a description that comes with the program.
+    #[must_use]
+    pub fn is_file(text: &str) -> bool {
+        text.ends_with(".toml")
     }
 }
 

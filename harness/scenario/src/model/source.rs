@@ -101,13 +101,27 @@ impl SourceSpec {
     #[must_use]
     pub fn recordings(&self) -> Vec<FileName> {
         match self {
-            Self::Replay { file, .. } | Self::Log(InstrumentLog { file, .. }) => vec![file.clone()],
+            Self::Replay { file, .. } => vec![file.clone()],
+            // What the bytes mean is evidence too.
+            Self::Log(InstrumentLog { file, speaks, .. }) => {
+                [Some(file), speaks.described_by()].into_iter().flatten().cloned().collect()
+            }
             Self::Text(mapping) => {
                 mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
             }
             Self::Solution(spec) => vec![spec.solution.file.clone(), spec.reference.file.clone()],
             Self::Plant | Self::Fmu(_) | Self::Live(_) => Vec::new(),
         }
+    }
+
+    /// Words for the times of a recording that has none of its own.
+    #[must_use]
+    pub fn assumed_time(&self) -> Option<String> {
+        let mapping = self.text().filter(|mapping| mapping.time.is_none())?;
+        Some(format!(
+            "no time stamps: the time is assumed, not measured, the row's number over {} Hz",
+            octant_base::number::plain(mapping.nominal_rate_hz, 9)
+        ))
     }
 
     /// Reason for having no truth; `None` if there is some. An FMU without a map may be Octant's
@@ -129,10 +143,11 @@ impl SourceSpec {
         match self {
             Self::Plant => None,
             Self::Replay { .. } | Self::Text(_) => {
-                Some(("source", "recorded samples, no truth".to_owned()))
+                let time = self.assumed_time().map(|time| format!("; {time}")).unwrap_or_default();
+                Some(("source", format!("recorded samples, no truth{time}")))
             }
-            Self::Log(InstrumentLog { protocol, .. }) => {
-                Some(("source", format!("recorded bytes of {}, no truth", protocol.name())))
+            Self::Log(InstrumentLog { speaks, .. }) => {
+                Some(("source", format!("recorded bytes of {}, no truth", speaks.told())))
             }
             Self::Solution(spec) => {
                 let files = [&spec.solution, &spec.reference].map(|file| file.file.short());
@@ -143,7 +158,7 @@ impl SourceSpec {
                 Some((name, format!("FMU {}", fmu.file.0)))
             }
             Self::Live(Instrument { uri, speaks, .. }) => {
-                Some(("source", format!("instrument at {uri}, {}, no truth", speaks.name())))
+                Some(("source", format!("instrument at {uri}, {}, no truth", speaks.told())))
             }
         }
     }

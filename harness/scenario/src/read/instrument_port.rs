@@ -1,9 +1,12 @@
 //! Reads a real instrument on a port from `source.uri` and `[source.live]`, and what one sent from
 //! `[source.log]`.
 
+use crate::choices::DESCRIBED;
 use crate::error::Problem;
 use crate::keys::{At, SourceKeys};
-use crate::model::{FileName, Instrument, InstrumentLog, Messages, Speaks};
+use crate::model::{DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks};
+use octant_base::names::suggestion;
+use octant_instruments::description::READY;
 use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
@@ -31,9 +34,7 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
     let speaks = if bus {
         Speaks::Can(Messages { database: file(&live.database)?, mapping: file(&live.mapping)? })
     } else {
-        Speaks::Bytes(Protocol::of_name(name).ok_or_else(|| {
-            live.protocol.problem(format!("found {name:?}, which no codec reads"))
-        })?)
+        line(&live.protocol, &live.description)?
     };
     let count = count_scale("live", [&live.gyro_count, &live.accel_count], &speaks)?;
     let axes = mounting(&live.axes)?;
@@ -47,13 +48,40 @@ pub(super) fn log(keys: &SourceKeys, file: &str) -> Result<InstrumentLog, Proble
             "missing, expected the protocol of the instrument whose bytes source.uri names";
         return Err(keys.log.problem(message));
     };
-    let name = log.protocol.as_str();
-    let protocol = Protocol::of_name(name)
-        .ok_or_else(|| log.protocol.problem(format!("found {name:?}, which no codec reads")))?;
+    let speaks = line(&log.protocol, &log.description)?;
     let counts = [&log.gyro_count, &log.accel_count];
-    let count = count_scale("log", counts, &Speaks::Bytes(protocol))?;
+    let count = count_scale("log", counts, &speaks)?;
     let axes = mounting(&log.axes)?;
-    Ok(InstrumentLog { file: FileName(file.to_owned()), protocol, count, axes })
+    Ok(InstrumentLog { file: FileName(file.to_owned()), speaks, count, axes })
+}
+
+/// Reads the protocol of a line of bytes.
+fn line(protocol: &At<String>, description: &At<Option<String>>) -> Result<Speaks, Problem> {
+    let name = protocol.as_str();
+    if name != DESCRIBED {
+        let unknown = || protocol.problem(format!("found {name:?}, which no codec reads"));
+        return Protocol::of_name(name).map(Speaks::Bytes).ok_or_else(unknown);
+    }
+    let ready = || READY.iter().map(|(name, _)| *name);
+    match description.as_deref() {
+        Some(file) if DescriptionChoice::is_file(file) => {
+            Ok(Speaks::Described(DescriptionChoice::File(FileName(file.to_owned()))))
+        }
+        Some(name) if ready().any(|known| known == name) => {
+            Ok(Speaks::Described(DescriptionChoice::Ready(name.to_owned())))
+        }
+        Some(name) => {
+            let known = suggestion(name, ready(), "expected a file NAME.toml or one of");
+            Err(description.problem(format!("found {name:?}; {known}")))
+        }
+        None => {
+            let known: Vec<&str> = ready().collect();
+            Err(description.problem(format!(
+                "missing, expected a file NAME.toml or one of {}: protocol is \"described\"",
+                known.join(", ")
+            )))
+        }
+    }
 }
 
 fn mounting(axes: &At<String>) -> Result<Axes, Problem> {

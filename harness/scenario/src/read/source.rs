@@ -74,7 +74,18 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
     same_quantity(quantity, other)?;
     check_rate(&keys.rate, keys.split, sample_period_ns)?;
     let time = match &*keys.time_column {
+        RecordedColumn::Name(name) if name == NO_TIME && !keys.rate.given => {
+            return Err(keys.rate.problem(
+                "missing, expected the rate of the rows: time_column is \"none\", and the time of a row is its \
+                 number over the rate",
+            ));
+        }
         RecordedColumn::Name(name) if name == NO_TIME => None,
+        time if is_measured(keys, time) => {
+            return Err(keys.time_column.problem(
+                "found a column of a gyro or accelerometer, expected one of times, or \"none\" with source.text.rate",
+            ));
+        }
         _ => Some(TimeColumn { column: column(&keys.time_column)?, unit: keys.time_unit }),
     };
     let gimbal = keys.gimbal.as_ref().map(|gimbal| {
@@ -107,6 +118,14 @@ fn read_text(keys: &TextKeys, file: &str, sample_period_ns: u64) -> Result<TextM
         gimbal: gimbal.transpose()?,
         temperature,
     })
+}
+
+/// True if a column is one of a gyro, or of an accelerometer in the same file.
+fn is_measured(keys: &TextKeys, column: &RecordedColumn) -> bool {
+    let (gyro, accel) = (&keys.gyro, &keys.accelerometer);
+    let of_gyro = [&gyro.x, &gyro.y, &gyro.z].iter().any(|x| ***x == *column);
+    let of_accel = [&accel.x, &accel.y, &accel.z].iter().any(|x| ***x == *column);
+    of_gyro || (of_accel && accel.file == gyro.file)
 }
 
 fn read_mcap(keys: &McapKeys, sample_period_ns: u64) -> Result<McapMapping, Problem> {

@@ -2,6 +2,7 @@
 
 use super::bus::Bus;
 use crate::SourceError;
+use crate::described::decoder;
 use crate::traffic::traffic;
 use octant_instruments::{AnyDecoder, FramingEvent, Reading, ReadingDefect};
 use octant_link::port::{self, Bytes, Port};
@@ -37,12 +38,13 @@ impl Feed {
     pub(super) fn open(instrument: &Instrument, folder: &Path) -> Result<Self, SourceError> {
         let uri = &instrument.uri;
         let gone = |reason: String| SourceError::Gone { uri: uri.to_string(), reason };
-        let protocol = match &instrument.speaks {
-            Speaks::Bytes(protocol) => *protocol,
+        let decoder = match &instrument.speaks {
             Speaks::Can(messages) => {
                 return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
+            line => decoder(line, instrument.count, folder)?,
         };
+        let decoder = decoder.ok_or_else(|| gone("it speaks no protocol of a line".to_owned()))?;
         // The port waits for a sender, as a device does.
         let port = match port::open(uri, EndRole::Device) {
             Ok(Port::Bytes(port)) => port,
@@ -55,7 +57,7 @@ impl Feed {
         };
         Ok(Self::Line(Box::new(Line {
             port,
-            decoder: AnyDecoder::scaled(protocol, instrument.count),
+            decoder,
             unread: None,
             buffer: [0; 4096],
             rest: 0..0,

@@ -18,6 +18,7 @@ use self::clock::Clock;
 use self::feed::Feed;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
+use crate::described::decoder;
 use crate::rate_check::RateCheck;
 use octant_instruments::{Sampler, SamplerSettings, Unusable};
 use octant_plant::Truth;
@@ -63,8 +64,11 @@ impl LiveSource {
     /// # Errors
     /// If a file can't be read or isn't valid.
     pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
-        if let Speaks::Can(messages) = &instrument.speaks {
-            bus::check(messages, &scenario.folder)?;
+        match &instrument.speaks {
+            Speaks::Can(messages) => bus::check(messages, &scenario.folder)?,
+            line => {
+                decoder(line, instrument.count, &scenario.folder)?;
+            }
         }
         match &scenario.drive {
             Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
@@ -125,7 +129,7 @@ impl LiveSource {
         self.gone(format!(
             "no reading for {} s; {}",
             self.instrument.silence_s,
-            self.feed.said(self.instrument.speaks.name())
+            self.feed.said(&self.instrument.speaks.told())
         ))
     }
 }
@@ -193,7 +197,7 @@ impl Source for LiveSource {
         // The table is stopped before anything else is done.
         let ended = table.and_then(|table| table.end(broken).err());
         let counters = self.sampler.counters();
-        let protocol = self.instrument.speaks.name();
+        let protocol = self.instrument.speaks.told();
         let (instruments_clock, clock) = self.clock.told().unzip();
         let (table, tables_angles, turntable) = match told {
             Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
@@ -275,6 +279,39 @@ pub(crate) mod tests {
             assert_eq!((epoch.sample, epoch.aiding), (sample(number), None));
         }
         assert!(!source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+    }
+
+    #[test]
+    fn a_described_unit_is_read_over_udp() {
+        // A frame of a KVH 1750 in the unit test of a ROS driver.
+        let frame: [u8; 36] = [
+            0xFE, 0x81, 0xFF, 0x55, 0x37, 0xA9, 0x6A, 0x6E, 0x38, 0x58, 0x6C, 0x1F, 0xB7, 0x5B,
+            0xF8, 0x62, 0xBF, 0x80, 0x3E, 0x78, 0xBB, 0x65, 0x0D, 0x28, 0x3B, 0x0A, 0x37, 0xAC,
+            0x77, 0x3D, 0x00, 0x28, 0x4B, 0xFA, 0x34, 0xD8,
+        ];
+        let choice = octant_scenario::DescriptionChoice::Ready("kvh-1775-rate".to_owned());
+        let instrument = Instrument {
+            uri: "udp:127.0.0.1:0".parse().unwrap(),
+            speaks: Speaks::Described(choice),
+            count: None,
+            axes: Axes::SAME,
+            silence_s: 0.3,
+        };
+        let mut source = LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(2)).unwrap();
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.connect(source.reached_at().strip_prefix("udp:").unwrap()).unwrap();
+        socket.send(&frame).unwrap();
+        let mut epoch = Epoch::default();
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        // 2.019593e-5 rad/s over 5 ms in counts of 2^-36 rad; −1.0019064 g in counts of 2^-30 m/s.
+        assert_eq!(epoch.sample.delta_theta[0], 6939);
+        assert_eq!(epoch.sample.delta_velocity[0], -52_749_421);
+        socket.send(&frame[..20]).unwrap();
+        let error = source.next(&GimbalCommand::default(), &mut epoch).unwrap_err().to_string();
+        assert!(
+            error.contains("1 reading, 0 other frames of protocol described as kvh-1775-rate"),
+            "{error}"
+        );
     }
 
     #[test]

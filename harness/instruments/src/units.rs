@@ -2,7 +2,7 @@
 
 /// Quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(crate) enum Quantity {
     Angle,
     AngularRate,
     Velocity,
@@ -12,7 +12,7 @@ pub(super) enum Quantity {
 }
 
 /// A unit: its quantity, and its size in SI units (°C for temperatures).
-pub(super) type Unit = (Quantity, f64);
+pub(crate) type Unit = (Quantity, f64);
 
 const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
 const G_MPS2: f64 = 9.806_65;
@@ -43,12 +43,12 @@ const UNITS: [(&[&str], Unit); 21] = [
 ];
 
 /// Unit of a text.
-pub(super) fn unit(text: &str) -> Option<Unit> {
+pub(crate) fn unit(text: &str) -> Option<Unit> {
     UNITS.iter().find(|(names, _)| names.contains(&text)).map(|(_, unit)| *unit)
 }
 
 /// Names of the units of some quantities.
-pub(super) fn names(quantities: &[Quantity]) -> std::string::String {
+pub(crate) fn names(quantities: &[Quantity]) -> std::string::String {
     let of = UNITS.iter().filter(|(_, (quantity, _))| quantities.contains(quantity));
     let names: std::vec::Vec<&str> = of.map(|(names, _)| names[0]).collect();
     names.join(", ")

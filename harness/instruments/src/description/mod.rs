@@ -1,0 +1,66 @@
+//! Reads descriptions of record protocols: TOML files, and those of units whose formats are public.
+//!
+//! ```toml
+//! version = 1
+//! name = "a unit"
+//! byte_order = "big"
+//! checksum = { kind = "sum8", at = -1 }
+//!
+//! [[frame]]
+//! sync = [0xA5, 0x5A]
+//! length = 28
+//! field = [
+//!     { is = "counter", at = 2, type = "u8" },
+//!     { is = "gyro x", at = 3, type = "i32", unit = "rad", scale = 1e-9 },
+//! ]
+//! ```
+//!
+//! Places are offsets from the frame's first byte, which is 0; negative ones count from behind its last byte. A key
+//! that isn't known, a value that isn't possible, and a description of a newer version are errors with file and line.
+
+mod fields;
+mod problem;
+mod read;
+mod ready;
+mod table;
+
+pub use problem::{DescriptionProblem, VERSION};
+pub use ready::READY;
+
+use crate::described::{Described, DescribedDecoder, RecordDescription};
+use std::string::String;
+
+/// Description of a unit.
+#[derive(Clone, Debug)]
+pub struct UnitDescription {
+    /// Name of the unit and its format.
+    pub name: String,
+    /// Its frames.
+    pub record: RecordDescription,
+}
+
+impl UnitDescription {
+    /// Reads a description; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// If the text is no description, with file, line and key.
+    pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionProblem> {
+        let (name, record) = read::read(file, text)?;
+        Ok(Self { name, record })
+    }
+
+    /// Reads a description that is part of the program, if there is one of the name.
+    ///
+    /// # Errors
+    /// If it isn't valid, which a test excludes.
+    pub fn ready(name: &str) -> Result<Option<Self>, DescriptionProblem> {
+        let found = READY.iter().find(|(known, _)| *known == name);
+        found.map(|(name, text)| Self::parse(name, text)).transpose()
+    }
+
+    /// Makes a decoder that has received nothing.
+    #[must_use]
+    pub fn decoder(&self) -> DescribedDecoder {
+        DescribedDecoder::new(Described::new(self.record.clone()))
+    }
+}
