@@ -15,4 +15,5 @@ mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
 mod further_states;
+mod gimbal_angles;
 mod state_core;

@@ -200,7 +200,7 @@ fn compensation_takes_away_the_errors() {
     let mut further = all_on(1.0);
     (further.gyro_correlation_time_s, further.accel_correlation_time_s) = (GYRO_S, ACCEL_S);
     let mut value = [0.0; crate::further::FURTHER_COUNT];
-    for (k, value) in value.iter_mut().enumerate() {
+    for (k, value) in value[..DRIVING_COUNT].iter_mut().enumerate() {
         let group = FurtherGroup::ALL.into_iter().find(|group| group.range().contains(&k)).unwrap();
         *value = size(group) * (1.0 + 0.1 * k as f64);
     }
@@ -212,7 +212,7 @@ fn compensation_takes_away_the_errors() {
         compensation.set(&value);
         for k in 0..SAMPLES {
             let (mut dtheta, mut dv) = increments(k, None, &strapdown);
-            for (state, value) in value.iter().enumerate() {
+            for (state, value) in value[..DRIVING_COUNT].iter().enumerate() {
                 let [rate, force] = effect(state, (k as f64 + 0.5) * DT, &strapdown);
                 dtheta += rate * (value * DT);
                 dv += force * (value * DT);
