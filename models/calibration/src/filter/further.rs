@@ -6,11 +6,10 @@
 //! of z with the 39 states, and its own. The places of groups that are off stay zero; those of the gimbals,
 //! whose errors drive nothing (D = 0, F = 1), exist where [their angles are measurements](angles).
 
-#[cfg(test)]
-mod angle_tests;
 mod angles;
 mod border;
 mod columns;
+mod gimbals;
 #[cfg(test)]
 mod jacobian;
 #[cfg(test)]
@@ -22,20 +21,13 @@ use crate::error_model::{MotionInterval, advance_columns};
 use crate::further::compensation::FurtherIntegrals;
 use crate::further::size_effect::SizeEffect;
 use crate::further::{DRIVING_COUNT, FurtherEstimates, FurtherGroup};
-use angles::GimbalAngleMeasurement;
-pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, angle_rows};
-use border::{BORDER_COUNT, Border, CASE};
+pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
+use border::{BORDER_COUNT, Border, CASE, Process};
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
+pub use gimbals::AngleTally;
+use gimbals::GimbalAngleMeasurement;
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
-
-/// A first-order Gauss-Markov process of three further states.
-#[derive(Clone, Copy, Debug)]
-struct Process {
-    group: FurtherGroup,
-    sigma: f64,
-    correlation_time_s: f64,
-}
 
 /// The further states of a filter.
 #[derive(Clone, Debug)]
@@ -267,17 +259,6 @@ impl FurtherStates {
     /// Returns whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
         self.border.is_finite()
-    }
-}
-
-/// Variance of the integral of a process's noise, by σ² and the square of its column:
-/// `2 (a − x − x²/2)/x²` with a = −ln(1 − x); its series where the difference would cancel.
-fn share_of_noise(ratio: f64, lost: f64) -> f64 {
-    let x = lost;
-    if x < 1e-2 {
-        2.0 * x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x * (1.0 / 6.0 + x / 7.0))))
-    } else {
-        2.0 * (ratio - x - 0.5 * x * x) / (x * x)
     }
 }
 

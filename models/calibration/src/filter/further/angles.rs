@@ -21,9 +21,13 @@
 //! its own z: no measurement of these angles tells either from ψ and μ, and they are no states. All others appear
 //! as different functions of the two angles, and eight positions show each.
 
+#[cfg(test)]
+mod tests;
+
 use super::FurtherStates;
-use super::border::{BORDER_COUNT, Border, BorderRow, CASE, CURVE, GimbalReference};
-use crate::config::{AngleMeasurements, ErrorModel};
+use super::border::{BORDER_COUNT, Border, BorderRow, CASE, CURVE};
+use super::gimbals::{AngleTally, GimbalReference};
+use crate::config::ErrorModel;
 use crate::covariance::{Covariance, CovarianceRow, DR, PHI, STATE_COUNT};
 use crate::error_model::computer_frame_error;
 use crate::further::FurtherGroup;
@@ -42,40 +46,6 @@ const REJECTIONS_MAX: u32 = 5;
 const CASE_SIGMA_RAD: f64 = 0.1;
 /// Turn of a gimbal that makes another stop, rad: beyond any noise, and far below any move.
 const ANOTHER_STOP_RAD: f64 = 1e-3;
-
-/// Counts of the angles as measurements.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub struct AngleTally {
-    /// Measurements used.
-    pub used: u64,
-    /// Measurements rejected by the gate.
-    pub rejected: u64,
-    /// Rejections in a row, so far.
-    pub in_a_row: u32,
-    /// Sum of NIS over the measurements used.
-    pub nis_sum: f64,
-    /// True once the angles contradicted the gyros for good.
-    pub slipped: bool,
-}
-
-/// Settings and counts of the measurement.
-#[derive(Clone, Debug)]
-pub(super) struct GimbalAngleMeasurement {
-    variance_rad2: f64,
-    curve_sigma_rad: f64,
-    pub(super) tally: AngleTally,
-}
-
-impl GimbalAngleMeasurement {
-    pub(super) fn new(angles: &AngleMeasurements) -> Self {
-        Self {
-            variance_rad2: angles.sigma_rad * angles.sigma_rad,
-            curve_sigma_rad: angles.curve_sigma_rad,
-            tally: AngleTally::default(),
-        }
-    }
-}
 
 /// Result of one measurement of the angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -327,7 +297,7 @@ impl FurtherStates {
 impl Border {
     /// Tells the border at which angles (azimuth, roll; rad) the gimbals rest. After a move of a gimbal the rest of its
     /// encoder's error curve is another one.
-    fn stop_at(&mut self, angles_rad: [f64; 2], curve_sigma_rad: f64) {
+    pub(super) fn stop_at(&mut self, angles_rad: [f64; 2], curve_sigma_rad: f64) {
         let GimbalReference { at, .. } = self.reference;
         for axis in 0..2 {
             let same = at.is_some_and(|at| (at[axis] - angles_rad[axis]).abs() < ANOTHER_STOP_RAD);

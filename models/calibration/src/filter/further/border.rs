@@ -1,12 +1,11 @@
 //! The border itself: estimates of the further states, and their covariance with the 39 and with each other.
 
 use super::columns::{FURTHER_ROW, FurtherRow};
-use super::{Process, share_of_noise};
+use super::gimbals::GimbalReference;
 use crate::covariance::{Covariance, CovarianceRow, MOVING};
 #[cfg(feature = "state")]
 use crate::covariance::{load_rows, save_rows};
-use crate::further::{DRIVING_COUNT, FURTHER_COUNT};
-use nalgebra::UnitQuaternion;
+use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
 
 /// First of the three states of the case's attitude, rad in n, true − estimated. They have no estimate: it is
 /// in the reference.
@@ -20,14 +19,12 @@ pub(in crate::filter) const BORDER_COUNT: usize = CURVE + 2;
 pub(super) type BorderRow = CovarianceRow;
 const _: () = assert!(size_of::<BorderRow>() == BORDER_COUNT * size_of::<f64>());
 
-/// Reference of the gimbal angles as measurements.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct GimbalReference {
-    /// Attitude of the case; `None` before the first angles.
-    pub(super) q_nc: Option<UnitQuaternion<f64>>,
-    /// Angles at the last measurement, azimuth and roll, rad; `None`: the stop isn't known.
-    pub(super) at: Option<[f64; 2]>,
+/// A first-order Gauss-Markov process of three further states.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Process {
+    pub(super) group: FurtherGroup,
+    pub(super) sigma: f64,
+    pub(super) correlation_time_s: f64,
 }
 
 /// Estimates and covariance of the further states at one time.
@@ -114,6 +111,17 @@ impl Border {
             .chain(cross.iter().flatten())
             .chain(own.iter().flatten())
             .all(|x| x.is_finite())
+    }
+}
+
+/// Variance of the integral of a process's noise, by σ² and the square of its column:
+/// `2 (a − x − x²/2)/x²` with a = −ln(1 − x); its series where the difference would cancel.
+pub(super) fn share_of_noise(ratio: f64, lost: f64) -> f64 {
+    let x = lost;
+    if x < 1e-2 {
+        2.0 * x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x * (1.0 / 6.0 + x / 7.0))))
+    } else {
+        2.0 * (ratio - x - 0.5 * x * x) / (x * x)
     }
 }
 

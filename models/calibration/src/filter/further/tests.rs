@@ -1,6 +1,6 @@
 //! The border against a textbook filter with all states in one matrix.
 
-use super::border::BORDER_COUNT;
+use super::border::share_of_noise;
 use super::*;
 use crate::config::{AidingMode, AngleMeasurements, ErrorModel, Prior, SwayNoise};
 use nalgebra::{SMatrix, SVector};

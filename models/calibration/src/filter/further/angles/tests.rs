@@ -1,9 +1,9 @@
 //! Gimbal angles as measurements: rows against finite differences, update against a textbook filter, and what the
 //! angles can't tell apart.
 
-use super::border::{BorderRow, CURVE};
-use super::tests::{ALL, Full, assert_equal, example, kalman};
-use super::*;
+use super::super::tests::{ALL, Full, assert_equal, example, kalman};
+use super::super::*;
+use super::{BorderRow, CURVE};
 use crate::config::{AngleMeasurements, ErrorModel};
 use crate::covariance::{DR, PHI};
 use crate::error_model::computer_frame_error;
@@ -62,12 +62,12 @@ fn z(
     truth: &BorderRow,
     true_angles: [f64; 2],
     phi: Vector3<f64>,
-) -> (Vector3<f64>, angles::AngleRows) {
+) -> (Vector3<f64>, AngleRows) {
     let (q_cb, read) = gimballed(true_angles, truth);
     let psi = Vector3::new(truth[CASE], truth[CASE + 1], truth[CASE + 2]);
     // computed = (I − [φ×]) true.
     let q_nb = exp(&-phi) * exp(&psi) * q_case() * q_cb;
-    angles::residual(&q_nb, &q_case(), [read.azimuth_rad(), read.roll_rad()], estimate)
+    super::residual(&q_nb, &q_case(), [read.azimuth_rad(), read.roll_rad()], estimate)
 }
 
 /// Central differences of a nonlinear model that is written down apart, about estimates of some arc seconds.
@@ -103,12 +103,12 @@ fn the_rows_are_the_jacobian_of_the_measurement() {
     }
     // The psi form: φ = ψ + δθ(δr).
     let earth = *strapdown(&q_case()).earth();
-    let rows = angles::rows_of_errors(ErrorModel::Psi, &earth);
+    let rows = super::rows_of_errors(ErrorModel::Psi, &earth);
     let dr = Vector3::new(3.0, -7.0, 2.0);
     let of_dr = Vector3::from_fn(|i, _| (0..3).map(|j| rows[i][DR + j] * dr[j]).sum::<f64>());
     assert!((of_dr + computer_frame_error(&dr, &earth)).norm() < 1e-18);
     assert!((0..3).all(|i| rows[i][PHI + i] == -1.0));
-    let of_phi = angles::rows_of_errors(ErrorModel::Phi, &earth);
+    let of_phi = super::rows_of_errors(ErrorModel::Phi, &earth);
     assert!(of_phi.iter().flat_map(|row| &row[3..]).all(|h| *h == 0.0));
 }
 
@@ -123,9 +123,9 @@ fn an_update_by_angles_is_that_of_one_filter_with_all_states() {
     states.border.reference.q_nc = Some(q_case());
     states.border.reference.at = Some(angles_rad);
     let q_nb = exp(&Vector3::new(0.02, -0.05, 0.03)) * q_case() * q_cb;
-    let (z, of_border) = angles::residual(&q_nb, &q_case(), angles_rad, &states.border.value);
+    let (z, of_border) = super::residual(&q_nb, &q_case(), angles_rad, &states.border.value);
     let strapdown = strapdown(&q_nb);
-    let of_errors = angles::rows_of_errors(ErrorModel::Phi, strapdown.earth());
+    let of_errors = super::rows_of_errors(ErrorModel::Phi, strapdown.earth());
     let r = 0.25;
 
     let mut state = SVector::<f64, ALL>::zeros();
@@ -176,7 +176,7 @@ fn zero_errors_of_the_encoders_are_no_states_of_their_own() {
     let mut normal = SMatrix::<f64, N, N>::zeros();
     for (azimuth, roll, _) in EIGHT {
         let angles_rad = [azimuth.to_radians(), roll.to_radians()];
-        let rows = angles::angle_rows(&c, angles_rad);
+        let rows = angle_rows(&c, angles_rad);
         let h = SMatrix::<f64, 3, N>::from_fn(|i, k| match k {
             0..3 => rows[i][CASE + k],
             3..11 => rows[i][MOUNTING + k - 3],
@@ -226,4 +226,23 @@ fn angles_that_jump_are_rejected_and_then_no_longer_believed() {
     assert_eq!(measure(read, &mut errors), None);
     let tally = states.angle_tally().unwrap();
     assert!(tally.slipped && tally.rejected == 5 && tally.used == 50, "{tally:?}");
+}
+
+/// Some arc seconds of noise make no other stop; a move of one gimbal draws the rest of its own curve anew, without
+/// correlation, and leaves the other's.
+#[test]
+fn the_rest_of_a_curve_is_another_one_after_a_move_of_its_gimbal() {
+    let (mut states, _, full) = example();
+    let border = &mut states.border;
+    border.reference.at = Some([0.3, 0.7]);
+    border.stop_at([0.3 + 5e-5, 0.7 - 5e-5], 0.4);
+    let at = |k: usize, l: usize| full[(STATE_COUNT + k, STATE_COUNT + l)];
+    assert!((0..BORDER_COUNT).all(|k| border.own[CURVE][k] == at(CURVE, k)));
+    border.stop_at([0.3, 2.3], 0.4);
+    assert!((0..BORDER_COUNT - 1).all(|k| border.own[CURVE][k] == at(CURVE, k)));
+    assert_eq!((border.value[CURVE + 1], border.cross[CURVE + 1]), (0.0, [0.0; 40]));
+    for k in 0..BORDER_COUNT {
+        let expected = if k == CURVE + 1 { 0.4 * 0.4 } else { 0.0 };
+        assert_eq!((border.own[CURVE + 1][k], border.own[k][CURVE + 1]), (expected, expected));
+    }
 }
