@@ -9,7 +9,8 @@ use octant_scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;
 
-/// Gimbals with every error that the seed draws, and a filter that estimates each.
+/// Gimbals with every error that the seed draws, and a filter that estimates each. The screen for jumps takes noise of
+/// the encoders in a move for an edge and opens the attitude, which the perfect instrument of `octant observe` lacks: off.
 const GIMBALS: &str = r#"schema = 1
 title = "gimbals"
 seed = 3
@@ -27,6 +28,9 @@ mounting = ["0 arcsec", "10 arcsec", "20 arcsec"]
 mounting = { normal = "60 arcsec" }
 non_orthogonality = { normal = "20 arcsec" }
 eccentricity = { normal = "10 arcsec" }
+
+[screening]
+jumps = "off"
 
 [procedure.calibration]
 duration = "1 h"
@@ -58,8 +62,8 @@ fn summary(text: &str) -> Value {
 /// The errors of the gimbals are found; `octant observe` has said how well; and how much better the gyros' scale factors are by them.
 #[test]
 fn errors_of_the_gimbals_are_in_the_summary_and_as_observed() {
-    let (with, without) = GIMBALS.split_once("\n[procedure.calibration.further").unwrap();
-    assert!(without.starts_with(".gimbal_angles]"));
+    let (without, table) = GIMBALS.split_once("\n[procedure.calibration.further").unwrap();
+    assert!(table.starts_with(".gimbal_angles]"));
     let summary = summary(GIMBALS);
     let further = summary["calibration"]["further"].as_object().unwrap();
     let names: Vec<&str> = further.keys().map(String::as_str).collect();
@@ -78,7 +82,7 @@ fn errors_of_the_gimbals_are_in_the_summary_and_as_observed() {
         let before = found.further.unwrap().sigma[index] / arcsec;
         assert!((before / score["sigma"].as_f64().unwrap() - 1.0).abs() < 0.01, "{name}: {before}");
     }
-    let plain = perfect::run(&parsed(with), Method::Primary).unwrap();
+    let plain = perfect::run(&parsed(without), Method::Primary).unwrap();
     for (index, name) in NAMES.iter().enumerate() {
         let unit = ParameterGroup::of(index).si_per_unit();
         let sigma = summary["calibration"]["parameters"][*name]["sigma"].as_f64().unwrap();

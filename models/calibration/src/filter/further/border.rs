@@ -9,11 +9,11 @@ use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
 
 /// First of the three states of the case's attitude, rad in n, true − estimated. They have no estimate: it is
 /// in the reference.
-pub(in crate::filter) const CASE: usize = FURTHER_COUNT;
+pub(super) const CASE: usize = FURTHER_COUNT;
 /// First of the two states of the rest of the encoders' error curves at the present stop, azimuth and roll.
-pub(in crate::filter) const CURVE: usize = CASE + 3;
+pub(super) const CURVE: usize = CASE + 3;
 /// States of the border where gimbal angles are measurements.
-pub(in crate::filter) const BORDER_COUNT: usize = CURVE + 2;
+pub(super) const BORDER_COUNT: usize = CURVE + 2;
 
 /// One row over the states of the border: as long as one over the 39, and without padding.
 pub(super) type BorderRow = CovarianceRow;
@@ -29,7 +29,7 @@ pub(super) struct Process {
 
 /// Estimates and covariance of the further states at one time.
 #[derive(Clone, Debug)]
-pub(in crate::filter) struct Border {
+pub(super) struct Border {
     pub(super) time_s: f64,
     /// States that are there: [`DRIVING_COUNT`], or [`BORDER_COUNT`] with those of the gimbals. All others
     /// stay zero.
