@@ -72,6 +72,7 @@ impl InstrumentCase {
                 encoder_sigma_rad: 18.0 * ARCSEC,
                 non_orthogonality_rad: 0.0,
                 backlash_rad: 0.0,
+                errors: Default::default(),
             },
             imu: plant::Imu {
                 parameters: parameters(self.seed, &draws),

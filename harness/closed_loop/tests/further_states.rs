@@ -1,7 +1,7 @@
 //! Further states of the filter against instruments with the errors that they stand for.
 
 use octant_calibration::config::*;
-use octant_calibration::further::FurtherGroup;
+use octant_calibration::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
 use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
@@ -29,6 +29,9 @@ fn sigma(group: FurtherGroup) -> f64 {
         FurtherGroup::Deflection => 10.0 * ARCSEC,
         // 50 mGal.
         FurtherGroup::GravityAnomaly => 50e-5,
+        FurtherGroup::GimbalMounting
+        | FurtherGroup::GimbalNonOrthogonality
+        | FurtherGroup::EncoderEccentricity => unreachable!("see gimbal_angles"),
     }
 }
 
@@ -52,9 +55,9 @@ fn normal(sigmas: [f64; 7]) -> ParameterDraws {
 }
 
 /// True further states of an instrument with errors of these groups.
-fn truth(seed: u64, groups: &[FurtherGroup]) -> [f64; 27] {
+fn truth(seed: u64, groups: &[FurtherGroup]) -> [f64; FURTHER_COUNT] {
     let numbers = normals(seed);
-    let mut all = [0.0; 27];
+    let mut all = [0.0; FURTHER_COUNT];
     for group in groups {
         for k in group.range() {
             all[k] = sigma(*group) * numbers[k];
@@ -113,6 +116,11 @@ fn kalman(core: &mut CoreConfig) -> &mut Kalman {
     }
 }
 
+/// Groups that drive attitude and velocity; those of the gimbals are in `gimbal_angles`.
+fn driving() -> [FurtherGroup; 8] {
+    std::array::from_fn(|index| FurtherGroup::ALL[index])
+}
+
 fn off() -> Further {
     Further {
         gyro_correlation_time_s: CORRELATION_S,
@@ -138,8 +146,8 @@ struct Calibrated {
     errors: [f64; PARAMETER_COUNT],
     sigma: [f64; PARAMETER_COUNT],
     /// Squared normalized errors of the further states; NaN where they are off.
-    further: [f64; 27],
-    further_sigma: [f64; 27],
+    further: [f64; FURTHER_COUNT],
+    further_sigma: [f64; FURTHER_COUNT],
 }
 
 fn calibrate(seed: u64, groups: &[FurtherGroup], further: Further, screened: bool) -> Calibrated {
@@ -152,7 +160,7 @@ fn calibrate(seed: u64, groups: &[FurtherGroup], further: Further, screened: boo
     let (true_ones, estimate) = (plant.imu.parameters.to_array(), run.core.parameters().to_array());
     let all = truth(seed, groups);
     let found = run.core.further().copied();
-    let sigmas = found.map_or([0.0; 27], |found| found.sigma);
+    let sigmas = found.map_or([0.0; FURTHER_COUNT], |found| found.sigma);
     Calibrated {
         nis: run.core.table().unwrap().quality.nis_mean,
         errors: std::array::from_fn(|i| estimate[i] - true_ones[i]),
@@ -200,7 +208,7 @@ fn size(errors: &[f64; PARAMETER_COUNT], sigma: &[f64; PARAMETER_COUNT]) -> f64 
 #[ignore = "minutes: run by tests/run"]
 fn all_groups_at_once_are_consistent() {
     let seeds: Vec<u64> = (1..=draws(200, 60)).collect();
-    let all = FurtherGroup::ALL;
+    let all = driving();
     let runs = on_two_threads(&seeds, |seed| calibrate(*seed, &all, estimated(&all), true));
     let nis = mean(runs.iter().map(|run| run.nis));
     println!("all groups estimated, {} seeds: NIS {nis:.3}", seeds.len());
@@ -211,7 +219,7 @@ fn all_groups_at_once_are_consistent() {
     for group in all.into_iter().filter(|group| is_constant(*group)) {
         found.push((group.name(), further_nees(&runs, group), group.range().len()));
     }
-    for k in 0..27 {
+    for k in 0..DRIVING_COUNT {
         let name = octant_calibration::further::FURTHER_NAMES[k];
         println!("  {name:22} σ {:.3e}", runs[0].further_sigma[k]);
     }
@@ -238,7 +246,7 @@ fn estimated_errors_cost_least_and_considered_ones_are_told() {
         "{:20} {:>16} {:>16} {:>16} {:>8}",
         "group", "ignored", "considered", "estimated", "states"
     );
-    for group in FurtherGroup::ALL {
+    for group in driving() {
         let on = [group];
         let ways = [off(), considered(group), estimated(&on)].map(|further| {
             let runs = on_two_threads(&seeds, |seed| calibrate(*seed, &on, further, false));
@@ -326,7 +334,7 @@ fn a_rate_random_walk_is_modelled() {
 /// through, and its errors are as large as it says.
 #[test]
 fn faults_leave_further_states_consistent() {
-    let all = FurtherGroup::ALL;
+    let all = driving();
     let (plant, mut core) = configured(5, &all, estimated(&all));
     core.screening = Screening::hardened(Base::Still);
     let mut run = ClosedLoop::new(&plant, &core);
@@ -354,7 +362,7 @@ fn faults_leave_further_states_consistent() {
     let sigma = run.core.sigma();
     let squares = mean((0..30).map(|i| ((found[i] - truth_39[i]) / sigma[i]).powi(2)));
     let (further, values) = (run.core.further().unwrap(), truth(5, &all));
-    let constant = (0..27).filter(|k| !(18..24).contains(k));
+    let constant = (0..DRIVING_COUNT).filter(|k| !(18..24).contains(k));
     let of_further =
         mean(constant.map(|k| ((further.value[k] - values[k]) / further.sigma[k]).powi(2)));
     println!("after faults: normalized squares {squares:.2}, further {of_further:.2}");
@@ -376,7 +384,7 @@ fn a_coloured_sway_and_further_states_exclude_each_other() {
 /// A core that is stored and loaded amid the calibration goes on bit for bit.
 #[test]
 fn a_stored_core_with_further_states_goes_on_as_it_was() {
-    let all = FurtherGroup::ALL;
+    let all = driving();
     let (plant, mut core) = configured(2, &all, estimated(&all));
     core.screening = Screening::hardened(Base::Still);
     let mut run = ClosedLoop::new(&plant, &core);
@@ -395,5 +403,5 @@ fn a_stored_core_with_further_states_goes_on_as_it_was() {
         bytes
     });
     assert!(states[0] == states[1]);
-    assert!(run.core.further().unwrap().value.iter().all(|value| *value != 0.0));
+    assert!(run.core.further().unwrap().value[..DRIVING_COUNT].iter().all(|value| *value != 0.0));
 }

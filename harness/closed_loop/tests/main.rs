@@ -15,5 +15,6 @@ mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
 mod further_states;
+mod gimbal_angles;
 mod smoothing;
 mod state_core;

@@ -11,7 +11,7 @@ use octant_calibration::covariance::{
 };
 use octant_calibration::error_model::{MotionInterval, advance_columns};
 use octant_calibration::filter::{FURTHER_ROW, FurtherEffects, FurtherRow};
-use octant_calibration::further::{FURTHER_COUNT, FurtherGroup, FurtherIntegrals};
+use octant_calibration::further::{DRIVING_COUNT, FurtherGroup, FurtherIntegrals};
 use octant_earth::ellipsoid::Ellipsoid;
 
 /// Effect of each further state on the moving states over a step.
@@ -22,10 +22,10 @@ pub(super) type Columns = [FurtherRow; MOVING];
 pub(super) struct FurtherModel {
     effects: FurtherEffects,
     /// Correlation time of each state, s; infinite: a constant.
-    correlation_time_s: [f64; FURTHER_COUNT],
+    correlation_time_s: [f64; DRIVING_COUNT],
     /// σ of the filter's prior; zero where it doesn't know the state.
-    prior: [f64; FURTHER_COUNT],
-    estimated: [bool; FURTHER_COUNT],
+    prior: [f64; DRIVING_COUNT],
+    estimated: [bool; DRIVING_COUNT],
 }
 
 impl FurtherModel {
@@ -34,11 +34,11 @@ impl FurtherModel {
         let all = [FurtherUse::Considered { sigma: 1.0 }; 8];
         let mut model = Self {
             effects: FurtherEffects::new(&Further { groups: all, ..*further }),
-            correlation_time_s: [f64::INFINITY; FURTHER_COUNT],
-            prior: [0.0; FURTHER_COUNT],
-            estimated: [false; FURTHER_COUNT],
+            correlation_time_s: [f64::INFINITY; DRIVING_COUNT],
+            prior: [0.0; DRIVING_COUNT],
+            estimated: [false; DRIVING_COUNT],
         };
-        for group in FurtherGroup::ALL {
+        for group in FurtherGroup::ALL.into_iter().filter(|group| !group.is_of_gimbals()) {
             let Some(sigma) = further.of(group).sigma() else { continue };
             let is_estimated = matches!(further.of(group), FurtherUse::Estimated { .. });
             model.prior[group.range()].fill(sigma);
@@ -114,12 +114,12 @@ pub(super) struct Border {
 
 impl Border {
     /// Makes independent states with these σ.
-    pub(super) fn new(sigmas: &[f64; FURTHER_COUNT]) -> Self {
-        let mut own = vec![[0.0; FURTHER_ROW]; FURTHER_COUNT];
+    pub(super) fn new(sigmas: &[f64; DRIVING_COUNT]) -> Self {
+        let mut own = vec![[0.0; FURTHER_ROW]; DRIVING_COUNT];
         for (k, sigma) in sigmas.iter().enumerate() {
             own[k][k] = sigma * sigma;
         }
-        Self { cross: vec![[0.0; STATE_COUNT]; FURTHER_COUNT], own }
+        Self { cross: vec![[0.0; STATE_COUNT]; DRIVING_COUNT], own }
     }
 
     /// Adds to the covariance of a further state with one of the 39.
@@ -139,7 +139,7 @@ impl Border {
         let mut carried = [[0.0; FURTHER_ROW]; MOVING];
         let mut moved = carried;
         for i in 0..MOVING {
-            for k in 0..FURTHER_COUNT {
+            for k in 0..DRIVING_COUNT {
                 carried[i][k] = sum(&transition.rows[i], &self.cross[k]);
                 moved[i][k] = carried[i][k] + sum(&columns[i], &self.own[k]);
             }
@@ -154,7 +154,7 @@ impl Border {
                 errors.add(i, j, value);
             }
         }
-        for k in 0..FURTHER_COUNT {
+        for k in 0..DRIVING_COUNT {
             for (i, moved) in moved.iter().enumerate() {
                 self.cross[k][i] = moved[k];
             }
@@ -168,7 +168,7 @@ impl Border {
     /// Adds the noise that keeps Gauss-Markov biases at the filter's σ. Its effect on the moving states within a step
     /// is that of a step which is short against the correlation time: none.
     pub(super) fn add_noise(&mut self, model: &FurtherModel, decay: &FurtherRow) {
-        for k in 0..FURTHER_COUNT {
+        for k in 0..DRIVING_COUNT {
             self.own[k][k] += model.prior[k] * model.prior[k] * (1.0 - decay[k] * decay[k]);
         }
     }
@@ -176,7 +176,7 @@ impl Border {
     /// Gain of the filter for the further states, where this is its covariance: zero for those that aren't estimated.
     pub(super) fn gain(&self, model: &FurtherModel, state: usize, variance: f64) -> FurtherRow {
         let mut gain = [0.0; FURTHER_ROW];
-        for k in (0..FURTHER_COUNT).filter(|k| model.estimated[*k]) {
+        for k in (0..DRIVING_COUNT).filter(|k| model.estimated[*k]) {
             gain[k] = self.cross[k][state] / variance;
         }
         gain
@@ -193,7 +193,7 @@ impl Border {
     ) {
         let variance = errors.at(state, state) + r;
         let measured: Vec<f64> = self.cross.iter().map(|cross| cross[state]).collect();
-        for k in 0..FURTHER_COUNT {
+        for k in 0..DRIVING_COUNT {
             for (j, gain) in gain.iter().enumerate() {
                 self.cross[k][j] +=
                     further[k] * (gain * variance - errors.at(state, j)) - measured[k] * gain;
@@ -249,7 +249,7 @@ mod tests {
     use super::*;
     use nalgebra::{SMatrix, SVector};
 
-    const ALL: usize = STATE_COUNT + FURTHER_COUNT;
+    const ALL: usize = STATE_COUNT + DRIVING_COUNT;
     type Whole = SMatrix<f64, ALL, ALL>;
 
     /// Numbers without a pattern, within ±1.
@@ -262,13 +262,13 @@ mod tests {
         let root = Whole::from_fn(number);
         let whole = root * root.transpose();
         let mut errors = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
-        let mut border = Border::new(&[0.0; FURTHER_COUNT]);
+        let mut border = Border::new(&[0.0; DRIVING_COUNT]);
         for i in 0..STATE_COUNT {
             (i..STATE_COUNT).for_each(|j| errors.add(i, j, whole[(i, j)]));
         }
-        for k in 0..FURTHER_COUNT {
+        for k in 0..DRIVING_COUNT {
             (0..STATE_COUNT).for_each(|j| border.add(k, j, whole[(STATE_COUNT + k, j)]));
-            for l in 0..FURTHER_COUNT {
+            for l in 0..DRIVING_COUNT {
                 border.own[k][l] = whole[(STATE_COUNT + k, STATE_COUNT + l)];
             }
         }
@@ -303,7 +303,7 @@ mod tests {
                 transition.rows[i][j] += 0.3 * number(i + 7, j + 50);
                 f[(i, j)] = transition.rows[i][j];
             }
-            for k in 0..FURTHER_COUNT {
+            for k in 0..DRIVING_COUNT {
                 columns[i][k] = number(i + 31, k + 3);
                 f[(i, STATE_COUNT + k)] = columns[i][k];
             }
@@ -324,7 +324,7 @@ mod tests {
         let (state, r) = (4, 0.7);
         let gain: [f64; STATE_COUNT] = core::array::from_fn(|i| 0.1 * number(i, 99));
         let mut further = [0.0; FURTHER_ROW];
-        (0..FURTHER_COUNT).filter(|k| k % 3 != 0).for_each(|k| further[k] = 0.1 * number(k, 5));
+        (0..DRIVING_COUNT).filter(|k| k % 3 != 0).for_each(|k| further[k] = 0.1 * number(k, 5));
         border.update(&errors, (state, r), &gain, &further);
         errors.update_with_gain(state, r, &gain);
         let k = SVector::<f64, ALL>::from_fn(|i, _| {

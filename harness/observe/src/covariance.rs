@@ -15,7 +15,7 @@ use octant_calibration::config::{
 };
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
 use octant_calibration::filter::{FURTHER_ROW, add_bias_walk, add_process_noise, prior_sigmas};
-use octant_calibration::further::FURTHER_COUNT;
+use octant_calibration::further::DRIVING_COUNT;
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::ARCMIN;
@@ -83,11 +83,11 @@ pub struct PredictedResult {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictedFurther {
     /// σ that the filter believes; zero where it doesn't know of the error.
-    pub believed: [f64; FURTHER_COUNT],
+    pub believed: [f64; DRIVING_COUNT],
     /// Mean. Of Gauss-Markov biases minus that of the estimates.
-    pub mean: [f64; FURTHER_COUNT],
+    pub mean: [f64; DRIVING_COUNT],
     /// σ about the mean. Of Gauss-Markov biases that of the estimates.
-    pub sigma: [f64; FURTHER_COUNT],
+    pub sigma: [f64; DRIVING_COUNT],
 }
 
 /// Attitude and velocity error of an ensemble at one time, computed − true.
@@ -129,6 +129,12 @@ pub enum AnalysisError {
          linear, expected \"white\""
     )]
     ColouredSway,
+    /// Gimbal angles are measurements, which the prediction doesn't have.
+    #[error(
+        "predict the ensemble: found procedure.calibration.further.gimbal_angles, expected none; \"octant observe\" has \
+         the σ of this filter"
+    )]
+    GimbalAngles,
     /// The filter has states beside the 39, of which true sizes have to be known.
     #[error(
         "predict the covariance from σ of the 39 states: found procedure.calibration.further, expected none"
@@ -218,6 +224,9 @@ pub fn reach(
     if kalman.sway != SwayNoise::White {
         return Err(AnalysisError::ColouredSway);
     }
+    if kalman.further.angles.is_some() {
+        return Err(AnalysisError::GimbalAngles);
+    }
     let bordered = kalman.further.has_states() || truth.further.has_errors();
     let further = bordered.then(|| FurtherModel::new(&kalman.further));
     let rates = config.turntable;
@@ -260,7 +269,7 @@ fn calibrate(
     noise: (f64, f64),
     (start_s, end_s): (f64, f64),
     errors: &mut TrueErrors,
-) -> (Covariance, Option<[f64; FURTHER_COUNT]>) {
+) -> (Covariance, Option<[f64; DRIVING_COUNT]>) {
     let mut believed = Covariance::from_sigmas(&prior_sigmas(kalman));
     let mut border = further.map(FurtherModel::believed);
     let (first, r) = match kalman.aiding {

@@ -17,7 +17,7 @@ use super::truth::{EnsembleTruth, FurtherTruth, Swing, Unseen, Wander};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{CoreConfig, ErrorModel, Estimator, Further, Kalman};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
-use octant_calibration::further::{FURTHER_COUNT, FURTHER_NAMES, FurtherGroup};
+use octant_calibration::further::{DRIVING_COUNT, FURTHER_COUNT, FURTHER_NAMES, FurtherGroup};
 use octant_calibration::schedule::Cursor;
 use octant_calibration::sequence::Sequence;
 use octant_earth::ellipsoid::Ellipsoid;
@@ -292,8 +292,11 @@ pub fn truth(
     let imu = &scenario.imu;
     let mut further = FurtherTruth {
         sigma: further_sigmas(&scenario.further),
-        mean: octant_plant::further::truth(&imu.extensions, &scenario.site.gravity)
-            .map(|given| given.unwrap_or(0.0)),
+        mean: driving(&octant_plant::further::truth(
+            &imu.extensions,
+            &scenario.site.gravity,
+            &scenario.turntable,
+        )),
         ..FurtherTruth::default()
     };
     let noise = (square(imu.angle_random_walk), square(imu.velocity_random_walk));
@@ -363,10 +366,16 @@ pub fn truth(
     })
 }
 
-/// Returns the standard deviations of draws of the errors beside the parameters.
-fn further_sigmas(draws: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT] {
-    let mut sigmas = [0.0; FURTHER_COUNT];
-    for (group, draw) in FurtherGroup::ALL.into_iter().zip(draws) {
+/// Returns the values of errors that drive attitude and velocity; of processes zero.
+fn driving(given: &[Option<f64>; FURTHER_COUNT]) -> [f64; DRIVING_COUNT] {
+    core::array::from_fn(|k| given[k].unwrap_or(0.0))
+}
+
+/// Returns the standard deviations of draws of the errors beside the parameters that drive attitude and velocity.
+fn further_sigmas(draws: &[Option<ParameterDistribution>; 11]) -> [f64; DRIVING_COUNT] {
+    let mut sigmas = [0.0; DRIVING_COUNT];
+    let all = FurtherGroup::ALL.into_iter().zip(draws);
+    for (group, draw) in all.filter(|(group, _)| !group.is_of_gimbals()) {
         sigmas[group.range()].fill(match draw {
             Some(ParameterDistribution::Normal(sigma)) => *sigma,
             Some(ParameterDistribution::Uniform(half_width)) => half_width / libm::sqrt(3.0),
@@ -407,7 +416,7 @@ fn swings(scenario: &Scenario, ship: &DocksideSpec) -> (Vec<Swing>, Vec<Swing>) 
 /// Linear effect of the instrument's errors on a coarse alignment: φ = A · parameters + B · further errors + noise.
 struct Coarse {
     rows: [[f64; STATE_COUNT]; 3],
-    further: [[f64; FURTHER_COUNT]; 3],
+    further: [[f64; DRIVING_COUNT]; 3],
     earth: Ellipsoid,
 }
 
@@ -432,9 +441,9 @@ impl Coarse {
             let tilts = tilts(&|moving| step.transition.rows[moving][state]);
             (0..3).for_each(|i| rows[i][state] = tilts[i]);
         }
-        let mut further = [[0.0; FURTHER_COUNT]; 3];
+        let mut further = [[0.0; DRIVING_COUNT]; 3];
         if let Some((columns, _)) = &step.further {
-            for k in 0..FURTHER_COUNT {
+            for k in 0..DRIVING_COUNT {
                 let tilts = tilts(&|moving| columns[moving][k]);
                 (0..3).for_each(|i| further[i][k] = tilts[i]);
             }
@@ -482,7 +491,7 @@ impl Coarse {
         for i in 0..3 {
             mean[PHI + i] += sum(&self.further[i], &truth.mean);
             for j in i..3 {
-                let each = (0..FURTHER_COUNT)
+                let each = (0..DRIVING_COUNT)
                     .map(|k| self.further[i][k] * self.further[j][k] * truth.sigma[k].powi(2));
                 covariance.add(PHI + i, PHI + j, each.sum());
             }

@@ -1,5 +1,6 @@
 //! Effects of a scenario that no prediction has.
 
+use octant_sample::further::FurtherGroup;
 use octant_scenario::{MotionSpec, ParameterDistribution, Scenario};
 
 /// Lists the effects of a scenario that are not in the prediction.
@@ -11,7 +12,9 @@ pub(super) fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let dockside = matches!(scenario.motion, MotionSpec::Dockside(_));
     let quantized =
         extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
-    let all: [(bool, &str); 11] = [
+    let mounted = scenario.turntable.errors.mounting_rad != [0.0; 3]
+        || scenario.further[FurtherGroup::GimbalMounting as usize].is_some();
+    let all: [(bool, &str); 12] = [
         (true, "nonlinear effects: products of errors, and screens and gates that reject samples"),
         (
             even,
@@ -21,6 +24,7 @@ pub(super) fn not_modelled(scenario: &Scenario) -> Vec<String> {
             scenario.turntable.encoder_sigma_rad != 0.0,
             "errors of the encoders: the filter doesn't use their angles",
         ),
+        (mounted, "the mounting of the body on the inner gimbal"),
         (quantized, "quantization"),
         (extensions.vibration.is_some(), "vibration"),
         (extensions.time_skew_s != 0.0, "the time skew of the inertial unit"),

@@ -5,7 +5,7 @@
 //! states too, which [`covariance`](super::covariance) doesn't carry.
 
 use octant_calibration::Core;
-use octant_calibration::config::{Alignment, CoreConfig, Screening};
+use octant_calibration::config::{Alignment, CoreConfig, Estimator, Screening};
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_plant::Plant;
 use octant_plant::config::{AidingKind, Extensions, Imu, Motion};
@@ -85,6 +85,11 @@ pub(crate) fn perfect_instrument(
         extensions: Extensions::default(),
     };
     plant.turntable.encoder_sigma_rad = 0.0;
+    plant.turntable.errors = Default::default();
+    let estimator = config.calibration.as_ref().map(|calibration| &calibration.estimator);
+    if matches!(estimator, Some(Estimator::Kalman(kalman)) if kalman.further.angles.is_some()) {
+        plant.turntable.non_orthogonality_rad = 0.0;
+    }
     plant.site.gravity = Default::default();
     plant.aiding.kind = match plant.aiding.kind {
         AidingKind::ZeroVelocity { .. } => AidingKind::ZeroVelocity { sigma_mps: 0.0 },

@@ -13,7 +13,7 @@ use octant_calibration::covariance::{
     Covariance, DR, DV, MOVING, PARAMETERS, PHI, STATE_COUNT, Transition,
 };
 use octant_calibration::filter::{FURTHER_ROW, FurtherRow, add_process_noise};
-use octant_calibration::further::FURTHER_COUNT;
+use octant_calibration::further::DRIVING_COUNT;
 use octant_plant::config::Temperature;
 use octant_sample::parameters::ParameterGroup;
 
@@ -51,15 +51,16 @@ pub struct EnsembleTruth {
 }
 
 /// Errors beside the parameters over an ensemble, SI, in the order of
-/// [`FURTHER_NAMES`](octant_calibration::further::FURTHER_NAMES). Gauss-Markov biases are among the [`Wander`]s.
+/// [`FURTHER_NAMES`](octant_calibration::further::FURTHER_NAMES), without those of the gimbals: they do nothing to a
+/// filter that doesn't use their angles. Gauss-Markov biases are among the [`Wander`]s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FurtherTruth {
     /// σ of what is drawn, each independent.
-    pub sigma: [f64; FURTHER_COUNT],
+    pub sigma: [f64; DRIVING_COUNT],
     /// Values that are the same in every run.
-    pub mean: [f64; FURTHER_COUNT],
+    pub mean: [f64; DRIVING_COUNT],
     /// Effect on φ of an alignment before the start, rad.
-    pub tilt: [[f64; FURTHER_COUNT]; 3],
+    pub tilt: [[f64; DRIVING_COUNT]; 3],
 }
 
 impl FurtherTruth {
@@ -289,7 +290,7 @@ impl TrueErrors {
         };
         let mut mean =
             Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
-        mean.further[..FURTHER_COUNT].copy_from_slice(&truth.further.mean);
+        mean.further[..DRIVING_COUNT].copy_from_slice(&truth.further.mean);
         Self {
             noise: truth.noise,
             reference_variance: truth.reference_sigma.map(|sigma| sigma * sigma),
@@ -389,7 +390,7 @@ impl TrueErrors {
 
     /// Returns mean and σ of the further states; `None` without any. Of Gauss-Markov biases it is those of the estimates,
     /// with the sign turned.
-    pub(super) fn further(&self) -> Option<[[f64; FURTHER_COUNT]; 2]> {
+    pub(super) fn further(&self) -> Option<[[f64; DRIVING_COUNT]; 2]> {
         let border = self.border.as_ref()?;
         let swung = |k: usize| self.swung.iter().map(move |answer| 0.5 * answer.further[k].powi(2));
         let variance = |k: usize| border.variance(k) + swung(k).sum::<f64>();

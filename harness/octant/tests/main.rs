@@ -64,6 +64,7 @@ mod further_states;
 mod fuzz_corpus;
 #[cfg(target_os = "linux")]
 mod generated;
+mod gimbal_angles;
 mod hostile;
 mod innovations;
 #[cfg(unix)]

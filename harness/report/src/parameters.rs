@@ -75,6 +75,9 @@ fn further_title(group: FurtherGroup) -> &'static str {
         FurtherGroup::AccelGaussMarkov => "Accelerometer Gauss-Markov bias",
         FurtherGroup::Deflection => "Deflection of the vertical",
         FurtherGroup::GravityAnomaly => "Gravity anomaly",
+        FurtherGroup::GimbalMounting => "Mounting on the inner gimbal",
+        FurtherGroup::GimbalNonOrthogonality => "Gimbal non-orthogonality",
+        FurtherGroup::EncoderEccentricity => "Encoder eccentricity",
     }
 }
 

@@ -24,7 +24,7 @@ pub trait Drawing {
     fn parameters(&self, distributions: &[ParameterDistribution; 7]) -> Parameters;
     /// Draws errors beside the parameters, in the order of [`FURTHER_NAMES`], from the distribution of each group, in the
     /// order of [`FurtherGroup::ALL`]; zero where there is none.
-    fn further(&self, distributions: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT];
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 11]) -> [f64; FURTHER_COUNT];
     /// Draws attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad)
     /// and velocity (m/s).
     fn alignment_error(
@@ -59,7 +59,7 @@ impl Drawing for Seeded {
         draw::parameters(self.0, &draws)
     }
 
-    fn further(&self, distributions: &[Option<ParameterDistribution>; 8]) -> [f64; FURTHER_COUNT] {
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 11]) -> [f64; FURTHER_COUNT] {
         let none = draw::Draw::Constant([0.0; 9]);
         let draws = distributions.each_ref().map(|of| of.as_ref().map_or(none, of_group));
         draw::further(self.0, &draws)
@@ -177,32 +177,36 @@ impl Scenario {
     /// Configuration of the plant.
     #[must_use]
     pub fn plant(&self, seed: u64, draws: &DrawnValues) -> plant::PlantConfig {
-        let (extensions, gravity) = self.true_errors(draws);
+        let (extensions, gravity, turntable) = self.true_errors(draws);
         plant::PlantConfig {
             sample_period_ns: self.sample_period_ns,
             seed,
             calibration_samples: self.calibration_samples(),
             site: plant::PlantSite { gravity, ..self.site },
             motion: self.plant_motion(draws),
-            turntable: self.turntable,
+            turntable,
             imu: plant::Imu { parameters: draws.parameters, extensions, ..self.imu },
             aiding: self.aiding,
         }
     }
 
-    /// Errors of the instrument beside its parameters, and of gravity, with their draws.
-    fn true_errors(&self, draws: &DrawnValues) -> (plant::Extensions, plant::GravityDisturbance) {
+    /// Errors of the instrument beside its parameters, of gravity, and of the turntable, with their draws.
+    fn true_errors(
+        &self,
+        draws: &DrawnValues,
+    ) -> (plant::Extensions, plant::GravityDisturbance, plant::TurntableConfig) {
         let (mut extensions, mut gravity) = (self.imu.extensions.clone(), self.site.gravity);
-        octant_plant::further::add(&draws.further, &mut extensions, &mut gravity);
-        (extensions, gravity)
+        let mut turntable = self.turntable;
+        octant_plant::further::add(&draws.further, &mut extensions, &mut gravity, &mut turntable);
+        (extensions, gravity, turntable)
     }
 
     /// True values of the errors beside the parameters, SI, in the order of [`FURTHER_NAMES`]; `None` for a process that
-    /// changes over time.
+    /// changes over time, and for the eccentricity of encoders with a drawn curve.
     #[must_use]
     pub fn true_further(&self, draws: &DrawnValues) -> [Option<f64>; FURTHER_COUNT] {
-        let (extensions, gravity) = self.true_errors(draws);
-        octant_plant::further::truth(&extensions, &gravity)
+        let (extensions, gravity, turntable) = self.true_errors(draws);
+        octant_plant::further::truth(&extensions, &gravity, &turntable)
     }
 
     fn plant_motion(&self, draws: &DrawnValues) -> plant::Motion {
@@ -374,13 +378,15 @@ mod tests {
         let drawn_too = "[imu.extensions.drawn]\nlever_arm = { normal = \"3 cm\" }\n\
                          gyro_asymmetry = { uniform = \"30 ppm\" }\naccel_asymmetry = { normal = \"30 ppm\" }\n\
                          accel_quadratic = { normal = \"20 ug/g^2\" }\n[site.drawn]\n\
-                         deflection = { normal = \"10 arcsec\" }\ngravity_anomaly = { normal = \"50 ug\" }\n";
+                         deflection = { normal = \"10 arcsec\" }\ngravity_anomaly = { normal = \"50 ug\" }\n\
+                         [turntable.drawn]\nmounting = { normal = \"1 arcmin\" }\n\
+                         non_orthogonality = { normal = \"20 arcsec\" }\neccentricity = { uniform = \"5 arcsec\" }\n";
         let other = drawn(&format!("{ship}{drawn_too}"));
         let processes = 18..24;
         for (index, value) in other.further.iter().enumerate() {
             assert_eq!(*value == 0.0, processes.contains(&index), "{index}");
         }
-        assert_eq!(all.further, [0.0; 27]);
+        assert_eq!(all.further, [0.0; FURTHER_COUNT]);
         assert_eq!(DrawnValues { further: all.further, ..other }, all);
         // A spectrum beside a component, or another alignment, doesn't change other draws either.
         let spectrum = "spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n";

@@ -115,11 +115,31 @@ impl Scenario {
                 FurtherGroup::GravityAnomaly => {
                     set("site.gravity_anomaly", one(UnitDimension::ACCEL_BIAS, 0));
                 }
+                FurtherGroup::GimbalMounting => {
+                    // The truth of z has the azimuth encoder's zero in it, which is a key of its own.
+                    let mut values = values.clone();
+                    values[2] += self.turntable.errors.encoder_zero_rad[0];
+                    set("turntable.mounting", quantities(UnitDimension::SMALL_ANGLE, &values));
+                }
+                FurtherGroup::GimbalNonOrthogonality => {
+                    set("turntable.non_orthogonality", one(UnitDimension::SMALL_ANGLE, 0));
+                }
+                FurtherGroup::EncoderEccentricity => {
+                    let given = self.turntable.errors.eccentricity_rad;
+                    let drawn = &draws.further[group.range()];
+                    for (axis, name) in ["azimuth", "roll"].into_iter().enumerate() {
+                        // A drawn curve hides the truth: that of the coefficients is the sum.
+                        let values = [0, 1].map(|i| given[axis][i] + drawn[2 * axis + i]);
+                        let values = quantities(UnitDimension::SMALL_ANGLE, &values);
+                        set(&format!("turntable.eccentricity_{name}"), values);
+                    }
+                }
                 FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => {}
             }
         }
         document.remove_at("imu.extensions.drawn");
         document.remove_at("site.drawn");
+        document.remove_at("turntable.drawn");
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.

@@ -67,6 +67,7 @@ fn a_move_is_missed_by_what_its_acceleration_does_alone() {
         encoder_sigma_rad: 0.0,
         non_orthogonality_rad: 0.0,
         backlash_rad: 0.0,
+        errors: Default::default(),
     };
     let mut plant = GimbalTable::new(&config);
     plant.go_to(table::GimbalAxis::Azimuth, degrees(30.0), rate, 0);

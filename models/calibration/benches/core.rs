@@ -25,6 +25,7 @@ fn all_further() -> Further {
         gyro_correlation_time_s: 300.0,
         accel_correlation_time_s: 300.0,
         gyro_rate_random_walk: 1e-12,
+        angles: None,
     }
 }
 

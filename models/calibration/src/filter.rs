@@ -15,7 +15,10 @@ mod solution;
 mod sub_step;
 mod sway;
 
-pub use further::{FURTHER_ROW, FurtherEffects, FurtherRow};
+pub use further::{
+    ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, FURTHER_ROW, FurtherEffects, FurtherRow,
+    angle_rows,
+};
 pub use measurement::MeasurementResult;
 pub use noise::{add_bias_walk, add_process_noise};
 pub use passage::Passage;
@@ -346,6 +349,12 @@ impl CalibrationFilter {
     #[must_use]
     pub fn further(&self) -> Option<FurtherEstimates> {
         self.further.as_ref().map(FurtherStates::estimates)
+    }
+
+    /// Counts of the gimbal angles as measurements; `None` where they are none.
+    #[must_use]
+    pub fn angle_tally(&self) -> Option<&AngleTally> {
+        self.further.as_ref().and_then(FurtherStates::angle_tally)
     }
 
     /// The further states as a part of a stored state. They are no part of [`Self`] there, so that

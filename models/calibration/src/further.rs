@@ -13,6 +13,11 @@
 //! | [`AccelGaussMarkov`](FurtherGroup::AccelGaussMarkov) | ∇_i = x_i, first-order Gauss-Markov | m/s² |
 //! | [`Deflection`](FurtherGroup::Deflection) | gravity in n is (−ξ g, −η g, g) | rad |
 //! | [`GravityAnomaly`](FurtherGroup::GravityAnomaly) | gravity in n is (0, 0, g + Δg), g normal gravity | m/s² |
+//! | [`GimbalMounting`](FurtherGroup::GimbalMounting) | `c_cb = Rx(roll) · Ry(η) · Rz(azimuth) · exp([μ×])` | rad |
+//! | [`GimbalNonOrthogonality`](FurtherGroup::GimbalNonOrthogonality) | η in the same | rad |
+//! | [`EncoderEccentricity`](FurtherGroup::EncoderEccentricity) | measured − true angle is c cos(angle) + s sin(angle), for azimuth and for roll | rad |
+//!
+//! The last three are there where the gimbal angles are measurements: see [`crate::filter`]'s angles.
 //!
 //! Sign of the deflection of the vertical: ξ is positive where the astronomic zenith is north of the
 //! geodetic one, η where it is east (Torge, *Geodesy*). The plumb line then points to the south
@@ -35,4 +40,6 @@ pub(crate) mod compensation;
 pub(crate) mod size_effect;
 
 pub use compensation::FurtherIntegrals;
-pub use octant_sample::further::{FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup};
+pub use octant_sample::further::{
+    DRIVING_COUNT, FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup,
+};

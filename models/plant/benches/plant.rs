@@ -33,6 +33,7 @@ fn config(motion: Motion) -> PlantConfig {
             encoder_sigma_rad: 18.0 * DEG / 3600.0,
             non_orthogonality_rad: 1e-4,
             backlash_rad: 0.0,
+            errors: Default::default(),
         },
         imu: Imu {
             parameters: draw::parameters(1, &draw::ParameterDraws::table_1()),

@@ -148,6 +148,23 @@ pub struct TurntableConfig {
     /// Play of each gear, rad: the body lags the command by half of it, on the side from which it
     /// came. The encoders sit on the drives and don't see it.
     pub backlash_rad: f64,
+    /// Mounting of the body, and errors of the encoders with given coefficients.
+    pub errors: GimbalErrors,
+}
+
+/// Errors of the gimbals with given coefficients. The default has none of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct GimbalErrors {
+    /// Mounting μ of the body on the inner gimbal, rad: the body is turned by this vector in its own
+    /// axes, `c_cb = Rx(roll) · Ry(η) · Rz(azimuth) · exp([μ×])`.
+    pub mounting_rad: [f64; 3],
+    /// Zero errors of the encoders of azimuth and roll, rad: measured − true.
+    pub encoder_zero_rad: [f64; 2],
+    /// Eccentricity of the encoders of azimuth and roll, rad: coefficients c and s of the error
+    /// `c cos(angle) + s sin(angle)`, measured − true. They add to the drawn curve.
+    pub eccentricity_rad: [[f64; 2]; 2],
+    /// White noise of each encoder's reading, 1σ, rad.
+    pub encoder_noise_rad: f64,
 }
 
 /// The sensors.

@@ -13,7 +13,7 @@ use crate::kinematics::Node;
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::vibration::shaken;
 use crate::window::Frame;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalCommand;
 use std::collections::VecDeque;
 
@@ -113,6 +113,8 @@ pub(crate) struct Body {
     azimuth_near: Near,
     roll_near: Near,
     pub(crate) tilt_sincos: (f64, f64),
+    /// Takes a vector from the inner gimbal's axes into those of the body mounted on it; `None`: the same.
+    pub(crate) mounting: Option<Matrix3<f64>>,
     pub(crate) vibration: Option<Vibration>,
     pub(crate) lever_arm: Option<[Vector3<f64>; 3]>,
     /// Lever arms of the configuration, without those of faults.
@@ -175,6 +177,12 @@ impl Body {
             azimuth_near: Near::new(0.0),
             roll_near: Near::new(0.0),
             tilt_sincos: libm::sincos(table.non_orthogonality_rad),
+            mounting: (table.errors.mounting_rad != [0.0; 3]).then(|| {
+                octant_earth::rotation::exp(&table.errors.mounting_rad.into())
+                    .inverse()
+                    .to_rotation_matrix()
+                    .into_inner()
+            }),
             vibration: extensions.vibration,
             lever_arm,
             own_lever_arm: lever_arm,
@@ -352,7 +360,11 @@ impl Body {
     /// Integrals over a whole interval in which both gimbals rest: those of the case, turned once.
     fn integrate_resting(&mut self, frame: Frame) -> Increments {
         let ([roll, azimuth], tilt) = (frame, self.tilt_sincos);
-        let into_block = |v: &Vector3<f64>| rz_t(&ry_t(&rx_t(v, roll), tilt), azimuth);
+        let mounting = self.mounting;
+        let into_block = |v: &Vector3<f64>| {
+            let inner = rz_t(&ry_t(&rx_t(v, roll), tilt), azimuth);
+            mounting.map_or(inner, |mounting| mounting * inner)
+        };
         if let Some((delta_theta, delta_velocity)) = self.case.integral_in(frame, into_block) {
             return Increments { delta_theta, delta_velocity };
         }
@@ -444,17 +456,24 @@ impl Body {
         let turned = rx_t(&case.rate, roll_sincos);
         let inner = ry_t(&(turned + x * roll_rate), self.tilt_sincos);
         let turned_inner = rz_t(&inner, azimuth_sincos);
-        let rate = turned_inner + z * azimuth_rate;
-        let force = rz_t(&ry_t(&rx_t(&case.force, roll_sincos), self.tilt_sincos), azimuth_sincos);
+        let mut rate = turned_inner + z * azimuth_rate;
+        let mut force =
+            rz_t(&ry_t(&rx_t(&case.force, roll_sincos), self.tilt_sincos), azimuth_sincos);
+        if let Some(mounting) = &self.mounting {
+            (rate, force) = (mounting * rate, mounting * force);
+        }
         let Some(vibration) = &self.vibration else {
             return (rate, force);
         };
         let outer_acceleration = rx_t(&case.acceleration, roll_sincos)
             - x.cross(&turned) * roll_rate
             + x * turn.roll.origin.acceleration;
-        let acceleration = rz_t(&ry_t(&outer_acceleration, self.tilt_sincos), azimuth_sincos)
+        let mut acceleration = rz_t(&ry_t(&outer_acceleration, self.tilt_sincos), azimuth_sincos)
             - z.cross(&turned_inner) * azimuth_rate
             + z * turn.azimuth.origin.acceleration;
+        if let Some(mounting) = &self.mounting {
+            acceleration = mounting * acceleration;
+        }
         shaken(vibration, start_s + at, &rate, &acceleration, &force)
     }
 

@@ -12,7 +12,8 @@
 //! Random numbers come from named streams ([`octant_random`]): `gyro.noise`, `accelerometer.noise`,
 //! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `gyro.flicker.0` to
 //! `gyro.flicker.8` and `accelerometer.flicker.0` to `accelerometer.flicker.8` ([`flicker`]),
-//! `aiding.noise`, `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for numbers
+//! `aiding.noise`, `turntable.encoder.azimuth`, `turntable.encoder.roll`,
+//! `turntable.encoder.noise`, and `draw.*` for numbers
 //! drawn before a run ([`draw`]). No stream affects another.
 
 mod case;

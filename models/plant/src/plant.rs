@@ -12,6 +12,7 @@ use crate::reference::Aider;
 use crate::validate::{PlantConfigError, validate};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
+use octant_random::stream::Triad;
 use octant_sample::disturbance::{Disturbance, Disturbed, Motor};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
@@ -41,10 +42,13 @@ pub struct Plant {
     body: Body,
     sensors: Sensors,
     encoders: [ErrorCurve; 2],
+    encoder_noise: Option<Triad>,
     aider: Aider,
     /// Samples until the reference is due.
     until_aiding: u64,
     non_orthogonality_rad: f64,
+    /// Rotation of the body on the inner gimbal; `None`: none.
+    mounting: Option<UnitQuaternion<f64>>,
     saturated_samples: u64,
     /// Increments and reading of the last sample; `is_still` if every later sample has the same.
     increments: Increments,
@@ -66,7 +70,7 @@ impl Plant {
     pub fn new(config: &PlantConfig) -> Result<Self, PlantConfigError> {
         validate(config)?;
         let dt = config.sample_period_ns as f64 * 1e-9;
-        let sigma_rad = config.turntable.encoder_sigma_rad;
+        let (sigma_rad, errors) = (config.turntable.encoder_sigma_rad, &config.turntable.errors);
         let aider = Aider::new(config);
         Ok(Self {
             config: Box::new(config.clone()),
@@ -76,11 +80,20 @@ impl Plant {
             in_phase: 0,
             body: Body::new(config),
             sensors: Sensors::new(&config.imu, dt, config.seed),
-            encoders: ["turntable.encoder.azimuth", "turntable.encoder.roll"]
-                .map(|name| ErrorCurve::new(config.seed, name, sigma_rad)),
+            encoders: [("turntable.encoder.azimuth", 0), ("turntable.encoder.roll", 1)].map(
+                |(name, axis)| {
+                    let (zero, first) =
+                        (errors.encoder_zero_rad[axis], errors.eccentricity_rad[axis]);
+                    ErrorCurve::new(config.seed, name, sigma_rad, zero, first)
+                },
+            ),
+            encoder_noise: (errors.encoder_noise_rad > 0.0)
+                .then(|| Triad::new(config.seed, "turntable.encoder.noise")),
             until_aiding: aider.period_samples(),
             aider,
             non_orthogonality_rad: config.turntable.non_orthogonality_rad,
+            mounting: (errors.mounting_rad != [0.0; 3])
+                .then(|| octant_earth::rotation::exp(&errors.mounting_rad.into())),
             saturated_samples: 0,
             increments: Increments::default(),
             reading: Reading::default(),
@@ -167,6 +180,7 @@ impl Plant {
         if self.sequence == self.calibration_samples {
             self.in_phase = 0;
             self.sensors.navigate();
+            self.navigate_encoders();
         }
         let number = self.in_phase;
         self.in_phase += 1;
@@ -191,6 +205,9 @@ impl Plant {
         sample.sequence = self.sequence;
         sample.device_time = DeviceTime::from_ns(self.time_ns);
         sample.gimbal = self.angles;
+        if self.encoder_noise.is_some() {
+            self.add_encoder_noise(&mut sample.gimbal, number);
+        }
         sample.status = status | self.flags;
         self.until_aiding -= 1;
         *aiding = if self.until_aiding == 0 { self.aid(sample.device_time, number) } else { None };
@@ -222,6 +239,25 @@ impl Plant {
         self.angles = GimbalAngles { azimuth: read[0], roll: read[1] };
     }
 
+    /// Switches the encoders' noise to the numbers of the navigation phase.
+    #[cold]
+    fn navigate_encoders(&mut self) {
+        if let Some(noise) = &mut self.encoder_noise {
+            noise.navigate();
+        }
+    }
+
+    /// Adds the white noise of both encoders; `number` is that of the sample in its phase.
+    #[inline(never)]
+    fn add_encoder_noise(&self, angles: &mut GimbalAngles, number: u64) {
+        let Some(noise) = &self.encoder_noise else { return };
+        let [azimuth, roll, _] = noise.at(number);
+        let sigma_rad = self.config.turntable.errors.encoder_noise_rad;
+        let added = GimbalAngles::from_rad(sigma_rad * azimuth, sigma_rad * roll);
+        angles.azimuth = angles.azimuth.saturating_add(added.azimuth);
+        angles.roll = angles.roll.saturating_add(added.roll);
+    }
+
     #[inline(never)]
     fn aid(&mut self, device_time: DeviceTime, sample: u64) -> Option<Aiding> {
         self.until_aiding = self.aider.period_samples();
@@ -247,6 +283,7 @@ impl Plant {
             * about(gimbal_rad[1], 1)
             * about(self.non_orthogonality_rad, 2)
             * about(gimbal_rad[0], 3);
+        let q = self.mounting.map_or(q, |mounting| q * mounting.into_inner());
         let truth = Truth {
             time: SimulatedTime::from_ns(self.time_ns),
             latitude_rad: at.latitude_rad,

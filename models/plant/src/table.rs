@@ -111,6 +111,7 @@ mod tests {
             encoder_sigma_rad: 0.0,
             non_orthogonality_rad: 0.0,
             backlash_rad: 0.0,
+            errors: Default::default(),
         })
     }
 

@@ -1,6 +1,8 @@
 //! Checks of a configuration: every configuration that passes can be computed with.
 
-use crate::config::{AidingKind, Dockside, Extensions, GaussMarkov, Motion, PlantConfig, Sinusoid};
+use crate::config::{
+    AidingKind, Dockside, Extensions, GaussMarkov, GimbalErrors, Motion, PlantConfig, Sinusoid,
+};
 use octant_earth::units::DEG;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
@@ -89,6 +91,7 @@ pub(crate) fn validate(config: &PlantConfig) -> Check {
         "within ±10 deg",
     )?;
     not_negative("turntable.backlash_rad", table.backlash_rad)?;
+    gimbals(&table.errors)?;
 
     let imu = &config.imu;
     for (value, name) in imu.parameters.to_array().iter().zip(octant_sample::parameters::NAMES) {
@@ -111,6 +114,22 @@ pub(crate) fn validate(config: &PlantConfig) -> Check {
         }
         AidingKind::DockPosition { sigma_m } => not_negative("aiding.sigma_m", sigma_m),
     }
+}
+
+fn gimbals(errors: &GimbalErrors) -> Check {
+    let GimbalErrors { mounting_rad, encoder_zero_rad, eccentricity_rad, encoder_noise_rad } =
+        errors;
+    for (name, angles) in [
+        ("mounting_rad", &mounting_rad[..]),
+        ("encoder_zero_rad", &encoder_zero_rad[..]),
+        ("eccentricity_rad", eccentricity_rad.as_flattened()),
+    ] {
+        for (index, angle) in angles.iter().enumerate() {
+            let field = format!("turntable.errors.{name}[{index}]");
+            within(&field, *angle, 10.0 * DEG, "within ±10 deg")?;
+        }
+    }
+    not_negative("turntable.errors.encoder_noise_rad", *encoder_noise_rad)
 }
 
 fn dockside(ship: &Dockside) -> Check {

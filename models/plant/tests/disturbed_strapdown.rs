@@ -19,6 +19,7 @@ fn fine() -> PlantConfig {
     config.motion =
         Motion::Static(CaseAttitude { heading_rad: 0.7, pitch_rad: 0.05, roll_rad: -0.03 });
     config.turntable.non_orthogonality_rad = 1e-3;
+    config.turntable.errors.mounting_rad = [3e-3, -2e-3, 1e-3];
     config
 }
 

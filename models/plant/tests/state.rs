@@ -21,6 +21,12 @@ fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
     config.turntable.encoder_sigma_rad = 18.0 * ARCSEC;
     config.turntable.non_orthogonality_rad = 1e-4;
     config.turntable.backlash_rad = 20.0 * ARCSEC;
+    config.turntable.errors = GimbalErrors {
+        mounting_rad: [1e-4, -2e-4, 3e-4],
+        encoder_zero_rad: [1e-5, 2e-5],
+        eccentricity_rad: [[3e-5, 1e-5], [-2e-5, 1e-5]],
+        encoder_noise_rad: 1e-6,
+    };
     config.imu.parameters = draw::parameters(4, &draw::ParameterDraws::table_1());
     config.imu.extensions = Extensions {
         gyro_gauss_markov: Some(GaussMarkov {
@@ -292,7 +298,7 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
         let stored = std::fs::read(format!("{folder}/plant-{version}.bin")).unwrap();
         assert_eq!(
             Plant::load(&stored).unwrap_err().to_string(),
-            format!("the state of a plant has version {version}, this program reads version 3")
+            format!("the state of a plant has version {version}, this program reads version 4")
         );
     }
 }

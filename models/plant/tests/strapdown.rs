@@ -43,6 +43,7 @@ fn dockside_with_moves() {
     let mut config = perfect();
     config.motion = Motion::Dockside(motion::dockside_iso_8728(3));
     config.turntable.non_orthogonality_rad = 1e-3;
+    config.turntable.errors.mounting_rad = [3e-3, -2e-3, 1e-3];
     config.turntable.backlash_rad = 2e-4;
     let moves = [(0.0, 90.0, 60), (90.0, 90.0, 60), (90.0, -45.0, 60), (180.0, 0.0, 120)];
     let (position, velocity, attitude) = worst(&config, &moves, false);
@@ -54,6 +55,7 @@ fn dockside_with_moves() {
 fn static_with_moves_for_an_hour() {
     let mut config = perfect();
     config.turntable.non_orthogonality_rad = -2e-3;
+    config.turntable.errors.mounting_rad = [3e-3, -2e-3, 1e-3];
     config.motion =
         Motion::Static(CaseAttitude { heading_rad: 1.1, pitch_rad: 0.03, roll_rad: -0.02 });
     let moves: Vec<(f64, f64, u64)> = (0..24)

@@ -145,6 +145,106 @@ fn non_orthogonality_tilts_the_inner_axis_towards_the_outer() {
     assert!((ratio + libm::tan(1e-3)).abs() < 2e-11, "{ratio}");
 }
 
+/// Down in the body by hand, for a mounting about x alone at (azimuth, roll) = (90°, 90°): down of the case
+/// is y of the outer gimbal's ring, x of the inner gimbal's, and a turn about x leaves that where it is. At
+/// (0°, 90°) it is y of the inner gimbal's, and a body that is turned by μ about x sees it at (0, cos μ, −sin μ).
+#[test]
+fn a_mounting_turns_the_body_on_the_inner_gimbal() {
+    let mut config = perfect();
+    let mu = 2e-3;
+    config.turntable.errors.mounting_rad = [mu, 0.0, 0.0];
+    for (azimuth, expected) in
+        [(90.0, [1.0, 0.0, 0.0]), (0.0, [0.0, libm::cos(mu), -libm::sin(mu)])]
+    {
+        let mut plant = Plant::new(&config).unwrap();
+        let go = command(azimuth, 90.0);
+        run(&mut plant, &go, 4000);
+        let steps = run(&mut plant, &go, 1000);
+        let sums: Vec<f64> = (0..3)
+            .map(|axis| steps.iter().map(|step| f64::from(step.sample.delta_velocity[axis])).sum())
+            .collect();
+        let whole = sums.iter().map(|sum| sum * sum).sum::<f64>().sqrt();
+        for axis in 0..3 {
+            // The force is up. Half a count in 5e10, and the gimbals' angles are counts of 7.5e-9 rad.
+            let found = -sums[axis] / whole;
+            assert!((found - expected[axis]).abs() < 5e-9, "{azimuth} {axis}: {found}");
+        }
+    }
+}
+
+/// The truth of the attitude is the product of the rotations, `Rx(roll) · Ry(η) · Rz(azimuth) · exp([μ×])`, and the
+/// samples integrate to it: what the case, level and heading north, sees of the body after the moves.
+#[test]
+fn the_truth_of_a_mounted_body_is_the_product_of_its_rotations() {
+    let mut config = perfect();
+    config.turntable.non_orthogonality_rad = 1e-3;
+    config.turntable.errors.mounting_rad = [2e-3, -1e-3, 3e-3];
+    let mut plant = Plant::new(&config).unwrap();
+    let go = command(90.0, 270.0);
+    run(&mut plant, &go, 8000);
+    let [w, x, y, z] = plant.truth().q_nb;
+    let found = nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z))
+        .to_rotation_matrix()
+        .into_inner();
+    let (azimuth, roll) = (go.target.azimuth_rad(), go.target.roll_rad());
+    let mu = nalgebra::Vector3::new(2e-3, -1e-3, 3e-3);
+    // Rodrigues.
+    let k = octant_earth::rotation::skew(&(mu / mu.norm()));
+    let mounted = nalgebra::Matrix3::identity()
+        + k * libm::sin(mu.norm())
+        + k * k * (1.0 - libm::cos(mu.norm()));
+    let expected = octant_earth::rotation::rx(roll)
+        * octant_earth::rotation::ry(1e-3)
+        * octant_earth::rotation::rz(azimuth)
+        * mounted;
+    assert!((found - expected).amax() < 1e-14);
+}
+
+/// Zero error and eccentricity are measured − true, in the angles alone; the noise has its size, is white, and
+/// depends on the number of the sample alone.
+#[test]
+fn encoders_read_what_their_coefficients_say() {
+    let mut config = perfect();
+    let errors = &mut config.turntable.errors;
+    errors.encoder_zero_rad = [30.0 * ARCSEC, -20.0 * ARCSEC];
+    errors.eccentricity_rad = [[5.0 * ARCSEC, 7.0 * ARCSEC], [-4.0 * ARCSEC, 9.0 * ARCSEC]];
+    for (azimuth, roll, expected) in [
+        (0.0, 0.0, [35.0, -24.0]),
+        (90.0, 180.0, [37.0, -16.0]),
+        (180.0, 90.0, [25.0, -11.0]),
+        (30.0, 0.0, [30.0 + 5.0 * 0.75f64.sqrt() + 3.5, -24.0]),
+    ] {
+        let mut plant = Plant::new(&config).unwrap();
+        let go = command(azimuth, roll);
+        let at = run(&mut plant, &go, 5000)[4999].sample.gimbal;
+        let off = [at.azimuth - go.target.azimuth, at.roll - go.target.roll];
+        for axis in 0..2 {
+            let found = f64::from(off[axis]) * GIMBAL_LSB_RAD;
+            assert!((found - expected[axis] * ARCSEC).abs() < GIMBAL_LSB_RAD, "{azimuth} {roll}");
+        }
+    }
+    let quiet = run(&mut Plant::new(&config).unwrap(), &command(0.0, 0.0), 4000);
+    config.turntable.errors.encoder_noise_rad = 2.0 * ARCSEC;
+    let noisy = run(&mut Plant::new(&config).unwrap(), &command(0.0, 0.0), 4000);
+    let (mut squares, mut products, mut last) = (0.0, 0.0, 0.0);
+    for (a, b) in noisy.iter().zip(&quiet) {
+        assert_eq!(a.sample.delta_theta, b.sample.delta_theta);
+        assert_eq!(a.sample.delta_velocity, b.sample.delta_velocity);
+        for (a, b) in [
+            (a.sample.gimbal.azimuth, b.sample.gimbal.azimuth),
+            (a.sample.gimbal.roll, b.sample.gimbal.roll),
+        ] {
+            let noise = f64::from(a - b) * GIMBAL_LSB_RAD / (2.0 * ARCSEC);
+            squares += noise * noise / 8000.0;
+            products += noise * last / 8000.0;
+            last = noise;
+        }
+    }
+    // Five standard errors of 8000 numbers.
+    assert!((squares - 1.0).abs() < 5.0 * (2.0f64 / 8000.0).sqrt(), "{squares}");
+    assert!(products.abs() < 5.0 / 8000f64.sqrt(), "{products}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 

@@ -5,7 +5,11 @@ use crate::parameters::{ParameterGroup, STANDARD_GRAVITY};
 use core::ops::Range;
 
 /// Number of further states.
-pub const FURTHER_COUNT: usize = 27;
+pub const FURTHER_COUNT: usize = 35;
+
+/// Number of those that drive attitude and velocity, the first ones: errors of sensors and of gravity. The
+/// others are errors of the gimbals and their encoders, which drive nothing.
+pub const DRIVING_COUNT: usize = 27;
 
 /// Names of the further states, in the order in which they are stored.
 pub const FURTHER_NAMES: [&str; FURTHER_COUNT] = [
@@ -36,6 +40,14 @@ pub const FURTHER_NAMES: [&str; FURTHER_COUNT] = [
     "deflection_north",
     "deflection_east",
     "gravity_anomaly",
+    "gimbal_mounting_x",
+    "gimbal_mounting_y",
+    "gimbal_mounting_z",
+    "gimbal_non_orthogonality",
+    "encoder_azimuth_cosine",
+    "encoder_azimuth_sine",
+    "encoder_roll_cosine",
+    "encoder_roll_sine",
 ];
 
 /// Group of further states.
@@ -57,11 +69,19 @@ pub enum FurtherGroup {
     Deflection,
     /// Gravity anomaly, m/s²: true minus normal gravity.
     GravityAnomaly,
+    /// Mounting of the body on the inner gimbal, rad: the body is turned by this vector in its own
+    /// axes. The zero error of the azimuth encoder counts as minus z.
+    GimbalMounting,
+    /// Angle by which the gimbal axes miss a right angle, rad: the inner leans towards the outer.
+    GimbalNonOrthogonality,
+    /// Eccentricity of the encoders, rad: coefficients of cosine and sine of the angle in the error of
+    /// azimuth, then of roll.
+    EncoderEccentricity,
 }
 
 impl FurtherGroup {
     /// All groups, in the order in which they are stored.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::AccelLever,
         Self::GyroAsymmetry,
         Self::AccelAsymmetry,
@@ -70,7 +90,20 @@ impl FurtherGroup {
         Self::AccelGaussMarkov,
         Self::Deflection,
         Self::GravityAnomaly,
+        Self::GimbalMounting,
+        Self::GimbalNonOrthogonality,
+        Self::EncoderEccentricity,
     ];
+
+    /// Groups of errors of the gimbals, which only angles as measurements show.
+    pub const OF_GIMBALS: [Self; 3] =
+        [Self::GimbalMounting, Self::GimbalNonOrthogonality, Self::EncoderEccentricity];
+
+    /// Returns whether the errors are those of the gimbals.
+    #[must_use]
+    pub const fn is_of_gimbals(self) -> bool {
+        self.start() >= DRIVING_COUNT
+    }
 
     /// Place among the further states.
     #[must_use]
@@ -84,6 +117,9 @@ impl FurtherGroup {
             Self::AccelGaussMarkov => 21..24,
             Self::Deflection => 24..26,
             Self::GravityAnomaly => 26..27,
+            Self::GimbalMounting => 27..30,
+            Self::GimbalNonOrthogonality => 30..31,
+            Self::EncoderEccentricity => 31..35,
         }
     }
 
@@ -108,7 +144,10 @@ impl FurtherGroup {
             Self::AccelQuadratic => "ug/g^2",
             Self::GyroGaussMarkov => "deg/h",
             Self::AccelGaussMarkov | Self::GravityAnomaly => "ug",
-            Self::Deflection => "arcsec",
+            Self::Deflection
+            | Self::GimbalMounting
+            | Self::GimbalNonOrthogonality
+            | Self::EncoderEccentricity => "arcsec",
         }
     }
 
@@ -123,7 +162,10 @@ impl FurtherGroup {
             Self::AccelGaussMarkov | Self::GravityAnomaly => {
                 ParameterGroup::AccelBias.si_per_unit()
             }
-            Self::Deflection => ParameterGroup::GyroMisalignment.si_per_unit(),
+            Self::Deflection
+            | Self::GimbalMounting
+            | Self::GimbalNonOrthogonality
+            | Self::EncoderEccentricity => ParameterGroup::GyroMisalignment.si_per_unit(),
         }
     }
 
@@ -139,6 +181,9 @@ impl FurtherGroup {
             Self::AccelGaussMarkov => "accel_gauss_markov",
             Self::Deflection => "deflection",
             Self::GravityAnomaly => "gravity_anomaly",
+            Self::GimbalMounting => "gimbal_mounting",
+            Self::GimbalNonOrthogonality => "gimbal_non_orthogonality",
+            Self::EncoderEccentricity => "encoder_eccentricity",
         }
     }
 }
@@ -146,7 +191,6 @@ impl FurtherGroup {
 /// Estimates of all further states with their standard deviations, SI, in the order of
 /// [`FURTHER_NAMES`]. Those of a group that is off are zero; of one that is considered, the estimates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FurtherEstimates {
     /// Estimates: zero where a group isn't estimated.
     pub value: [f64; FURTHER_COUNT],

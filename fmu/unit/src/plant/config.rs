@@ -28,6 +28,10 @@ pub(super) fn put(config: &PlantConfig, values: &mut CellValues) -> Result<(), P
     let extensions = &imu.extensions;
     for (name, has_value) in [
         ("the gravity disturbance of the site", *gravity != GravityDisturbance::default()),
+        (
+            "the mounting on the gimbals and the given errors of the encoders",
+            turntable.errors != GimbalErrors::default(),
+        ),
         ("the asymmetry of the gyros", extensions.gyro_asymmetry != [0.0; 3]),
         ("the asymmetry of the accelerometers", extensions.accel_asymmetry != [0.0; 3]),
         ("the second order of the accelerometers", extensions.accel_quadratic != [0.0; 3]),
@@ -65,6 +69,7 @@ pub(super) fn put(config: &PlantConfig, values: &mut CellValues) -> Result<(), P
         encoder_sigma_rad,
         non_orthogonality_rad,
         backlash_rad,
+        errors: _,
     } = turntable;
     values.set_real(slot::TURNTABLE_RATE, *rate_radps);
     values.set_real(slot::TURNTABLE_ACCELERATION, *acceleration_radps2);
@@ -129,6 +134,7 @@ pub fn config(values: &CellValues) -> Result<PlantConfig, PlantValueError> {
             encoder_sigma_rad: values.real(slot::ENCODER_SIGMA),
             non_orthogonality_rad: values.real(slot::NON_ORTHOGONALITY),
             backlash_rad: values.real(slot::BACKLASH),
+            errors: GimbalErrors::default(),
         },
         imu: Imu {
             parameters: Parameters::from_array(&values.reals::<PARAMETER_COUNT>(slot::PARAMETERS)),

@@ -36,6 +36,7 @@ fn moves(rate_deg: f64, acceleration_deg: f64) -> TurntableConfig {
         encoder_sigma_rad: 0.0,
         non_orthogonality_rad: 0.0,
         backlash_rad: 0.0,
+        errors: Default::default(),
     }
 }
 

@@ -74,6 +74,69 @@ class BaselineFurtherDeflection(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
     arcsec". Left out: another is given."""
 
+class BaselineFurtherGimbalAnglesEccentricity(Section):
+    """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+    estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class BaselineFurtherGimbalAnglesMounting(Section):
+    """Mounting of the body on the inner gimbal, three. z stands for the zero error of the azimuth encoder too.
+    Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class BaselineFurtherGimbalAnglesNonOrthogonality(Section):
+    """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of estimated, considered.
+    Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class BaselineFurtherGimbalAngles(Section):
+    """Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case at
+    rest. Takes a table with sigma, curve, mounting, non_orthogonality, eccentricity. Left out: the angles
+    tell the filter nothing."""
+
+    curve: str
+    """Rest of an encoder's error curve beyond its eccentricity, one standard deviation: a constant of each stop,
+    another one after each move. Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    @property
+    def eccentricity(self) -> BaselineFurtherGimbalAnglesEccentricity:
+        """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+        estimated, considered. Left out: off."""
+    @eccentricity.setter
+    def eccentricity(self, value: BaselineFurtherGimbalAnglesEccentricity | Mapping[str, Any]) -> None: ...
+    @property
+    def mounting(self) -> BaselineFurtherGimbalAnglesMounting:
+        """Mounting of the body on the inner gimbal, three. z stands for the zero error of the azimuth encoder
+        too. Takes a table with one of estimated, considered. Left out: off."""
+    @mounting.setter
+    def mounting(self, value: BaselineFurtherGimbalAnglesMounting | Mapping[str, Any]) -> None: ...
+    @property
+    def non_orthogonality(self) -> BaselineFurtherGimbalAnglesNonOrthogonality:
+        """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @non_orthogonality.setter
+    def non_orthogonality(self, value: BaselineFurtherGimbalAnglesNonOrthogonality | Mapping[str, Any]) -> None: ...
+    sigma: str
+    """White noise of a reading, one standard deviation: encoders and wobble of the gimbals. Takes an angle such
+    as "40 arcsec". Default: "1 arcsec"."""
+
 class BaselineFurtherGravityAnomaly(Section):
     """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
     accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
@@ -111,7 +174,7 @@ class BaselineFurther(Section):
     """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a table
     with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
     gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-    gravity_anomaly. Left out: as in procedure.calibration."""
+    gravity_anomaly, gimbal_angles. Left out: as in procedure.calibration."""
 
     @property
     def accel_asymmetry(self) -> BaselineFurtherAccelAsymmetry:
@@ -144,6 +207,13 @@ class BaselineFurther(Section):
         considered. Takes a table with one of estimated, considered. Left out: off."""
     @deflection.setter
     def deflection(self, value: BaselineFurtherDeflection | Mapping[str, Any]) -> None: ...
+    @property
+    def gimbal_angles(self) -> BaselineFurtherGimbalAngles:
+        """Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case
+        at rest. Takes a table with sigma, curve, mounting, non_orthogonality, eccentricity. Left out: the
+        angles tell the filter nothing."""
+    @gimbal_angles.setter
+    def gimbal_angles(self, value: BaselineFurtherGimbalAngles | Mapping[str, Any]) -> None: ...
     @property
     def gravity_anomaly(self) -> BaselineFurtherGravityAnomaly:
         """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
@@ -183,7 +253,7 @@ class Baseline(Section):
         """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a
         table with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
         gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-        gravity_anomaly. Left out: as in procedure.calibration."""
+        gravity_anomaly, gimbal_angles. Left out: as in procedure.calibration."""
     @further.setter
     def further(self, value: BaselineFurther | Mapping[str, Any]) -> None: ...
     g_states: bool
@@ -1177,6 +1247,69 @@ class ProcedureCalibrationFurtherDeflection(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
     arcsec". Left out: another is given."""
 
+class ProcedureCalibrationFurtherGimbalAnglesEccentricity(Section):
+    """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+    estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class ProcedureCalibrationFurtherGimbalAnglesMounting(Section):
+    """Mounting of the body on the inner gimbal, three. z stands for the zero error of the azimuth encoder too.
+    Takes a table with one of estimated, considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class ProcedureCalibrationFurtherGimbalAnglesNonOrthogonality(Section):
+    """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of estimated, considered.
+    Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an angle
+    such as "40 arcsec". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+
+class ProcedureCalibrationFurtherGimbalAngles(Section):
+    """Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case at
+    rest. Takes a table with sigma, curve, mounting, non_orthogonality, eccentricity. Left out: the angles
+    tell the filter nothing."""
+
+    curve: str
+    """Rest of an encoder's error curve beyond its eccentricity, one standard deviation: a constant of each stop,
+    another one after each move. Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    @property
+    def eccentricity(self) -> ProcedureCalibrationFurtherGimbalAnglesEccentricity:
+        """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+        estimated, considered. Left out: off."""
+    @eccentricity.setter
+    def eccentricity(self, value: ProcedureCalibrationFurtherGimbalAnglesEccentricity | Mapping[str, Any]) -> None: ...
+    @property
+    def mounting(self) -> ProcedureCalibrationFurtherGimbalAnglesMounting:
+        """Mounting of the body on the inner gimbal, three. z stands for the zero error of the azimuth encoder
+        too. Takes a table with one of estimated, considered. Left out: off."""
+    @mounting.setter
+    def mounting(self, value: ProcedureCalibrationFurtherGimbalAnglesMounting | Mapping[str, Any]) -> None: ...
+    @property
+    def non_orthogonality(self) -> ProcedureCalibrationFurtherGimbalAnglesNonOrthogonality:
+        """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @non_orthogonality.setter
+    def non_orthogonality(self, value: ProcedureCalibrationFurtherGimbalAnglesNonOrthogonality | Mapping[str, Any]) -> None: ...
+    sigma: str
+    """White noise of a reading, one standard deviation: encoders and wobble of the gimbals. Takes an angle such
+    as "40 arcsec". Default: "1 arcsec"."""
+
 class ProcedureCalibrationFurtherGravityAnomaly(Section):
     """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
     accelerometers: to be considered. Takes a table with one of estimated, considered. Left out: off."""
@@ -1213,8 +1346,8 @@ class ProcedureCalibrationFurtherGyroGaussMarkov(Section):
 class ProcedureCalibrationFurther(Section):
     """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
     accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov, gyro_correlation_time,
-    accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection, gravity_anomaly. Left out:
-    none."""
+    accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection, gravity_anomaly,
+    gimbal_angles. Left out: none."""
 
     @property
     def accel_asymmetry(self) -> ProcedureCalibrationFurtherAccelAsymmetry:
@@ -1247,6 +1380,13 @@ class ProcedureCalibrationFurther(Section):
         considered. Takes a table with one of estimated, considered. Left out: off."""
     @deflection.setter
     def deflection(self, value: ProcedureCalibrationFurtherDeflection | Mapping[str, Any]) -> None: ...
+    @property
+    def gimbal_angles(self) -> ProcedureCalibrationFurtherGimbalAngles:
+        """Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case
+        at rest. Takes a table with sigma, curve, mounting, non_orthogonality, eccentricity. Left out: the
+        angles tell the filter nothing."""
+    @gimbal_angles.setter
+    def gimbal_angles(self, value: ProcedureCalibrationFurtherGimbalAngles | Mapping[str, Any]) -> None: ...
     @property
     def gravity_anomaly(self) -> ProcedureCalibrationFurtherGravityAnomaly:
         """True minus normal gravity. On a base at rest it can't be told from a common scale factor of the
@@ -1340,7 +1480,7 @@ class ProcedureCalibration(Section):
         """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
         accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
         gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-        gravity_anomaly. Left out: none."""
+        gravity_anomaly, gimbal_angles. Left out: none."""
     @further.setter
     def further(self, value: ProcedureCalibrationFurther | Mapping[str, Any]) -> None: ...
     g_states: bool
@@ -2319,6 +2459,62 @@ class Source(Section):
     Takes one of "plant", "replay", "text", "solution", "log", "fmu", "serial", "udp", "can", "slcan".
     Default: "plant"."""
 
+class TurntableDrawnEccentricity(Section):
+    """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+    normal, uniform. Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an angle such as "40 arcsec".
+    Left out: another is given."""
+
+class TurntableDrawnMounting(Section):
+    """Mounting of the body on the inner gimbal, three. Takes a table with one of normal, uniform. Left out: as
+    given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an angle such as "40 arcsec".
+    Left out: another is given."""
+
+class TurntableDrawnNonOrthogonality(Section):
+    """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of normal, uniform. Left
+    out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an angle such as "40
+    arcsec". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an angle such as "40 arcsec".
+    Left out: another is given."""
+
+class TurntableDrawn(Section):
+    """Errors of the gimbals that the seed draws, each group from its own stream; they add to the values given
+    above. Takes a table with mounting, non_orthogonality, eccentricity. Left out: nothing is drawn."""
+
+    @property
+    def eccentricity(self) -> TurntableDrawnEccentricity:
+        """Eccentricity of the encoders: cosine and sine of azimuth and of roll, four. Takes a table with one of
+        normal, uniform. Left out: as given."""
+    @eccentricity.setter
+    def eccentricity(self, value: TurntableDrawnEccentricity | Mapping[str, Any]) -> None: ...
+    @property
+    def mounting(self) -> TurntableDrawnMounting:
+        """Mounting of the body on the inner gimbal, three. Takes a table with one of normal, uniform. Left out:
+        as given."""
+    @mounting.setter
+    def mounting(self, value: TurntableDrawnMounting | Mapping[str, Any]) -> None: ...
+    @property
+    def non_orthogonality(self) -> TurntableDrawnNonOrthogonality:
+        """Angle by which the gimbal axes miss a right angle, one. Takes a table with one of normal, uniform.
+        Left out: as given."""
+    @non_orthogonality.setter
+    def non_orthogonality(self, value: TurntableDrawnNonOrthogonality | Mapping[str, Any]) -> None: ...
+
 class TurntableDrive(Section):
     """A real table that the core's set points turn, under a real instrument. It can hurt people: read
     docs/turntable.md first. Takes a table with port, dialect, azimuth, roll, home, start, tolerance, look,
@@ -2359,12 +2555,19 @@ class TurntableDrive(Section):
     "12 h". Default: "0 s"."""
 
 class Turntable(Section):
-    """The two gimbals. Takes a table with rate, acceleration, encoder_error, non_orthogonality, backlash, drive."""
+    """The two gimbals. Takes a table with rate, acceleration, encoder_error, non_orthogonality, mounting,
+    encoder_zero, eccentricity_azimuth, eccentricity_roll, encoder_noise, drawn, backlash, drive."""
 
     acceleration: str
     """Acceleration of a move. Takes an angular acceleration such as "10 deg/s^2". Default: "10 deg/s^2"."""
     backlash: str
     """Play of each gear. Takes an angle such as "40 arcsec". Default: "0 arcsec"."""
+    @property
+    def drawn(self) -> TurntableDrawn:
+        """Errors of the gimbals that the seed draws, each group from its own stream; they add to the values
+        given above. Takes a table with mounting, non_orthogonality, eccentricity. Left out: nothing is drawn."""
+    @drawn.setter
+    def drawn(self, value: TurntableDrawn | Mapping[str, Any]) -> None: ...
     @property
     def drive(self) -> TurntableDrive:
         """A real table that the core's set points turn, under a real instrument. It can hurt people: read
@@ -2373,9 +2576,24 @@ class Turntable(Section):
         source."""
     @drive.setter
     def drive(self, value: TurntableDrive | Mapping[str, Any]) -> None: ...
+    eccentricity_azimuth: Sequence[str]
+    """Coefficients c and s of the azimuth encoder's error c cos(angle) + s sin(angle), beside encoder_error.
+    Takes an array of 2, each an angle such as "40 arcsec". Default: ["0 arcsec", "0 arcsec"]."""
+    eccentricity_roll: Sequence[str]
+    """The same of the roll encoder. Takes an array of 2, each an angle such as "40 arcsec". Default: ["0
+    arcsec", "0 arcsec"]."""
     encoder_error: str
     """Error of the angle encoders, one standard deviation: a fixed curve over the angle. Takes an angle such as
     "40 arcsec". Default: "18 arcsec"."""
+    encoder_noise: str
+    """White noise of each encoder's readings, one standard deviation. Takes an angle such as "40 arcsec".
+    Default: "0 arcsec"."""
+    encoder_zero: Sequence[str]
+    """Zero errors of the encoders of azimuth and roll: measured minus true. Takes an array of 2, each an angle
+    such as "40 arcsec". Default: ["0 arcsec", "0 arcsec"]."""
+    mounting: Sequence[str]
+    """Turn of the body on the inner gimbal about its x, y and z. Takes an array of 3, each an angle such as "40
+    arcsec". Default: ["0 arcsec", "0 arcsec", "0 arcsec"]."""
     non_orthogonality: str
     """Angle by which the two gimbal axes miss a right angle. Takes an angle such as "40 arcsec". Default: "0
     arcsec"."""
@@ -2474,8 +2692,8 @@ class Scenario(Section):
     """What the run is about, in a line. Takes a text in quotes. Default: "untitled"."""
     @property
     def turntable(self) -> Turntable:
-        """The two gimbals. Takes a table with rate, acceleration, encoder_error, non_orthogonality, backlash,
-        drive."""
+        """The two gimbals. Takes a table with rate, acceleration, encoder_error, non_orthogonality, mounting,
+        encoder_zero, eccentricity_azimuth, eccentricity_roll, encoder_noise, drawn, backlash, drive."""
     @turntable.setter
     def turntable(self, value: Turntable | Mapping[str, Any]) -> None: ...
 

@@ -37,6 +37,22 @@ group!(AccelUse, UnitDimension::ACCEL_BIAS);
 group!(AngleUse, UnitDimension::SMALL_ANGLE);
 
 keys! {
+    /// `[procedure.calibration.further.gimbal_angles]`.
+    pub(crate) struct GimbalAnglesKeys {
+        sigma: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), "1 arcsec",
+            "White noise of a reading, one standard deviation: encoders and wobble of the gimbals.";
+        curve: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::NotNegative), "0 arcsec",
+            "Rest of an encoder's error curve beyond its eccentricity, one standard deviation: a constant of each stop, another one after each move.";
+        mounting: Option<AngleUse> = table::<AngleUse>(), absent("off"),
+            "Mounting of the body on the inner gimbal, three. z stands for the zero error of the azimuth encoder too.";
+        non_orthogonality: Option<AngleUse> = table::<AngleUse>(), absent("off"),
+            "Angle by which the gimbal axes miss a right angle, one.";
+        eccentricity: Option<AngleUse> = table::<AngleUse>(), absent("off"),
+            "Eccentricity of the encoders: cosine and sine of azimuth and of roll, four.";
+    }
+}
+
+keys! {
     /// `[procedure.calibration.further]`.
     pub(crate) struct FurtherKeys {
         accel_lever: Option<LeverUse> = table::<LeverUse>(), absent("off"),
@@ -62,6 +78,8 @@ keys! {
             "Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be considered.";
         gravity_anomaly: Option<AccelUse> = table::<AccelUse>(), absent("off"),
             "True minus normal gravity. On a base at rest it can't be told from a common scale factor of the accelerometers: to be considered.";
+        gimbal_angles: Option<GimbalAnglesKeys> = table::<GimbalAnglesKeys>(), absent("the angles tell the filter nothing"),
+            "Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case at rest.";
     }
 }
 
@@ -104,6 +122,18 @@ keys! {
             "Asymmetry of the accelerometers' scale factors, three.";
         accel_quadratic: Option<DrawnQuadratics> = table::<DrawnQuadratics>(), absent("as given"),
             "Second-order coefficients of the accelerometers, three.";
+    }
+}
+
+keys! {
+    /// `[turntable.drawn]`.
+    pub(crate) struct DrawnTurntableKeys {
+        mounting: Option<DrawnAngles> = table::<DrawnAngles>(), absent("as given"),
+            "Mounting of the body on the inner gimbal, three.";
+        non_orthogonality: Option<DrawnAngles> = table::<DrawnAngles>(), absent("as given"),
+            "Angle by which the gimbal axes miss a right angle, one.";
+        eccentricity: Option<DrawnAngles> = table::<DrawnAngles>(), absent("as given"),
+            "Eccentricity of the encoders: cosine and sine of azimuth and of roll, four.";
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::definition::Bounds;
 use super::drive::DriveKeys;
-use super::further::DrawnExtensionsKeys;
+use super::further::{DrawnExtensionsKeys, DrawnTurntableKeys};
 use super::table::{At, choice, keys, si, si_array, si_list, table, time, within};
 use crate::model::ParameterDistribution;
 use crate::quantity::UnitDimension;
@@ -182,6 +182,8 @@ keys! {
 }
 
 const RATIOS: &str = r#"["0 ppm", "0 ppm", "0 ppm"]"#;
+const ANGLES_2: &str = r#"["0 arcsec", "0 arcsec"]"#;
+const ANGLES_3: &str = r#"["0 arcsec", "0 arcsec", "0 arcsec"]"#;
 const ARM: &str = r#"["0 m", "0 m", "0 m"]"#;
 
 keys! {
@@ -207,6 +209,19 @@ keys! {
         non_orthogonality: f64
             = within(&[UnitDimension::SMALL_ANGLE], -DEG, DEG, "within ±1 deg"), "0 arcsec",
             "Angle by which the two gimbal axes miss a right angle.";
+        mounting: [f64; 3] = si_array(UnitDimension::SMALL_ANGLE), ANGLES_3,
+            "Turn of the body on the inner gimbal about its x, y and z.";
+        encoder_zero: [f64; 2] = si_array(UnitDimension::SMALL_ANGLE), ANGLES_2,
+            "Zero errors of the encoders of azimuth and roll: measured minus true.";
+        eccentricity_azimuth: [f64; 2] = si_array(UnitDimension::SMALL_ANGLE), ANGLES_2,
+            "Coefficients c and s of the azimuth encoder's error c cos(angle) + s sin(angle), beside encoder_error.";
+        eccentricity_roll: [f64; 2] = si_array(UnitDimension::SMALL_ANGLE), ANGLES_2,
+            "The same of the roll encoder.";
+        encoder_noise: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::NotNegative), "0 arcsec",
+            "White noise of each encoder's readings, one standard deviation.";
+        drawn: Option<DrawnTurntableKeys>
+            = table::<DrawnTurntableKeys>(), absent("nothing is drawn"),
+            "Errors of the gimbals that the seed draws, each group from its own stream; they add to the values given above.";
         backlash: f64 = within(&[UnitDimension::SMALL_ANGLE], 0.0, DEG, "from 0 to 1 deg"), "0 arcsec",
             "Play of each gear.";
         drive: Option<DriveKeys>

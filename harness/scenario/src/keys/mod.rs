@@ -40,7 +40,7 @@ pub(crate) use faults::{Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use further::{
     AccelUse, AngleUse, DrawnAccelerations, DrawnAngles, DrawnLengths, DrawnQuadratics,
-    DrawnRatios, FurtherKeys, GyroUse, LeverUse, QuadraticUse, RatioUse,
+    DrawnRatios, FurtherKeys, GimbalAnglesKeys, GyroUse, LeverUse, QuadraticUse, RatioUse,
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;

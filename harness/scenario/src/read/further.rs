@@ -3,15 +3,18 @@
 use crate::error::Problem;
 use crate::keys::{
     AccelUse, AngleUse, At, CalibrationKeys, DrawnAccelerations, DrawnAngles, DrawnLengths,
-    DrawnQuadratics, DrawnRatios, EstimatorName, FurtherKeys, GyroUse, LeverUse, QuadraticUse,
-    RatioUse, ScenarioKeys,
+    DrawnQuadratics, DrawnRatios, EstimatorName, FurtherKeys, GimbalAnglesKeys, GyroUse, LeverUse,
+    QuadraticUse, RatioUse, ScenarioKeys,
 };
-use crate::model::{Method, ParameterDistribution, Scenario};
+use crate::model::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_calibration::config as core;
 use octant_calibration::further::FurtherGroup;
 
 /// Reads the further states of a calibration.
-pub(super) fn further(keys: &CalibrationKeys) -> Result<core::Further, Problem> {
+pub(super) fn further(
+    keys: &CalibrationKeys,
+    motion: &MotionSpec,
+) -> Result<core::Further, Problem> {
     let Some(found) = &*keys.further else { return Ok(core::Further::default()) };
     let further = of(found);
     if further == core::Further::default() {
@@ -28,11 +31,17 @@ pub(super) fn further(keys: &CalibrationKeys) -> Result<core::Further, Problem> 
             "found with aiding.sway = \"coloured\", expected \"white\": the filter has room for one of the two",
         ));
     }
+    if further.angles.is_some() && matches!(motion, MotionSpec::Dockside(_)) {
+        return Err(keys.further.problem(
+            "found gimbal_angles with motion.kind = \"dockside\", expected \"static\": the angles show the attitude of the \
+             body in a case, which has to stand still",
+        ));
+    }
     Ok(further)
 }
 
 fn of(keys: &FurtherKeys) -> core::Further {
-    let groups = FurtherGroup::ALL.map(|group| {
+    let treatment = |group| {
         let found = match group {
             FurtherGroup::AccelLever => keys.accel_lever.as_ref().map(LeverUse::treatment),
             FurtherGroup::GyroAsymmetry => keys.gyro_asymmetry.as_ref().map(RatioUse::treatment),
@@ -48,9 +57,13 @@ fn of(keys: &FurtherKeys) -> core::Further {
             }
             FurtherGroup::Deflection => keys.deflection.as_ref().map(AngleUse::treatment),
             FurtherGroup::GravityAnomaly => keys.gravity_anomaly.as_ref().map(AccelUse::treatment),
+            FurtherGroup::GimbalMounting
+            | FurtherGroup::GimbalNonOrthogonality
+            | FurtherGroup::EncoderEccentricity => None,
         };
         found.unwrap_or_default()
-    });
+    };
+    let groups = std::array::from_fn(|index| treatment(FurtherGroup::ALL[index]));
     // A time without its process is none, so that a table without groups is as good as no table.
     let time = |is_there: bool, time_s| if is_there { time_s } else { 0.0 };
     core::Further {
@@ -61,13 +74,25 @@ fn of(keys: &FurtherKeys) -> core::Further {
             keys.accel_correlation_time,
         ),
         gyro_rate_random_walk: keys.gyro_rate_random_walk,
+        angles: keys.gimbal_angles.as_ref().map(angles),
+    }
+}
+
+/// Gimbal angles as measurements.
+fn angles(keys: &GimbalAnglesKeys) -> core::AngleMeasurements {
+    let groups = [&keys.mounting, &keys.non_orthogonality, &keys.eccentricity];
+    core::AngleMeasurements {
+        sigma_rad: keys.sigma,
+        curve_sigma_rad: keys.curve,
+        groups: groups.map(|found| found.as_ref().map(AngleUse::treatment).unwrap_or_default()),
     }
 }
 
 /// Draws of the errors beside the parameters, group by group; `None`: not drawn. Gauss-Markov biases are processes, which
 /// the plant draws.
-pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 8] {
+pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 11] {
     let (imu, site) = (keys.imu.extensions.drawn.as_ref(), keys.site.drawn.as_ref());
+    let table = keys.turntable.drawn.as_ref();
     FurtherGroup::ALL.map(|group| match group {
         FurtherGroup::AccelLever => imu?.lever_arm.as_ref().map(DrawnLengths::distribution),
         FurtherGroup::GyroAsymmetry => imu?.gyro_asymmetry.as_ref().map(DrawnRatios::distribution),
@@ -81,6 +106,13 @@ pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 8] {
         FurtherGroup::Deflection => site?.deflection.as_ref().map(DrawnAngles::distribution),
         FurtherGroup::GravityAnomaly => {
             site?.gravity_anomaly.as_ref().map(DrawnAccelerations::distribution)
+        }
+        FurtherGroup::GimbalMounting => table?.mounting.as_ref().map(DrawnAngles::distribution),
+        FurtherGroup::GimbalNonOrthogonality => {
+            table?.non_orthogonality.as_ref().map(DrawnAngles::distribution)
+        }
+        FurtherGroup::EncoderEccentricity => {
+            table?.eccentricity.as_ref().map(DrawnAngles::distribution)
         }
     })
 }

@@ -93,6 +93,12 @@ pub(super) fn turntable(keys: &TurntableKeys) -> plant::TurntableConfig {
         encoder_sigma_rad: keys.encoder_error,
         non_orthogonality_rad: keys.non_orthogonality,
         backlash_rad: keys.backlash,
+        errors: plant::GimbalErrors {
+            mounting_rad: keys.mounting,
+            encoder_zero_rad: keys.encoder_zero,
+            eccentricity_rad: [keys.eccentricity_azimuth, keys.eccentricity_roll],
+            encoder_noise_rad: keys.encoder_noise,
+        },
     }
 }
 

@@ -190,7 +190,7 @@ fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibrat
         return Err(not_whole(&keys.duration, setting));
     }
     let aiding = aiding(&keys.aiding, setting)?;
-    let further = further(keys)?;
+    let further = further(keys, setting.motion)?;
     let estimator = match *keys.estimator {
         EstimatorName::Kalman => core::Estimator::Kalman(kalman(keys, &aiding, further)?),
         EstimatorName::LeastSquares => {

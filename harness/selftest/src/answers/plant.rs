@@ -49,6 +49,7 @@ pub(super) fn perfect(seed: u64, site: PlantSite, motion: Motion) -> PlantConfig
             encoder_sigma_rad: 0.0,
             non_orthogonality_rad: 0.0,
             backlash_rad: 0.0,
+            errors: Default::default(),
         },
         imu: Imu {
             parameters: Parameters::default(),

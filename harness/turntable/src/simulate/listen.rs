@@ -21,6 +21,7 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(SimulatedServer, String), E
         encoder_sigma_rad: 0.0,
         non_orthogonality_rad: 0.0,
         backlash_rad: 0.0,
+        errors: Default::default(),
     };
     let controller = Controller::new(dialect, &config, degrees(END_DEG));
     let failed = |reason: String| Error::Listen { port: at.to_owned(), reason };

@@ -57,6 +57,7 @@ pub(crate) fn controller(dialect: Dialect) -> Controller {
         encoder_sigma_rad: 0.0,
         non_orthogonality_rad: 0.0,
         backlash_rad: 0.0,
+        errors: Default::default(),
     };
     Controller::new(dialect, &config, degrees(400.0))
 }

@@ -32,11 +32,26 @@ impl FurtherUse {
     }
 }
 
+/// Gimbal angles as measurements of attitude, with the errors of the gimbals. For a case at rest: its
+/// attitude is a constant that the filter estimates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub struct AngleMeasurements {
+    /// White noise of a reading about each axis, 1σ, rad: encoders and wobble of the gimbals.
+    pub sigma_rad: f64,
+    /// Rest of an encoder's error curve that no other state has, 1σ, rad: a constant of each stop, another
+    /// one after each move of the gimbal; 0: none.
+    pub curve_sigma_rad: f64,
+    /// Treatment of each group, in the order of [`FurtherGroup::OF_GIMBALS`].
+    pub groups: [FurtherUse; 3],
+}
+
 /// Errors beside the thirty parameters that the filter takes into account. The default has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Further {
-    /// Treatment of each group, in the order of [`FurtherGroup::ALL`].
+    /// Treatment of each group that drives attitude and velocity, in the order of
+    /// [`FurtherGroup::ALL`].
     pub groups: [FurtherUse; 8],
     /// Correlation time of [`FurtherGroup::GyroGaussMarkov`], s; not used while that is off.
     pub gyro_correlation_time_s: f64,
@@ -45,25 +60,39 @@ pub struct Further {
     /// Rate random walk of the gyros, (rad/s)/√s; 0: none. No further state: a process noise of the
     /// gyro biases, which are then no constants, so that the drift test is off.
     pub gyro_rate_random_walk: f64,
+    /// Gimbal angles as measurements; `None`: the angles tell the filter nothing. A configuration is stored
+    /// with them: see `stored`.
+    #[cfg_attr(feature = "state", serde(skip))]
+    pub angles: Option<AngleMeasurements>,
 }
 
 impl Further {
     /// Treatment of a group.
     #[must_use]
     pub fn of(&self, group: FurtherGroup) -> FurtherUse {
-        self.groups[group as usize]
+        match (self.groups.get(group as usize), &self.angles) {
+            (Some(treatment), _) => *treatment,
+            (None, Some(angles)) => angles.groups[group as usize - self.groups.len()],
+            (None, None) => FurtherUse::Off,
+        }
     }
 
-    /// The same with another treatment of a group.
+    /// The same with another treatment of a group. A group of the gimbals stays off without angles as
+    /// measurements.
     #[must_use]
     pub fn with(mut self, group: FurtherGroup, treatment: FurtherUse) -> Self {
-        self.groups[group as usize] = treatment;
+        let driving = self.groups.len();
+        if let Some(found) = self.groups.get_mut(group as usize) {
+            *found = treatment;
+        } else if let Some(angles) = &mut self.angles {
+            angles.groups[group as usize - driving] = treatment;
+        }
         self
     }
 
-    /// Returns whether a group is on.
+    /// Returns whether a group is on, or angles are measurements, whose case attitude is a state.
     #[must_use]
     pub fn has_states(&self) -> bool {
-        self.groups.iter().any(|group| *group != FurtherUse::Off)
+        self.angles.is_some() || self.groups.iter().any(|group| *group != FurtherUse::Off)
     }
 }

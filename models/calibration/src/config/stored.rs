@@ -1,7 +1,7 @@
 //! Form in which an estimator is stored. A filter without further states is stored as before there
 //! were any, so that the bytes of earlier programs remain readable and the same.
 
-use super::{ExternalTurntable, Further, Kalman, LeastSquares};
+use super::{AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// [`super::Estimator`], whose filter is stored without its further states.
@@ -12,6 +12,7 @@ enum Estimator {
     LeastSquares(LeastSquares),
     ExternalTurntable(ExternalTurntable),
     KalmanFurther(Kalman, Further),
+    KalmanAngles(Kalman, Further, AngleMeasurements),
 }
 
 impl Serialize for super::Estimator {
@@ -20,7 +21,10 @@ impl Serialize for super::Estimator {
             Self::Kalman(kalman) if kalman.further == Further::default() => {
                 Estimator::Kalman(kalman)
             }
-            Self::Kalman(kalman) => Estimator::KalmanFurther(kalman, kalman.further),
+            Self::Kalman(kalman) => match kalman.further.angles {
+                None => Estimator::KalmanFurther(kalman, kalman.further),
+                Some(angles) => Estimator::KalmanAngles(kalman, kalman.further, angles),
+            },
             Self::LeastSquares(settings) => Estimator::LeastSquares(settings),
             Self::ExternalTurntable(settings) => Estimator::ExternalTurntable(settings),
         };
@@ -33,6 +37,10 @@ impl<'de> Deserialize<'de> for super::Estimator {
         Ok(match Estimator::deserialize(deserializer)? {
             Estimator::Kalman(kalman) => Self::Kalman(kalman),
             Estimator::KalmanFurther(kalman, further) => Self::Kalman(Kalman { further, ..kalman }),
+            Estimator::KalmanAngles(kalman, further, angles) => {
+                let further = Further { angles: Some(angles), ..further };
+                Self::Kalman(Kalman { further, ..kalman })
+            }
             Estimator::LeastSquares(settings) => Self::LeastSquares(settings),
             Estimator::ExternalTurntable(settings) => Self::ExternalTurntable(settings),
         })

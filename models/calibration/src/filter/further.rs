@@ -3,44 +3,31 @@
 //! A further state drives attitude and velocity and is driven by nothing but its own noise. With the
 //! moving states m, the parameters p and the further states z the transition is
 //! `m ← T (m, p) + D z, p ← p, z ← F z`, F diagonal. The border holds the columns D, the covariance
-//! of z with the 39 states, and its own. All places are there whether their group is on or not: those
-//! of groups that are off stay zero.
+//! of z with the 39 states, and its own. The places of groups that are off stay zero; those of the gimbals,
+//! whose errors drive nothing (D = 0, F = 1), exist where [their angles are measurements](angles).
 
+mod angles;
+mod border;
 mod columns;
+mod gimbals;
 #[cfg(test)]
 mod jacobian;
 #[cfg(test)]
 mod tests;
 
 use crate::config::{Further, FurtherUse, Kalman};
-use crate::covariance::{Covariance, CovarianceRow, MOVING, STATE_COUNT, Transition};
-#[cfg(feature = "state")]
-use crate::covariance::{load_rows, save_rows};
+use crate::covariance::{Covariance, MOVING, STATE_COUNT, Transition};
 use crate::error_model::{MotionInterval, advance_columns};
 use crate::further::compensation::FurtherIntegrals;
 use crate::further::size_effect::SizeEffect;
-use crate::further::{FURTHER_COUNT, FurtherEstimates, FurtherGroup};
+use crate::further::{DRIVING_COUNT, FurtherEstimates, FurtherGroup};
+pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
+use border::{BORDER_COUNT, Border, CASE, Process};
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
+pub use gimbals::AngleTally;
+use gimbals::GimbalAngleMeasurement;
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
-
-/// Estimates and covariance of the further states at one time.
-#[derive(Clone, Debug)]
-pub(super) struct Border {
-    time_s: f64,
-    value: [f64; FURTHER_COUNT],
-    /// Covariance with the 39 states, a row for each further state.
-    cross: [CovarianceRow; FURTHER_COUNT],
-    own: [FurtherRow; FURTHER_COUNT],
-}
-
-/// A first-order Gauss-Markov process of three further states.
-#[derive(Clone, Copy, Debug)]
-struct Process {
-    group: FurtherGroup,
-    sigma: f64,
-    correlation_time_s: f64,
-}
 
 /// The further states of a filter.
 #[derive(Clone, Debug)]
@@ -55,8 +42,10 @@ pub(super) struct FurtherStates {
     /// The older and the newer checkpoint.
     checkpoints: Option<[Border; 2]>,
     effects: FurtherEffects,
-    estimated: [bool; FURTHER_COUNT],
+    estimated: [bool; BORDER_COUNT],
     processes: [Option<Process>; 2],
+    /// Gimbal angles as measurements, if they are.
+    angles: Option<GimbalAngleMeasurement>,
 }
 
 impl FurtherStates {
@@ -66,13 +55,10 @@ impl FurtherStates {
         if !further.has_states() {
             return None;
         }
-        let mut border = Border {
-            time_s: 0.0,
-            value: [0.0; FURTHER_COUNT],
-            cross: [[0.0; 40]; FURTHER_COUNT],
-            own: [[0.0; FURTHER_ROW]; FURTHER_COUNT],
-        };
-        let mut estimated = [false; FURTHER_COUNT];
+        let angles = further.angles.as_ref().map(GimbalAngleMeasurement::new);
+        let mut border = Border::new(angles.is_some());
+        let mut estimated = [false; BORDER_COUNT];
+        estimated[CASE..].fill(true);
         for group in FurtherGroup::ALL {
             let sigma = further.of(group).sigma().unwrap_or(0.0);
             for k in group.range() {
@@ -90,6 +76,7 @@ impl FurtherStates {
             effects: FurtherEffects::new(further),
             estimated,
             processes: processes(further),
+            angles,
         })
     }
 
@@ -148,23 +135,26 @@ impl FurtherStates {
     ) {
         let columns = core::mem::replace(&mut self.columns, [[0.0; FURTHER_ROW]; MOVING]);
         self.elapsed_s = 0.0;
-        let Border { cross, own, .. } = &mut self.border;
+        let Border { count, cross, own, .. } = &mut self.border;
+        let count = *count;
         // Covariance with the moving states: by the transition alone, and with the columns too.
-        let mut carried = [[0.0; FURTHER_ROW]; MOVING];
-        let mut moved = [[0.0; FURTHER_ROW]; MOVING];
+        let mut carried = [[0.0; BORDER_COUNT]; MOVING];
+        let mut moved = [[0.0; BORDER_COUNT]; MOVING];
         for i in 0..MOVING {
-            for k in 0..FURTHER_COUNT {
+            for k in 0..count {
                 carried[i][k] = dot(&transition.rows[i], &cross[k]);
-                moved[i][k] = carried[i][k] + dot(&columns[i], &own[k]);
+                moved[i][k] = carried[i][k] + dot(&columns[i], Border::driving(&own[k]));
             }
         }
+        let driving =
+            |row: &[f64; BORDER_COUNT], other: &FurtherRow| dot(Border::driving(row), other);
         for i in 0..MOVING {
             for j in i..MOVING {
-                let value = dot(&columns[i], &moved[j]) + dot(&carried[i], &columns[j]);
+                let value = driving(&moved[j], &columns[i]) + driving(&carried[i], &columns[j]);
                 errors.add(i, j, value);
             }
             let mut with_parameters = [0.0; 40];
-            for (column, row) in columns[i].iter().zip(cross.iter()) {
+            for (column, row) in columns[i][..DRIVING_COUNT].iter().zip(cross.iter()) {
                 for (out, p) in with_parameters.iter_mut().zip(row) {
                     *out += column * p;
                 }
@@ -173,7 +163,7 @@ impl FurtherStates {
                 errors.add(i, j, with_parameters[j]);
             }
         }
-        for (k, row) in cross.iter_mut().enumerate() {
+        for (k, row) in cross[..count].iter_mut().enumerate() {
             for i in 0..MOVING {
                 row[i] = moved[i][k];
             }
@@ -197,8 +187,10 @@ impl FurtherStates {
     ) {
         let (row, scale) = errors.gain_row(s, r);
         let of_errors = row.map(|value| value * scale);
-        let Border { value, cross, own, .. } = &mut self.border;
-        let mut gain = [0.0; FURTHER_ROW];
+        let Border { count, value, cross, own, .. } = &mut self.border;
+        let count = *count;
+        let (cross, own) = (&mut cross[..count], &mut own[..count]);
+        let mut gain = [0.0; BORDER_COUNT];
         for (gain, row) in gain.iter_mut().zip(cross.iter()) {
             *gain = row[s] * scale;
         }
@@ -212,8 +204,8 @@ impl FurtherStates {
         if held {
             return;
         }
-        let mut moved = [0.0; FURTHER_ROW];
-        for k in 0..FURTHER_COUNT {
+        let mut moved = [0.0; BORDER_COUNT];
+        for k in 0..count {
             if self.estimated[k] {
                 value[k] += gain[k] * (scale * innovation);
                 moved[k] = gain[k];
@@ -221,10 +213,11 @@ impl FurtherStates {
         }
         for (k, row) in own.iter_mut().enumerate() {
             let others = if self.estimated[k] { &gain } else { &moved };
-            for (p, u) in row.iter_mut().zip(others) {
+            for (p, u) in row[..count].iter_mut().zip(others) {
                 *p -= gain[k] * u;
             }
         }
+        self.fold_case();
     }
 
     /// Takes out the correlation with the moving states, which are reopened.
@@ -252,69 +245,20 @@ impl FurtherStates {
         for process in self.processes.iter().flatten() {
             self.border.wander(process, since_s, &[[0.0; FURTHER_ROW]; MOVING], errors);
         }
+        // The stop may be another one.
+        self.border.reference.at = None;
     }
 
     /// Estimates with their standard deviations.
     pub(super) fn estimates(&self) -> FurtherEstimates {
         let sigma = |k: usize| libm::sqrt(self.border.own[k][k].max(0.0));
-        FurtherEstimates { value: self.border.value, sigma: core::array::from_fn(sigma) }
+        let value = core::array::from_fn(|k| self.border.value[k]);
+        FurtherEstimates { value, sigma: core::array::from_fn(sigma) }
     }
 
     /// Returns whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
-        let Border { time_s: _, value, cross, own } = &self.border;
-        value
-            .iter()
-            .chain(cross.iter().flatten())
-            .chain(own.iter().flatten())
-            .all(|x| x.is_finite())
-    }
-}
-
-impl Border {
-    /// Lets a process wander over a time: decay, noise, and the effect of that noise on the moving
-    /// states, whose columns are those of the same time.
-    ///
-    /// All of it is exact for an effect with a constant factor c, of which the column is
-    /// `c τ (1 − e)`, e = exp(−t/τ): the noise in the state has the variance `σ² (1 − e²)`, with the
-    /// moving state the covariance `c σ² τ (1 − e)²`, and in that
-    /// `2 c² σ² τ² (t/τ − 2 (1 − e) + (1 − e²)/2)`.
-    fn wander(
-        &mut self,
-        process: &Process,
-        elapsed_s: f64,
-        columns: &[FurtherRow; MOVING],
-        errors: &mut Covariance,
-    ) {
-        let ratio = elapsed_s / process.correlation_time_s;
-        let decay = libm::exp(-ratio);
-        let lost = -libm::expm1(-ratio);
-        let variance = process.sigma * process.sigma;
-        for k in process.group.range() {
-            self.value[k] *= decay;
-            self.cross[k].iter_mut().for_each(|p| *p *= decay);
-            self.own[k].iter_mut().for_each(|p| *p *= decay);
-            self.own.iter_mut().for_each(|row| row[k] *= decay);
-            self.own[k][k] += variance * lost * (1.0 + decay);
-            for i in 0..MOVING {
-                self.cross[k][i] += variance * lost * columns[i][k];
-                for j in i..MOVING {
-                    let share = columns[i][k] * columns[j][k];
-                    errors.add(i, j, variance * share_of_noise(ratio, lost) * share);
-                }
-            }
-        }
-    }
-}
-
-/// Variance of the integral of a process's noise, by σ² and the square of its column:
-/// `2 (a − x − x²/2)/x²` with a = −ln(1 − x); its series where the difference would cancel.
-fn share_of_noise(ratio: f64, lost: f64) -> f64 {
-    let x = lost;
-    if x < 1e-2 {
-        2.0 * x * (1.0 / 3.0 + x * (0.25 + x * (0.2 + x * (1.0 / 6.0 + x / 7.0))))
-    } else {
-        2.0 * (ratio - x - 0.5 * x * x) / (x * x)
+        self.border.is_finite()
     }
 }
 
@@ -341,14 +285,29 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 }
 
 #[cfg(feature = "state")]
-impl octant_state::State for Border {
+impl octant_state::State for FurtherStates {
+    /// Without angles as measurements the layout is that of a program that knew none.
     fn save(&self, to: &mut octant_state::Writer) {
-        let Self { time_s, value, cross, own } = self;
-        to.value("time_s", time_s);
-        to.value("value", value);
-        save_rows(cross, to);
-        for row in own {
-            to.value("own", row);
+        let Self {
+            border,
+            columns,
+            elapsed_s,
+            integrals,
+            size_effect,
+            checkpoints,
+            effects: _,
+            estimated: _,
+            processes: _,
+            angles,
+        } = self;
+        to.value("columns", columns);
+        to.value("elapsed_s", elapsed_s);
+        to.value("integrals", integrals);
+        to.value("size_effect", size_effect);
+        to.part("border", border);
+        to.part("checkpoints", checkpoints);
+        if let Some(angles) = angles {
+            to.value("angles", &angles.tally);
         }
     }
 
@@ -356,21 +315,17 @@ impl octant_state::State for Border {
         &mut self,
         from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
-        self.time_s = from.value("time_s")?;
-        self.value = from.value("value")?;
-        load_rows(&mut self.cross, from)?;
-        for row in &mut self.own {
-            *row = from.value("own")?;
+        self.columns = from.value("columns")?;
+        self.elapsed_s = from.value("elapsed_s")?;
+        self.integrals = from.value("integrals")?;
+        self.size_effect = from.value("size_effect")?;
+        from.part("border", &mut self.border)?;
+        from.part("checkpoints", &mut self.checkpoints)?;
+        if let Some(angles) = &mut self.angles {
+            angles.tally = from.value("angles")?;
+            octant_state::check_count("angles.used", angles.tally.used)?;
+            octant_state::check_count("angles.rejected", angles.tally.rejected)?;
         }
         Ok(())
-    }
-}
-
-#[cfg(feature = "state")]
-octant_state::state! {
-    FurtherStates {
-        values: columns, elapsed_s, integrals, size_effect;
-        parts: border, checkpoints;
-        kept: effects, estimated, processes
     }
 }

@@ -1,13 +1,13 @@
 //! Use of a reference: gate, update, and feedback into navigation and parameters.
 
 use super::sway::SwayStates;
-use super::{CalibrationFilter, Stage};
+use super::{AngleResult, CalibrationFilter, Stage};
 use crate::config::{AidingMode, ErrorModel, Recovery};
 use crate::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
 use crate::error_model::computer_frame_error;
 use crate::strapdown::Strapdown;
 use nalgebra::{Matrix3, Vector3};
-use octant_sample::{Innovation, InnovationOf, Parameters, Reference};
+use octant_sample::{GimbalAngles, Innovation, InnovationOf, Parameters, Reference};
 
 /// Result of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +110,27 @@ impl CalibrationFilter {
             }
         }
         Some(MeasurementResult { nis, innovation, rejected: false, recovery_started, turned_rad })
+    }
+
+    /// Uses the angles of gimbals at rest in a case at rest as a measurement of attitude: gate, update, feedback. The
+    /// second value of the result is the angle by which the attitude was turned, rad.
+    ///
+    /// `None` if angles are no measurements, aren't believed any more, or a recovery is under way.
+    pub fn measure_angles(
+        &mut self,
+        gimbal: GimbalAngles,
+        strapdown: &mut Strapdown,
+        parameters: &mut Parameters,
+    ) -> Option<(AngleResult, f64)> {
+        if self.stage != Stage::Normal {
+            return None;
+        }
+        let mut x = [0.0; STATE_COUNT];
+        let (further, errors) = (self.further.as_mut()?, &mut self.covariance);
+        let result = further.measure_angles(gimbal, strapdown, self.model, errors, &mut x)?;
+        let turned_rad =
+            if result.rejected { 0.0 } else { self.feed_back(&x, strapdown, parameters) };
+        Some((result, turned_rad))
     }
 
     /// First state, standard deviation and error (computed − reference) of a measurement.

@@ -7,7 +7,7 @@
 //! sample instead of zero, times the asymmetry.
 
 use super::size_effect::SizeEffect;
-use super::{FURTHER_COUNT, FurtherGroup};
+use super::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
 use crate::config::Further;
 use crate::strapdown::Strapdown;
 use nalgebra::{Matrix3, Vector3};
@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Debug)]
 pub(crate) struct FurtherCompensation {
     /// Estimates; Gauss-Markov biases decay with every sample.
-    value: [f64; FURTHER_COUNT],
+    value: [f64; DRIVING_COUNT],
     size_effect: SizeEffect,
     /// True where a group has an estimate that isn't zero.
     sizes: bool,
@@ -38,7 +38,7 @@ impl FurtherCompensation {
             None => 1.0,
         };
         further.has_states().then(|| Self {
-            value: [0.0; FURTHER_COUNT],
+            value: [0.0; DRIVING_COUNT],
             size_effect: SizeEffect::default(),
             sizes: false,
             gravity: false,
@@ -49,9 +49,9 @@ impl FurtherCompensation {
         })
     }
 
-    /// Takes new estimates.
+    /// Takes new estimates. Errors of the gimbals are none of the sensors.
     pub(crate) fn set(&mut self, value: &[f64; FURTHER_COUNT]) {
-        self.value = *value;
+        self.value.copy_from_slice(&value[..DRIVING_COUNT]);
         let any = |group: FurtherGroup| value[group.range()].iter().any(|value| *value != 0.0);
         self.sizes = any(FurtherGroup::AccelLever);
         self.gravity = any(FurtherGroup::Deflection) || any(FurtherGroup::GravityAnomaly);

@@ -1,7 +1,8 @@
 //! Checks of a configuration before a core is made from it.
 
 use crate::config::{
-    AidingMode, Alignment, Base, BaseMotion, CoreConfig, Estimator, Further, SwayNoise,
+    AidingMode, Alignment, AngleMeasurements, Base, BaseMotion, CoreConfig, Estimator, Further,
+    SwayNoise,
 };
 use crate::further::FurtherGroup;
 
@@ -77,6 +78,9 @@ pub enum CoreConfigError {
     /// A coloured sway beside further states.
     #[error("the sway is coloured and further states are on, one of the two is expected")]
     SwayWithFurther,
+    /// Gimbal angles as measurements of attitude where the case moves.
+    #[error("gimbal angles are measurements and the base moves, a base at rest is expected")]
+    AnglesOnMovingBase,
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::AdjustmentRefusal),
@@ -112,6 +116,12 @@ fn check_further(further: &Further) -> Result<(), CoreConfigError> {
     for group in FurtherGroup::ALL {
         if let Some(sigma) = further.of(group).sigma() {
             positive("prior of a further state", sigma)?;
+        }
+    }
+    if let Some(AngleMeasurements { sigma_rad, curve_sigma_rad, groups: _ }) = &further.angles {
+        positive("sigma of the gimbal angles", *sigma_rad)?;
+        if *curve_sigma_rad != 0.0 {
+            positive("sigma of the encoders' curve", *curve_sigma_rad)?;
         }
     }
     if further.of(FurtherGroup::GyroGaussMarkov).sigma().is_some() {
@@ -206,6 +216,9 @@ pub(super) fn check(config: &CoreConfig) -> Result<(), CoreConfigError> {
             | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
             positive("aiding sigma", sigma)?;
             check_further(&kalman.further)?;
+            if kalman.further.angles.is_some() && screening.base != Base::Still {
+                return Err(CoreConfigError::AnglesOnMovingBase);
+            }
             if kalman.sway == SwayNoise::Coloured {
                 if kalman.further.has_states() {
                     return Err(CoreConfigError::SwayWithFurther);

@@ -52,7 +52,7 @@ impl Core {
             let ticks = self.calibration_ticks.min(self.tick);
             let expected = ticks * self.config.sample_period_ns / period;
             let (bridged, gimbal_slips) = (self.bridge.samples, self.slips.count);
-            let quality = judge(filter, kalman, expected, (bridged, ticks))?;
+            let quality = judge(filter, kalman, expected, (bridged, ticks), gimbal_slips)?;
             if self.unrepaired != 0 {
                 return Err(CalibrationRefusal::Disturbed { disturbances: self.unrepaired });
             }

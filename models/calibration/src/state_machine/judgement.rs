@@ -2,7 +2,7 @@
 
 use crate::config::Kalman;
 use crate::drift::Largest;
-use crate::filter::CalibrationFilter;
+use crate::filter::{AngleTally, CalibrationFilter};
 use crate::table::Quality;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 
@@ -83,6 +83,28 @@ pub enum CalibrationRefusal {
         /// Disturbances.
         disturbances: u64,
     },
+    /// Gimbal angles that were measurements contradicted the gyros for good.
+    #[error(
+        "gimbal angles are measurements and contradict the gyros, as after a slip of a gimbal or an encoder: {rejected} \
+         were rejected, {used} used"
+    )]
+    GimbalAngles {
+        /// Measurements rejected.
+        rejected: u64,
+        /// Measurements used.
+        used: u64,
+    },
+    /// The angles contradict the errors that the gimbals are said to have.
+    #[error(
+        "the mean NIS of the gimbal angles of {mean:.1} is above {limit}: they contradict the errors that the filter is \
+         told of"
+    )]
+    AnglesInconsistent {
+        /// Mean NIS.
+        mean: f64,
+        /// Limit.
+        limit: f64,
+    },
     /// A parameter drifted while it was estimated.
     #[error(
         "{} drifted: between {:.0} s and {:.0} s it was corrected by {sigmas:.1} times what its \
@@ -128,12 +150,13 @@ pub(super) fn quality_of(filter: &CalibrationFilter) -> Quality {
 }
 
 /// Judges a filter at the end of its calibration, in which `expected` measurements were due, and
-/// `bridged` of `total` samples were bridged.
+/// `bridged` of `samples` were bridged, with the number of slips of gimbals that the screens noticed.
 pub(super) fn judge(
     filter: &CalibrationFilter,
     kalman: &Kalman,
     expected: u64,
     (bridged, samples): (u64, u64),
+    gimbal_slips: u64,
 ) -> Result<Quality, CalibrationRefusal> {
     let (tally, quality) = (filter.tally(), quality_of(filter));
     let total = tally.used + tally.rejected;
@@ -174,5 +197,19 @@ pub(super) fn judge(
         let &Largest { sigmas, parameter, between_s } = drift.largest();
         return Err(CalibrationRefusal::Drift { parameter, sigmas, between_s });
     }
+    if let Some(tally) = filter.angle_tally() {
+        judge_angles(tally, gimbal_slips, kalman.refuse_above_mean_nis)?;
+    }
     Ok(quality)
+}
+
+/// Judges gimbal angles that were measurements: one slip, of which it can't be told what was learned from it, is too
+/// much.
+fn judge_angles(tally: &AngleTally, slips: u64, limit: f64) -> Result<(), CalibrationRefusal> {
+    let &AngleTally { used, rejected, in_a_row: _, nis_sum, slipped } = tally;
+    if slipped || slips != 0 || rejected as f64 > REJECTED_SHARE_MAX * (used + rejected) as f64 {
+        return Err(CalibrationRefusal::GimbalAngles { rejected, used });
+    }
+    let mean = nis_sum / used.max(1) as f64;
+    if mean <= limit { Ok(()) } else { Err(CalibrationRefusal::AnglesInconsistent { mean, limit }) }
 }

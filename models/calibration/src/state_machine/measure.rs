@@ -6,7 +6,7 @@ use super::{CalibrationRefusal, Core, kalman_of};
 use crate::compensation::Compensation;
 use crate::drift::DriftTest;
 use octant_earth::frames::c_cb;
-use octant_sample::{Aiding, Health, Sample};
+use octant_sample::{Aiding, Health, Sample, Status};
 
 /// Memory of the running mean of NIS, measurements.
 const NIS_MEMORY: f64 = 64.0;
@@ -37,6 +37,9 @@ impl Core {
         };
         let explains_ticks = self.explains_ticks();
         let after_move = self.has_moved_within(explains_ticks);
+        let resting = kalman.further.angles.is_some()
+            && !self.gimbals_may_move()
+            && !sample.status.contains(Status::GIMBAL_INVALID);
         let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
         let due = self.tick.is_multiple_of(period_ticks);
         self.due_tick = self.tick.checked_next_multiple_of(period_ticks).unwrap_or(u64::MAX);
@@ -59,9 +62,19 @@ impl Core {
             filter.learn_sway(heading, &self.strapdown);
         }
         let before = self.parameters;
-        let measured = aiding.and_then(|aiding| {
+        let mut measured = aiding.and_then(|aiding| {
             filter.measure(&aiding.reference, &mut self.strapdown, &mut self.parameters)
         });
+        if due && resting && measured.is_some_and(|measured| !measured.rejected) {
+            let angles =
+                filter.measure_angles(sample.gimbal, &mut self.strapdown, &mut self.parameters);
+            if let (Some((angles, turned_rad)), Some(measured)) = (angles, &mut measured) {
+                measured.turned_rad += turned_rad;
+                if angles.rejected {
+                    *health |= Health::GIMBAL_SLIPPED;
+                }
+            }
+        }
         let further = filter.further();
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         if !finite(&self.parameters.to_array())

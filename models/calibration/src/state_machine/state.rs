@@ -4,9 +4,10 @@
 //! configuration, as by [`Core::new`], and then loads the rest; [`octant_state`] lists the bytes
 //! that are refused.
 
-use super::Core;
 use super::estimation::Estimation;
+use super::{Core, kalman_of};
 use crate::config::CoreConfig;
+use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherEstimates};
 use crate::schedule::Cursor;
 use alloc::string::ToString;
 use alloc::vec::Vec;
@@ -61,6 +62,43 @@ impl Core {
     }
 }
 
+/// Estimates of the further states that drive attitude and velocity, as they are stored.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Driving {
+    value: [f64; DRIVING_COUNT],
+    sigma: [f64; DRIVING_COUNT],
+}
+
+/// Estimates of the errors of the gimbals, as they are stored.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct OfGimbals {
+    value: [f64; FURTHER_COUNT - DRIVING_COUNT],
+    sigma: [f64; FURTHER_COUNT - DRIVING_COUNT],
+}
+
+impl Driving {
+    fn of(estimates: &FurtherEstimates) -> Self {
+        Self {
+            value: core::array::from_fn(|k| estimates.value[k]),
+            sigma: core::array::from_fn(|k| estimates.sigma[k]),
+        }
+    }
+}
+
+impl OfGimbals {
+    fn of(estimates: &FurtherEstimates) -> Self {
+        Self {
+            value: core::array::from_fn(|k| estimates.value[DRIVING_COUNT + k]),
+            sigma: core::array::from_fn(|k| estimates.sigma[DRIVING_COUNT + k]),
+        }
+    }
+}
+
+/// Returns whether gimbal angles are measurements.
+fn has_angles(config: &CoreConfig) -> bool {
+    kalman_of(config).is_some_and(|kalman| kalman.further.angles.is_some())
+}
+
 /// Error for a part that exists only in other configurations.
 fn unexpected(field: &'static str) -> StateError {
     StateError::value(field, "it is there, and by the configuration it can't be")
@@ -69,7 +107,7 @@ fn unexpected(field: &'static str) -> StateError {
 impl State for Core {
     fn save(&self, to: &mut Writer) {
         let Self {
-            config: _,
+            config,
             sample_s: _,
             calibration_ticks: _,
             navigation_ticks: _,
@@ -152,8 +190,11 @@ impl State for Core {
         // Last, and nothing without further states: then the bytes are those of a core that never
         // had any.
         if let Some((estimates, compensation)) = further {
-            to.value("further", estimates);
+            to.value("further", &Driving::of(estimates));
             to.part("further compensation", compensation);
+            if has_angles(config) {
+                to.value("gimbals", &OfGimbals::of(estimates));
+            }
         }
     }
 
@@ -211,8 +252,15 @@ impl State for Core {
         self.gimbals = from.value("gimbals")?;
         self.answered = from.value("answered")?;
         if let Some((estimates, compensation)) = &mut self.further {
-            *estimates = from.value("further")?;
+            let driving: Driving = from.value("further")?;
+            estimates.value[..DRIVING_COUNT].copy_from_slice(&driving.value);
+            estimates.sigma[..DRIVING_COUNT].copy_from_slice(&driving.sigma);
             from.part("further compensation", compensation)?;
+            if has_angles(&self.config) {
+                let gimbals: OfGimbals = from.value("gimbals")?;
+                estimates.value[DRIVING_COUNT..].copy_from_slice(&gimbals.value);
+                estimates.sigma[DRIVING_COUNT..].copy_from_slice(&gimbals.sigma);
+            }
         }
         Ok(())
     }

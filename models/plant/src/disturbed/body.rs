@@ -400,12 +400,18 @@ impl Body {
         let outer_acceleration = rx_t(&case.acceleration, roll_sincos)
             - x.cross(&turned) * roll.rate
             + x * roll.acceleration;
-        Gimballed {
+        let inner = Gimballed {
             rate: turned_inner + z * azimuth.rate,
             acceleration: rz_t(&ry_t(&outer_acceleration, self.tilt_sincos), azimuth_sincos)
                 - z.cross(&turned_inner) * azimuth.rate
                 + z * azimuth.acceleration,
             force: rz_t(&ry_t(&rx_t(&case.force, roll_sincos), self.tilt_sincos), azimuth_sincos),
+        };
+        let Some(mounting) = &self.mounting else { return inner };
+        Gimballed {
+            rate: mounting * inner.rate,
+            acceleration: mounting * inner.acceleration,
+            force: mounting * inner.force,
         }
     }
 

@@ -15,6 +15,7 @@ impl octant_state::State for Body {
             azimuth_near,
             roll_near,
             tilt_sincos: _,
+            mounting: _,
             vibration: _,
             lever_arm,
             own_lever_arm: _,

@@ -11,7 +11,7 @@ use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_be
 /// Format of the state of a plant. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
 pub const FORMAT: StateFormat =
-    StateFormat { magic: "OCTANTPL", version: 3, what: "the state of a plant" };
+    StateFormat { magic: "OCTANTPL", version: 4, what: "the state of a plant" };
 
 impl Plant {
     /// Appends everything that the plant needs to continue bit for bit after this step: the same
@@ -51,9 +51,11 @@ impl State for Plant {
             body,
             sensors,
             encoders,
+            encoder_noise: _,
             aider: _,
             until_aiding,
             non_orthogonality_rad: _,
+            mounting: _,
             saturated_samples,
             increments,
             reading,
@@ -87,6 +89,7 @@ impl State for Plant {
         {
             self.in_phase = navigated;
             self.sensors.navigate();
+            self.navigate_encoders();
         }
         from.part("body", &mut self.body)?;
         self.body.azimuth.check(self.time_ns)?;

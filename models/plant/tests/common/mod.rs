@@ -34,6 +34,7 @@ pub(crate) fn perfect() -> PlantConfig {
             encoder_sigma_rad: 0.0,
             non_orthogonality_rad: 0.0,
             backlash_rad: 0.0,
+            errors: Default::default(),
         },
         imu: Imu {
             parameters: Parameters::default(),
