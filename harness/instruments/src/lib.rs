@@ -36,6 +36,7 @@ pub mod described;
 #[cfg(feature = "descriptions")]
 pub mod description;
 pub mod framing;
+pub mod grades;
 pub mod novatel;
 pub mod own;
 pub mod rollover;

@@ -2,13 +2,13 @@
 
 use super::document::{DocumentNode, DocumentTable, DocumentValue, parse_default};
 use super::error::{Place, Problem};
-use super::grades::GradeSheet;
 use super::keys::{
     Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys, TextKeys,
 };
 use super::quantity::{self, UnitDimension};
 use super::recorded::NO_TIME;
 use crate::choices::DESCRIBED;
+use octant_instruments::grades::GradeSheet;
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
 /// kind are left for the check.

@@ -15,7 +15,6 @@ mod derive;
 mod document;
 pub mod error;
 mod files;
-mod grades;
 mod keys;
 mod load;
 mod model;
@@ -36,7 +35,6 @@ mod write;
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use files::FilePlaces;
-pub use grades::{FLICKER, GRADES, GradeSheet};
 pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DescriptionChoice, DocksideSpec, Drive,
@@ -45,6 +43,7 @@ pub use model::{
     NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
     Set, Setting, ShipSpectrum, SourceSpec, Speaks, UnknownFault,
 };
+pub use octant_instruments::grades::{FLICKER, GRADES, GradeSheet};
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
 pub use quantity::{Quantity, UnitDimension};
