@@ -142,10 +142,9 @@ fn ensemble(
     (normalized.map(|all| all.map(|sum| sum / n)), squares.map(|all| all.map(|sum| sum / n)))
 }
 
-#[test]
-fn errors_that_are_left_are_as_large_as_the_smoother_says() {
+fn check(seeds: u64) {
     for walk in [0.0, WALK] {
-        let (normalized, squares) = ensemble(draws(60, 30), 1.0, walk);
+        let (normalized, squares) = ensemble(seeds, 1.0, walk);
         let states = |from: usize, to: usize, of: &[f64; STATE_COUNT]| {
             of[from..to].iter().sum::<f64>() / (to - from) as f64
         };
@@ -159,11 +158,25 @@ fn errors_that_are_left_are_as_large_as_the_smoother_says() {
             let [filter, smoother] = normalized.map(|all| states(from, to, &all));
             let gain = (states(from, to, &squares[1]) / states(from, to, &squares[0])).sqrt();
             println!(
-                "walk {walk:e}, {name}: normalized squares {filter:.2}, {smoother:.2}; root mean square by {gain:.3}"
+                "walk {walk:e}, {name}: normalized squares {filter:.2}, {smoother:.2}; rms by {gain:.3}"
             );
-            assert!((0.8..1.2).contains(&smoother), "{name}: {smoother}");
+            // The errors of a calibration at different times depend on each other: a run counts as one.
+            let chance = (2.0 / ((to - from) as f64 * seeds as f64)).sqrt();
+            assert!((smoother - 1.0).abs() < (3.5 * chance).max(0.1), "{name}: {smoother}");
         }
     }
+}
+
+#[test]
+fn errors_that_are_left_are_as_large_as_the_smoother_says() {
+    check(draws(60, 30));
+}
+
+/// Prints the table of docs/smoothing.md.
+#[test]
+#[ignore = "minutes: a study"]
+fn study_of_errors_that_are_left() {
+    check(draws(400, 4));
 }
 
 /// Conditional covariance of the states at some times, given all measurements at once: with the covariances Σ of states and

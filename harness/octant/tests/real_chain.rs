@@ -131,7 +131,8 @@ fn a_recording_of_a_base_that_settles_is_aligned_and_filtered() {
         "{health}"
     );
     // Rows without stamps follow each other at the nominal rate: the same samples.
-    let rows = COLUMNS.replace("time_column = \"device_time_s\"", "time_column = \"none\"");
+    let rows = COLUMNS
+        .replace("time_column = \"device_time_s\"", "time_column = \"none\"\nrate = \"50 Hz\"");
     let scenario = chain(folder, "rows.toml", &format!("{INERTIAL}{rows}{STATIC}"));
     let again = folder.join("rows");
     ends(&["run", &scenario, "--out", again.to_str().unwrap()], 0);

@@ -160,7 +160,7 @@ fn a_velocity_in_columns_gives_the_bits_of_the_run_that_it_was_recorded_in() {
     let rows = recorded.chain("rows", &format!("{aiding}{uri}{GIMBAL}{columns}"), 0);
     assert_eq!(rows["stream_hash"], recorded.summary["stream_hash"]);
     // And without stamps at all: the row has the nominal one.
-    let uri = uri.replace("\"device_time_s\"", "\"none\"");
+    let uri = uri.replace("\"device_time_s\"", "\"none\"\nrate = \"50 Hz\"");
     let rows = recorded.chain("none", &format!("{aiding}{uri}{GIMBAL}{columns}"), 0);
     assert_eq!(rows["stream_hash"], recorded.summary["stream_hash"]);
 }

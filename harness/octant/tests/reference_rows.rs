@@ -208,7 +208,7 @@ fn keys_that_contradict_each_other_are_refused() {
         Scenario::parse(&format!("schema = 1\n{squares}{VELOCITY}"), "f", Path::new(""), &[]);
     let said = said.unwrap_err().to_string();
     assert!(said.contains("no method of this scenario uses estimator = \"kalman\""), "{said}");
-    let rows = ROWS.replace("delimiter", "time_column = \"none\"\ndelimiter");
+    let rows = ROWS.replace("delimiter", "time_column = \"none\"\nrate = \"100 Hz\"\ndelimiter");
     let said = Scenario::parse(&format!("schema = 1\n{rows}{VELOCITY}"), "f", Path::new(""), &[]);
     let said = said.unwrap_err().to_string();
     assert!(said.contains("source.reference.time_column: the samples have no stamps"), "{said}");
