@@ -205,12 +205,14 @@ impl Cursor {
 
     /// Returns whether the cursor repeats the sequence without end, as in navigation.
     #[must_use]
+    #[inline]
     pub fn is_endless(&self) -> bool {
         self.endless
     }
 
     /// Stop that the gimbals are at or move to, from 0, over all passes.
     #[must_use]
+    #[inline]
     pub fn stop(&self) -> u32 {
         self.stop
     }

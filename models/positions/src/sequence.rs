@@ -89,12 +89,14 @@ impl Sequence {
 
     /// The stops of one pass.
     #[must_use]
+    #[inline]
     pub fn stops(&self) -> &[Stop] {
         &self.stops[..self.len]
     }
 
     /// Number of passes through the stops.
     #[must_use]
+    #[inline]
     pub fn passes(&self) -> u32 {
         self.passes
     }
