@@ -26,7 +26,7 @@ pub enum Uri {
     Can(Can),
     /// A CAN adapter behind a serial line that speaks slcan: `slcan:/dev/ttyACM0?bitrate=500000`.
     Slcan(SlcanUri),
-    /// UDP: `udp:host:port`.
+    /// UDP: `udp:host:port`, `udp:host:port?secret=FILE`.
     Udp(Udp),
     /// TCP: `tcp:host:port`.
     Tcp(Tcp),
@@ -85,6 +85,8 @@ pub struct Udp {
     pub host: String,
     /// Port; at the device end, 0 is any free port.
     pub port: u16,
+    /// File with the secret that both ends share; `None`: anyone may talk.
+    pub secret: Option<String>,
 }
 
 /// A TCP address.
@@ -185,13 +187,13 @@ const UDP: Scheme = Scheme {
     name: "udp",
     devices: Some("a device on UDP: udp:HOST:PORT"),
     medium: Medium::Datagrams,
-    options: &[],
+    options: &["secret"],
     read: |parts| {
         let (host, port) = address(parts.name).ok_or_else(|| UriError::Name {
             found: parts.text.to_owned(),
             expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
         })?;
-        Ok(Uri::Udp(Udp { host, port }))
+        Ok(Uri::Udp(Udp { host, port, secret: parts.file("secret")? }))
     },
 };
 
@@ -364,8 +366,13 @@ impl fmt::Display for Uri {
                     None => Ok(()),
                 }
             }
-            Self::Udp(Udp { host, port }) if host.contains(':') => write!(f, "udp:[{host}]:{port}"),
-            Self::Udp(Udp { host, port }) => write!(f, "udp:{host}:{port}"),
+            Self::Udp(Udp { host, port, secret }) => {
+                match host.contains(':') {
+                    true => write!(f, "udp:[{host}]:{port}")?,
+                    false => write!(f, "udp:{host}:{port}")?,
+                }
+                secret.iter().try_for_each(|file| write!(f, "?secret={file}"))
+            }
             Self::Tcp(Tcp { host, port }) if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
             Self::Tcp(Tcp { host, port }) => write!(f, "tcp:{host}:{port}"),
             Self::Exec(Exec { program, arguments }) => {

@@ -289,6 +289,15 @@ impl Wire {
         Ok(())
     }
 
+    /// Number of datagrams that came without the seal of the port's secret.
+    #[must_use]
+    pub fn unsealed(&self) -> u64 {
+        match &self.medium {
+            Medium::Bytes(medium) => medium.port.unsealed(),
+            Medium::Frames(_) => 0,
+        }
+    }
+
     /// Reason why the last intact message that could not be read could not.
     #[must_use]
     pub fn last_unreadable(&self) -> Option<Unreadable> {

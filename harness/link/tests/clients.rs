@@ -4,7 +4,7 @@
 //! Without `python3` or `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-use crate::common::{drive, options};
+use crate::common::{Served, drive, facts, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Patience, SessionOptions};
@@ -117,6 +117,41 @@ fn they_are_devices_on_udp() {
             session(port::open(&uri, EndRole::Harness).unwrap(), bad);
         }
     }
+}
+
+/// The client in Python has the seal from its description alone, as either end.
+#[test]
+fn a_client_is_a_sealed_device_on_udp() {
+    let Some((_, command)) = clients().iter().find(|(name, _)| *name == "python") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("key");
+    std::fs::write(&file, "a secret of the bench\n").unwrap();
+    {
+        use std::os::unix::fs::PermissionsExt;
+        std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o600)).unwrap();
+    }
+    let secret = format!("?secret={}", file.display());
+    for bad in [false, true] {
+        let mut device = Device::new(command, &format!("udp-listen:127.0.0.1:0{secret}"));
+        let line = device.first_line();
+        let number = line.trim().rsplit(' ').next().unwrap();
+        let uri: Uri = format!("udp:127.0.0.1:{number}{secret}").parse().unwrap();
+        session(port::open(&uri, EndRole::Harness).unwrap(), bad);
+    }
+    let samples = folder.path().join("samples.csv");
+    let rows: String =
+        (1..=50).map(|k| format!("{k},{},1,-2,3,4,-5,6,7,8,0\n", k * 5_000_000)).collect();
+    std::fs::write(&samples, rows).unwrap();
+    let (_served, uri) = Served::on(&format!("udp:0{secret}"), facts());
+    let harness = |line: &str| {
+        let mut harness = Command::new(&command[0]);
+        harness.args(&command[1..]).args(["harness", line]).arg(&samples);
+        let ended = harness.output().unwrap();
+        (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
+    };
+    let (code, said) = harness(&uri.to_string());
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("50 samples, 0 requests repeated"), "{said}");
 }
 
 #[test]

@@ -15,6 +15,8 @@ mod load;
 mod misbehaving;
 #[cfg(unix)]
 mod no_allocation;
+mod seal;
+mod sealed;
 #[cfg(unix)]
 mod sessions;
 mod slcan;

@@ -58,6 +58,8 @@ pub struct Device<'a> {
     newer: Option<u16>,
     /// Time of the last hello that told a harness that there is no session.
     lost_since: Option<Instant>,
+    /// Datagrams without the secret's seal that were told of.
+    unsealed_told: u64,
 }
 
 /// Longest time for the port to accept a message before it is dropped: the harness asks again.
@@ -66,6 +68,8 @@ const SEND_WAIT: Duration = Duration::from_millis(200);
 const WAIT: Duration = Duration::from_millis(20);
 /// Interval between two status messages of a session.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
+/// Datagrams without the secret's seal that are worth a notice.
+const UNSEALED_TOLD: u64 = 10;
 
 impl<'a> Device<'a> {
     /// Makes a device without a session, and says hello, so that a harness in the middle of a session
@@ -88,6 +92,7 @@ impl<'a> Device<'a> {
             output: Output::default(),
             newer: None,
             lost_since: None,
+            unsealed_told: 0,
         };
         device.say_hello(0, StepPacing::LockStep, Duration::ZERO)?;
         Ok(device)
@@ -366,7 +371,18 @@ impl<'a> Device<'a> {
     /// Does what is due beside requests: sends status and heartbeat, and ends the session of a silent
     /// harness.
     fn look_after(&mut self) -> Result<(), PortError> {
-        let Some(session) = &mut self.session else { return Ok(()) };
+        let unsealed = self.wire.unsealed();
+        let Some(session) = &mut self.session else {
+            // The first of a harness that has the secret is one too.
+            if unsealed >= self.unsealed_told + UNSEALED_TOLD {
+                self.unsealed_told = unsealed;
+                (self.notice)(&Notice::Refused(format!(
+                    "{unsealed} datagrams without the seal of the secret came: do both ends have the same one?"
+                )));
+            }
+            return Ok(());
+        };
+        self.unsealed_told = unsealed;
         let silence = Duration::from_millis(self.facts.limits.silence_ms.into());
         if !silence.is_zero() && self.wire.waited.silence() >= silence {
             let text = format!("nothing heard for {:.1} s", silence.as_secs_f64());

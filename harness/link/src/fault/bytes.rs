@@ -285,6 +285,10 @@ impl Bytes for FaultyBytes {
         self.inner.reached_at()
     }
 
+    fn unsealed(&self) -> u64 {
+        self.inner.unsealed()
+    }
+
     fn hold_peer(&mut self, hold: bool) {
         self.inner.hold_peer(hold);
     }

@@ -115,6 +115,8 @@ pub struct HeardTraffic {
     pub missing: u64,
     /// Number of intact messages that could not be read, and the reason for the last one.
     pub unreadable: Option<(u64, Unreadable)>,
+    /// Datagrams without the seal of the port's secret, since the port was opened.
+    pub unsealed: u64,
     /// Messages that the port did not take.
     pub not_sent: u64,
     /// The CAN controller is off the bus.
@@ -125,9 +127,10 @@ pub struct HeardTraffic {
 
 impl fmt::Display for HeardTraffic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { messages, lost, damaged, missing, unreadable, not_sent, off_bus, bye } = *self;
+        let Self { messages, lost, damaged, missing, unreadable, unsealed, not_sent, off_bus, bye } =
+            *self;
         match (messages, lost + damaged) {
-            (0, 0) if missing > 0 || unreadable.is_some() => {
+            (0, 0) if missing > 0 || unreadable.is_some() || unsealed > 0 => {
                 f.write_str("no message was received")?;
             }
             (0, 0) => f.write_str("nothing at all was received")?,
@@ -151,6 +154,12 @@ impl fmt::Display for HeardTraffic {
         }
         if missing > 0 {
             write!(f, "; {missing} frames or segments never arrived")?;
+        }
+        if unsealed > 0 {
+            write!(
+                f,
+                "; {unsealed} datagrams without the seal of the secret were dropped: do both ends have the same one?"
+            )?;
         }
         if not_sent > 0 {
             write!(f, "; {not_sent} messages were not taken by the port")?;

@@ -35,6 +35,7 @@ pub(super) fn heard(wire: &Wire, before: &TrafficCounts, bye: Option<Reason>) ->
                 wire.last_unreadable().map(|reason| (now.unreadable - before.unreadable, reason))
             })
             .flatten(),
+        unsealed: wire.unsealed(),
         not_sent: now.not_sent - before.not_sent,
         off_bus: wire.is_off_bus(),
         bye,

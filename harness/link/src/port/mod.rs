@@ -3,6 +3,9 @@
 mod exec;
 mod listen;
 mod pty;
+#[doc(hidden)]
+pub mod seal;
+mod secret;
 mod serial;
 mod slcan;
 mod tcp;
@@ -81,6 +84,11 @@ pub trait Bytes: Debug + Send {
 
     /// Name under which the other end reaches this port.
     fn reached_at(&self) -> String;
+
+    /// Number of datagrams that don't have the seal of the [secret](crate::uri::Udp::secret), and were dropped.
+    fn unsealed(&self) -> u64 {
+        0
+    }
 
     /// Binds the port to the peer that was heard last, for a session, or releases it. While it is
     /// bound, nobody else is heard.

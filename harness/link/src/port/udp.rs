@@ -1,5 +1,7 @@
 //! UDP, with one frame in each datagram.
 
+use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd};
+use super::secret::secret_in;
 use super::{Bytes, PortError};
 use crate::uri::Udp;
 use std::io::ErrorKind;
@@ -20,6 +22,49 @@ pub struct UdpPort {
     wait: Wait,
     /// Number of datagrams from strangers, all dropped.
     strangers: u64,
+    sealed: Option<Box<Sealed>>,
+}
+
+/// Room of a datagram: more than any frame needs.
+const DATAGRAM: usize = 4096;
+
+/// Datagrams with a seal.
+#[derive(Debug)]
+struct Sealed {
+    seal: Seal,
+    /// File with the secret, as the other end has to be told.
+    file: String,
+    received: [u8; DATAGRAM],
+    /// Frames that were sent last, and room for their seal.
+    sent: [u8; DATAGRAM],
+    sent_len: usize,
+    /// Number of datagrams without the secret's seal.
+    unsealed: u64,
+}
+
+impl Sealed {
+    fn of(end: SealEnd, udp: &Udp) -> Result<Option<Box<Self>>, PortError> {
+        let Some(file) = &udp.secret else { return Ok(None) };
+        let refused = |reason: String| PortError::open(crate::Uri::Udp(udp.clone()), reason);
+        let seal = secret_in(file).and_then(|secret| {
+            Seal::new(end, &secret).ok_or_else(|| format!("the secret in {file} is no key"))
+        });
+        Ok(Some(Box::new(Self {
+            seal: seal.map_err(refused)?,
+            file: file.clone(),
+            received: [0; DATAGRAM],
+            sent: [0; DATAGRAM],
+            sent_len: 0,
+            unsealed: 0,
+        })))
+    }
+
+    /// The datagram that was kept, sealed anew.
+    fn datagram(&mut self) -> &[u8] {
+        let datagram = &mut self.sent[..self.sent_len + SEAL_LEN];
+        self.seal.seal(datagram);
+        datagram
+    }
 }
 
 /// Present timeout of the socket.
@@ -48,9 +93,10 @@ impl UdpPort {
             IpAddr::V6(_) => Ipv6Addr::UNSPECIFIED.into(),
         };
         let uri = format!("udp:{peer}");
+        let sealed = Sealed::of(SealEnd::Harness, udp)?;
         let refused = |error: std::io::Error| PortError::open(&uri, error);
         let socket = UdpSocket::bind((near, 0)).map_err(refused)?;
-        Ok(Self { peer: Some(peer), held: true, ..Self::of(socket, uri.clone()) })
+        Ok(Self { peer: Some(peer), held: true, sealed, ..Self::of(socket, uri.clone()) })
     }
 
     /// Opens the device end, which listens; a session binds it to the peer that began it.
@@ -59,10 +105,11 @@ impl UdpPort {
     /// If the address doesn't belong to this host, or the port is taken.
     pub fn listen(udp: &Udp) -> Result<Self, PortError> {
         let address = resolve(udp)?;
+        let sealed = Sealed::of(SealEnd::Device, udp)?;
         let refused = |error: std::io::Error| PortError::open(format!("udp:{address}"), error);
         let socket = UdpSocket::bind(address).map_err(refused)?;
         let uri = format!("udp:{}", socket.local_addr().map_err(refused)?);
-        Ok(Self { listens: true, ..Self::of(socket, uri) })
+        Ok(Self { listens: true, sealed, ..Self::of(socket, uri) })
     }
 
     fn of(socket: UdpSocket, uri: String) -> Self {
@@ -74,6 +121,7 @@ impl UdpPort {
             listens: false,
             wait: Wait::Unknown,
             strangers: 0,
+            sealed: None,
         }
     }
 
@@ -131,11 +179,45 @@ fn passes(error: &std::io::Error) -> bool {
     )
 }
 
+/// Frames of a datagram that is sealed for this end. What is sealed otherwise is answered as far as both ends need it to
+/// get to know each other.
+fn opened<'a>(
+    sealed: &'a mut Sealed,
+    count: usize,
+    socket: &UdpSocket,
+    from: SocketAddr,
+) -> Option<&'a [u8]> {
+    // An answer that can't be sent now is asked for again.
+    match sealed.seal.open(&sealed.received[..count]) {
+        OpenedSeal::Frames(length) => return Some(&sealed.received[..length]),
+        OpenedSeal::Learnt => {
+            let _ = socket.send_to(sealed.datagram(), from);
+        }
+        OpenedSeal::Unknown => {
+            sealed.unsealed += 1;
+            let _ = socket.send_to(&sealed.seal.challenge(&sealed.received[..count]), from);
+        }
+        OpenedSeal::Dropped => sealed.unsealed += 1,
+    }
+    None
+}
+
 impl Bytes for UdpPort {
     fn send(&mut self, bytes: &[u8], _: Duration) -> Result<bool, PortError> {
         let Some(peer) = self.peer else { return Ok(false) };
-        match self.socket.send_to(bytes, peer) {
-            Ok(count) => Ok(count == bytes.len()),
+        let datagram = match &mut self.sealed {
+            None => bytes,
+            Some(sealed) => {
+                let Some(room) = sealed.sent[..DATAGRAM - SEAL_LEN].get_mut(..bytes.len()) else {
+                    return Ok(false);
+                };
+                room.copy_from_slice(bytes);
+                sealed.sent_len = bytes.len();
+                sealed.datagram()
+            }
+        };
+        match self.socket.send_to(datagram, peer) {
+            Ok(count) => Ok(count == datagram.len()),
             Err(error) if passes(&error) => Ok(false),
             Err(error) => Err(self.gone(&error)),
         }
@@ -143,12 +225,24 @@ impl Bytes for UdpPort {
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         self.waits(wait).map_err(|error| self.gone(&error))?;
-        match self.socket.recv_from(buffer) {
+        let into = self.sealed.as_mut().map_or(&mut *buffer, |sealed| &mut sealed.received);
+        match self.socket.recv_from(into) {
             Ok((count, from)) => {
                 if self.held && self.peer != Some(from) {
                     self.strangers += 1;
                     return Ok(0);
                 }
+                let count = match &mut self.sealed {
+                    None => count,
+                    Some(sealed) => {
+                        let Some(frames) = opened(sealed, count, &self.socket, from) else {
+                            return Ok(0);
+                        };
+                        let taken = frames.len().min(buffer.len());
+                        buffer[..taken].copy_from_slice(&frames[..taken]);
+                        taken
+                    }
+                };
                 self.peer = Some(from);
                 Ok(count)
             }
@@ -162,7 +256,14 @@ impl Bytes for UdpPort {
     }
 
     fn reached_at(&self) -> String {
-        self.uri.clone()
+        match &self.sealed {
+            None => self.uri.clone(),
+            Some(sealed) => format!("{}?secret={}", self.uri, sealed.file),
+        }
+    }
+
+    fn unsealed(&self) -> u64 {
+        self.sealed.as_ref().map_or(0, |sealed| sealed.unsealed)
     }
 
     fn hold_peer(&mut self, hold: bool) {

@@ -125,6 +125,18 @@ impl<'a> Parts<'a> {
         self.options.iter().find(|(name, _)| *name == option).map(|(_, value)| *value)
     }
 
+    /// Name of a file.
+    pub(super) fn file(&self, option: &'static str) -> Result<Option<String>, UriError> {
+        match self.get(option) {
+            Some("") => Err(UriError::Value {
+                option,
+                found: String::new(),
+                expected: "the name of a file".to_owned(),
+            }),
+            name => Ok(name.map(str::to_owned)),
+        }
+    }
+
     pub(super) fn rate(&self, option: &'static str) -> Result<Option<u32>, UriError> {
         let Some(text) = self.get(option) else { return Ok(None) };
         match text.parse() {

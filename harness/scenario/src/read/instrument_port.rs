@@ -21,6 +21,11 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
             format!("found {uri}, expected an instrument at serial:, udp:, can: or slcan:");
         return Err(keys.uri.problem(message));
     }
+    if matches!(&uri, Uri::Udp(udp) if udp.secret.is_some()) {
+        let message =
+            format!("found {uri}, expected no secret: an instrument's datagrams have no seal");
+        return Err(keys.uri.problem(message));
+    }
     let live = keys.live.as_ref().ok_or_else(|| keys.uri.problem("source.live is missing"))?;
     let name = live.protocol.as_str();
     if bus != (name == "dbc") {
