@@ -1,5 +1,6 @@
 //! `octant smooth`: what a whole calibration knows, and whether its constants are constant.
 
+mod doubts;
 mod history;
 
 use crate::failure::Failure;
@@ -7,6 +8,7 @@ use crate::run_folder::recording_of;
 use crate::score::scenario_of;
 use crate::terminal::{print, print_json};
 use clap::Args;
+use doubts::Doubts;
 use octant_base::number::{counted, significant};
 use octant_calibration::config::{Calibration, Estimator};
 use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
@@ -15,9 +17,10 @@ use octant_observe::covariance::state_name;
 use octant_observe::ensemble::state_unit;
 use octant_requirements::Verdict;
 use octant_run::smoothed::repeat_calibration;
-use octant_sample::Mode;
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_smoother::backward::SmoothedCalibration;
 use octant_smoother::constancy::{self, ConstancyFinding, NODES_MAX, ParameterChange};
+use octant_smoother::refusal::SmootherError;
 use octant_source::Replay;
 use octant_source::configure::configurations;
 use serde::Serialize;
@@ -46,10 +49,14 @@ struct Report {
     mean_nis: f64,
     /// True if the core of this program gives the recorded outputs and parameters.
     equal_to_recording: bool,
-    /// True if the calibration isn't there to its end.
-    cut_short: bool,
     states: Vec<StateRow>,
+    /// Parameters that are known too little to be tested.
+    untested: Vec<&'static str>,
     changes: Vec<ChangeRow>,
+    /// Why the tests aren't normal here, and their results count for nothing.
+    invalid: Vec<String>,
+    /// Why the tests don't cover the calibration, so that finding nothing counts for nothing.
+    incomplete: Vec<String>,
 }
 
 /// σ of a state on the way, the median over the nodes.
@@ -79,8 +86,9 @@ struct ChangeRow {
 }
 
 impl ChangeRow {
+    /// What isn't a number is no agreement.
     fn is_found(&self) -> bool {
-        self.sigmas > self.limit_sigmas
+        !(self.sigmas <= self.limit_sigmas)
     }
 }
 
@@ -94,23 +102,24 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
     let mut source = Replay::open(&path, None).map_err(|e| bad(&e))?;
     let mut repeated =
         repeat_calibration(&mut source, &mut endpoint, &config, NODES_MAX).map_err(|e| bad(&e))?;
-    let history = &mut repeated.history;
-    let smoothed = history.smooth().map_err(|e| bad(&e))?;
-    let walks = match config.calibration {
-        Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) => {
-            kalman.further.gyro_rate_random_walk > 0.0
-        }
-        _ => false,
+    let smoothed = repeated.history.smooth().map_err(|e| bad(&e))?;
+    let Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) = &config.calibration else {
+        return Err(bad(&SmootherError::NoFilter { found: "none" }));
     };
+    let (tested, changes) = changes(&smoothed, repeated.history.prior());
+    let doubts = Doubts::of(&config, kalman, &repeated, &smoothed, &tested);
+    let history = &repeated.history;
     let report = Report {
         method: scenario.method_label(method),
         measurements: history.len(),
         between_s: (history.begins_s(), history.ends_s()),
         mean_nis: smoothed.mean_nis,
         equal_to_recording: repeated.replayed.first_difference_sample.is_none(),
-        cut_short: matches!(repeated.mode, Mode::Aligning | Mode::Calibrating),
-        states: moving_states(&smoothed, walks),
-        changes: changes(&smoothed, history.prior()),
+        states: moving_states(&smoothed, kalman.further.gyro_rate_random_walk > 0.0),
+        untested: (0..PARAMETER_COUNT).filter(|i| !tested.contains(i)).map(|i| NAMES[i]).collect(),
+        changes,
+        invalid: doubts.invalid,
+        incomplete: doubts.incomplete,
     };
     if let Some(file) = &arguments.csv {
         history::write(file, &smoothed)?;
@@ -121,10 +130,10 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
         print(&text(&report))?
     }
     let changed = report.changes.iter().any(ChangeRow::is_found);
-    Ok(match (changed, report.cut_short) {
-        (true, _) => Verdict::Fail,
-        (false, true) => Verdict::Inconclusive,
-        (false, false) => Verdict::Pass,
+    Ok(match (report.invalid.is_empty(), changed, report.incomplete.is_empty()) {
+        (true, true, _) => Verdict::Fail,
+        (true, false, true) => Verdict::Pass,
+        _ => Verdict::Inconclusive,
     })
 }
 
@@ -154,17 +163,24 @@ fn moving_states(smoothed: &SmoothedCalibration, walks: bool) -> Vec<StateRow> {
     (0..end.min(STATE_COUNT)).map(row).collect()
 }
 
-/// The largest finding of each kind.
-fn changes(smoothed: &SmoothedCalibration, prior: &[f64; STATE_COUNT]) -> Vec<ChangeRow> {
+/// The parameters that are tested, and the largest finding of each kind.
+fn changes(
+    smoothed: &SmoothedCalibration,
+    prior: &[f64; STATE_COUNT],
+) -> (Vec<usize>, Vec<ChangeRow>) {
     let mut largest: Vec<ConstancyFinding> = Vec::new();
+    let mut tested = Vec::new();
     constancy::test(smoothed, prior, |found| {
+        if tested.last() != Some(&found.parameter) {
+            tested.push(found.parameter);
+        }
         match largest.iter_mut().find(|known| known.change == found.change) {
             Some(known) if known.sigmas >= found.sigmas => {}
             Some(known) => *known = found,
             None => largest.push(found),
         }
     });
-    largest.iter().map(change_row).collect()
+    (tested, largest.iter().map(change_row).collect())
 }
 
 fn change_row(found: &ConstancyFinding) -> ChangeRow {
@@ -183,7 +199,7 @@ fn change_row(found: &ConstancyFinding) -> ChangeRow {
     ChangeRow {
         change,
         correlation_time_s,
-        parameter: octant_sample::parameters::NAMES[found.parameter],
+        parameter: NAMES[found.parameter],
         between_s: found.between_s,
         sigmas: found.sigmas,
         limit_sigmas: found.change.limit_sigmas(),
@@ -208,9 +224,6 @@ fn text(report: &Report) -> String {
     if !report.equal_to_recording {
         out += "  the core of this program answers otherwise than the recorded one: this is about its own filter\n";
     }
-    if report.cut_short {
-        out += "  the recording ends before the calibration: inconclusive\n";
-    }
     let _ =
         writeln!(out, "  {:24} {:>10} {:>10}  unit", "median σ on the way", "filter", "smoothed");
     for state in &report.states {
@@ -224,8 +237,11 @@ fn text(report: &Report) -> String {
         );
     }
     out += "  the parameters are constants: at the end the filter knows what the smoother knows, nothing is gained\n";
-    let _ =
-        writeln!(out, "  {:24} {:>6}  {:24} {:>14}  size", "largest change", "σ", "parameter", "s");
+    let _ = writeln!(
+        out,
+        "  {:24} {:>6} {:>6}  {:24} {:>14}  size",
+        "largest change", "σ", "limit", "parameter", "s"
+    );
     for change in &report.changes {
         let name = match change.correlation_time_s {
             Some(time_s) => format!("{}, {time_s:.0} s", change.change),
@@ -246,10 +262,22 @@ fn text(report: &Report) -> String {
             change.sigmas, change.limit_sigmas, change.parameter, change.unit
         );
     }
-    out += match report.changes.iter().any(ChangeRow::is_found) {
-        _ if report.changes.is_empty() => "  no parameter is known well enough to be tested\n",
-        false => "  none is above its limit: the data agree with constants\n",
-        true => "  above its limit: what the calibration takes for constant has changed\n",
+    if !report.untested.is_empty() {
+        let _ = writeln!(out, "  known too little to be tested: {}", report.untested.join(", "));
+    }
+    for doubt in &report.invalid {
+        let _ = writeln!(out, "  inconclusive, the tests don't hold: {doubt}");
+    }
+    for doubt in &report.incomplete {
+        let _ = writeln!(out, "  incomplete: {doubt}");
+    }
+    out += match (report.invalid.is_empty(), report.changes.iter().any(ChangeRow::is_found)) {
+        (false, _) => "",
+        (true, true) => "  above its limit: what the calibration takes for constant has changed\n",
+        (true, false) if report.incomplete.is_empty() => {
+            "  none is above its limit: the data agree with constants\n"
+        }
+        (true, false) => "  inconclusive: none is above its limit, but not all was tested\n",
     };
     out
 }

@@ -1,7 +1,7 @@
 //! `octant smooth`: a run is smoothed, a change is found, and what can't be smoothed is said.
 
 use crate::common::program::program;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::Path;
 
 const SHORT: &str = r#"schema = 1
@@ -55,7 +55,8 @@ fn a_calibration_is_smoothed_and_its_constants_are_constant() {
     assert_eq!(code, Some(0), "{said}{told}");
     let found: Value = serde_json::from_str(&said).unwrap();
     assert_eq!(found["equal_to_recording"], true);
-    assert_eq!(found["cut_short"], false);
+    assert_eq!((&found["invalid"], &found["incomplete"]), (&json!([]), &json!([])));
+    assert!(found["untested"].as_array().unwrap().len() < 15, "{}", found["untested"]);
     let nis = found["mean_nis"].as_f64().unwrap();
     // 3600 measurements of three axes: σ of the mean is 0.04.
     assert!((nis - 3.0).abs() < 0.2, "{nis}");
@@ -136,7 +137,42 @@ fn what_cannot_be_smoothed_is_said() {
     std::fs::write(folder.path().join("cut.mcap"), &bytes[..bytes.len() / 2]).unwrap();
     let (code, said, told) = smooth(folder.path(), &["cut.mcap"]);
     assert_eq!(code, Some(3), "{said}{told}");
-    assert!(said.contains("the recording ends before the calibration: inconclusive"), "{said}");
+    assert!(said.contains("incomplete: the recording ends before the calibration"), "{said}");
     let (code, _, told) = smooth(folder.path(), &["nowhere"]);
     assert!(code == Some(2) && told.contains("nowhere"), "{told}");
+}
+
+/// Calibrations of which the tests can't say that all is well.
+#[test]
+fn what_was_not_tested_is_no_pass() {
+    let short = SHORT.replace("\"1 h\"", "\"10 min\"");
+    let noise = "\n[[faults]]\nid = \"noise\"\nkind = \"noise-gain\"\nchannels = \"accelerometer\"\ngain = \"200 %\"\n\
+                 trigger = { at = \"60 s\" }\n";
+    let ship = "\n[motion]\nkind = \"dockside\"\n\n[procedure.calibration.aiding]\nreference = \"dock-position\"\n";
+    let cases: [(String, &[&str], &str); 5] = [
+        (
+            SHORT.replace("\"1 h\"", "\"190 s\""),
+            &[],
+            "gyro_bias_x, gyro_bias_y, gyro_bias_z are known too little",
+        ),
+        (format!("{SHORT}{noise}"), &[], "the noise isn't that of the filter"),
+        (format!("{short}{ship}"), &[], "the base moves"),
+        (
+            short.clone(),
+            &["procedure.calibration.g_states=false"],
+            "leaves out a group of parameters",
+        ),
+        (
+            short.clone(),
+            &["procedure.calibration.refuse_above_mean_nis=2.5"],
+            "the core refused the calibration: the mean NIS",
+        ),
+    ];
+    for (text, settings, expected) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        run(folder.path(), &text, settings);
+        let (code, said, told) = smooth(folder.path(), &["r"]);
+        assert!(code == Some(3) && said.contains(expected), "{expected}: {code:?} {said}{told}");
+        assert!(!said.contains("the data agree"), "{said}");
+    }
 }

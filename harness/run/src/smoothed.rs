@@ -17,6 +17,8 @@ pub struct RepeatedCalibration {
     pub replayed: Replayed,
     /// Mode after the calibration; that of the calibration if the recording ends before.
     pub mode: Mode,
+    /// Why the core refused it, if it did.
+    pub refusal: Option<String>,
 }
 
 /// Repeats a recording up to the end of its calibration, with `nodes` looks at the filter.
@@ -33,6 +35,7 @@ pub fn repeat_calibration(
         history: FilterHistory::new(config, nodes)?,
         replayed: Replayed::default(),
         mode: Mode::Aligning,
+        refusal: None,
     };
     drive(source, &mut Recorded::default(), endpoint, &mut repeated)?;
     Ok(repeated)
@@ -49,6 +52,7 @@ impl Keeps<Replay, InProcess> for RepeatedCalibration {
         self.replayed.answered(source, endpoint, (step, sent), output)?;
         self.mode = output.mode;
         if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
+            self.refusal = endpoint.core().refusal().map(ToString::to_string);
             return Ok(Some(Ended::Done));
         }
         self.history.watch(endpoint.core())?;
