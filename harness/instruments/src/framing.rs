@@ -60,8 +60,22 @@ impl ReadingDefect {
     }
 }
 
+/// What a frame may hold.
+pub trait Finding: Copy + Debug {
+    /// Number among its kind, where the protocol counts them.
+    fn sequence(&self) -> Option<u64>;
+}
+
+impl Finding for Reading {
+    fn sequence(&self) -> Option<u64> {
+        self.sequence
+    }
+}
+
 /// A protocol: form and content of its frames.
 pub trait Framing {
+    /// What is found in a frame.
+    type Found: Finding;
     /// Buffer for the longest frame.
     type Room: AsRef<[u8]> + AsMut<[u8]> + Clone + Debug;
     /// Empty buffer.
@@ -75,11 +89,11 @@ pub trait Framing {
     /// room. More bytes don't change an answer other than [`Extent::Open`].
     fn extent(&self, bytes: &[u8]) -> Extent;
 
-    /// Reads a frame of that length; `None`: it is intact and holds no reading.
+    /// Reads a frame of that length; `None`: it is intact and holds nothing of the kind.
     ///
     /// # Errors
     /// If the frame isn't intact or can't be decoded.
-    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect>;
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Self::Found>, ReadingDefect>;
 }
 
 /// Bytes that are no reading.
@@ -93,9 +107,9 @@ pub struct UnreadBytes {
 
 /// Event in a stream of bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FramingEvent {
+pub enum FramingEvent<Found = Reading> {
     /// A reading.
-    Reading(Reading),
+    Reading(Found),
     /// Bytes that looked like a frame, but can't be read.
     Lost(UnreadBytes),
 }
@@ -204,7 +218,7 @@ impl<P: Framing> FrameDecoder<P> {
     /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
-    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent> {
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent<P::Found>> {
         loop {
             if self.length > 0 {
                 match self.complete(bytes) {
@@ -247,7 +261,7 @@ impl<P: Framing> FrameDecoder<P> {
 
     /// Ends the input, also after a long silence: the incomplete frame is dropped, but frames may
     /// follow its first byte. Call it until it returns `None`.
-    pub fn end(&mut self) -> Option<FramingEvent> {
+    pub fn end(&mut self) -> Option<FramingEvent<P::Found>> {
         while self.length > 0 {
             match self.complete(&mut &[][..]) {
                 Step::Said(event) => return Some(event),
@@ -259,7 +273,7 @@ impl<P: Framing> FrameDecoder<P> {
     }
 
     /// Makes one step with the bytes held.
-    fn complete(&mut self, bytes: &mut &[u8]) -> Step {
+    fn complete(&mut self, bytes: &mut &[u8]) -> Step<P::Found> {
         match self.protocol.extent(&self.held.as_ref()[..self.length]) {
             Extent::None => {
                 self.drop_held(1);
@@ -331,14 +345,14 @@ impl<P: Framing> FrameDecoder<P> {
     /// Counts an outcome; returns true if the frame was intact.
     fn conclude(
         &mut self,
-        outcome: &Result<Option<Reading>, ReadingDefect>,
+        outcome: &Result<Option<P::Found>, ReadingDefect>,
         length: usize,
     ) -> bool {
         let counters = &mut self.counters;
         let intact = match outcome {
             Ok(Some(reading)) => {
                 counters.readings += 1;
-                counters.in_sequence(&mut self.last_sequence, reading.sequence);
+                counters.in_sequence(&mut self.last_sequence, reading.sequence());
                 true
             }
             Ok(None) => {
@@ -360,9 +374,9 @@ impl<P: Framing> FrameDecoder<P> {
 
     fn event(
         &self,
-        outcome: Result<Option<Reading>, ReadingDefect>,
+        outcome: Result<Option<P::Found>, ReadingDefect>,
         bytes: usize,
-    ) -> Option<FramingEvent> {
+    ) -> Option<FramingEvent<P::Found>> {
         match outcome {
             Ok(reading) => reading.map(FramingEvent::Reading),
             Err(cause) => Some(FramingEvent::Lost(UnreadBytes { cause, bytes })),
@@ -371,9 +385,9 @@ impl<P: Framing> FrameDecoder<P> {
 }
 
 /// Result of a step with the bytes held.
-enum Step {
+enum Step<Found> {
     /// An event.
-    Said(FramingEvent),
+    Said(FramingEvent<Found>),
     /// Another step is possible.
     Go,
     /// More bytes are needed.

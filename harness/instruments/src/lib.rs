@@ -18,6 +18,8 @@
 //! that a unit at rest with z down shows −g on z. If a protocol sends another order or sign (NovAtel:
 //! z, −y, x), the codec corrects it. The mounting of the unit is set at the [`Sampler`] ([`Axes`]).
 //!
+//! [`navigation`] has the messages of units with a filter of their own: position, velocity, attitude.
+//!
 //! [`described`] is any other record protocol, by a description of its frames.
 //!
 //! Nothing in this crate allocates, waits or depends on a port, except two features of a host: with `dbc` any CAN
@@ -37,6 +39,7 @@ pub mod described;
 pub mod description;
 pub mod framing;
 pub mod grades;
+pub mod navigation;
 pub mod novatel;
 pub mod own;
 pub mod rollover;

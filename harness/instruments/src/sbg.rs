@@ -27,9 +27,9 @@ const HEADER_BYTES: usize = 6;
 const TAIL_BYTES: usize = 3;
 /// Most data bytes of the protocol.
 const MAX_DATA_BYTES: usize = 4086;
-const MAX_BYTES: usize = HEADER_BYTES + MAX_DATA_BYTES + TAIL_BYTES;
+pub(crate) const MAX_BYTES: usize = HEADER_BYTES + MAX_DATA_BYTES + TAIL_BYTES;
 
-const CLASS_LOG: u8 = 0;
+pub(crate) const CLASS_LOG: u8 = 0;
 const IMU_DATA: u8 = 3;
 const IMU_SHORT: u8 = 44;
 const IMU_DATA_BYTES: usize = 58;
@@ -76,6 +76,7 @@ impl Default for Sbg {
 pub type SbgDecoder = crate::framing::FrameDecoder<Sbg>;
 
 impl Framing for Sbg {
+    type Found = Reading;
     type Room = [u8; MAX_BYTES];
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
@@ -103,21 +104,11 @@ impl Framing for Sbg {
 
     #[inline]
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
-        let (bare, tail) =
-            frame.split_last_chunk::<TAIL_BYTES>().ok_or(ReadingDefect::Malformed)?;
-        if tail[2] != END {
-            return Err(ReadingDefect::Malformed);
-        }
-        let found = u16::from_le_bytes([tail[0], tail[1]]);
-        let computed = checksum::sbg(bare.get(2..).unwrap_or_default());
-        if found != computed {
-            return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
-        }
-        let data = &bare[HEADER_BYTES..];
+        let ((class, message), data) = checked(frame)?;
         let fields = &mut Reader::new(data);
         let unknown = |field, found: usize| ReadingDefect::Unknown { field, found: found as u32 };
         let mut reading = Reading::NOTHING;
-        let (micros, status) = match (bare[3], bare[2]) {
+        let (micros, status) = match (class, message) {
             (CLASS_LOG, IMU_SHORT) => {
                 if data.len() != IMU_SHORT_BYTES {
                     return Err(unknown("length of IMU_SHORT", data.len()));
@@ -163,6 +154,22 @@ impl Framing for Sbg {
         reading.status.set(Status::INERTIAL_INVALID, status & USABLE != USABLE);
         Ok(Some(reading))
     }
+}
+
+/// Class, message and data of a frame with the right checksum.
+#[inline]
+pub(crate) fn checked(frame: &[u8]) -> Result<((u8, u8), &[u8]), ReadingDefect> {
+    let (bare, tail) = frame.split_last_chunk::<TAIL_BYTES>().ok_or(ReadingDefect::Malformed)?;
+    if tail[2] != END {
+        return Err(ReadingDefect::Malformed);
+    }
+    let found = u16::from_le_bytes([tail[0], tail[1]]);
+    let computed = checksum::sbg(bare.get(2..).unwrap_or_default());
+    if found != computed {
+        return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
+    }
+    let (head, data) = bare.split_at_checked(HEADER_BYTES).ok_or(ReadingDefect::Malformed)?;
+    Ok(((head[3], head[2]), data))
 }
 
 /// Encodes readings as frames of `IMU_SHORT`.

@@ -43,7 +43,7 @@ const FIELD_BYTES: [[u8; 15]; 7] = [
 ];
 
 /// Most bytes of a frame: all fields of all groups, the header and the CRC.
-const MAX_BYTES: usize = 1280;
+pub(crate) const MAX_BYTES: usize = 1280;
 
 const _: () = assert!(longest() <= MAX_BYTES);
 
@@ -67,11 +67,11 @@ const MAX_HEADER_BYTES: usize = 2 + 2 * FIELD_BYTES.len();
 const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
 
 // Fields, as group and bit.
-const COMMON: usize = 0;
-const TIME: usize = 1;
+pub(crate) const COMMON: usize = 0;
+pub(crate) const TIME: usize = 1;
 const IMU: usize = 2;
-const TIME_STARTUP: u16 = 1 << 0;
-const TIME_GPS: u16 = 1 << 1;
+pub(crate) const TIME_STARTUP: u16 = 1 << 0;
+pub(crate) const TIME_GPS: u16 = 1 << 1;
 const COMMON_IMU: u16 = 1 << 9;
 const COMMON_DELTA_THETA: u16 = 1 << 11;
 const IMU_UNCOMP_ACCEL: u16 = 1 << 2;
@@ -137,6 +137,7 @@ fn header(bytes: &[u8]) -> Result<Header, Extent> {
 }
 
 impl Framing for VectorNav {
+    type Found = Reading;
     type Room = [u8; MAX_BYTES];
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
@@ -168,61 +169,46 @@ impl Framing for VectorNav {
 
     #[inline]
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
-        let (bare, crc) = frame.split_last_chunk::<2>().ok_or(ReadingDefect::Malformed)?;
-        let found = u16::from_be_bytes(*crc);
-        let computed = checksum::vectornav(bare.get(1..).unwrap_or_default());
-        if found != computed {
-            return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
-        }
-        let header = header(bare).map_err(|_| ReadingDefect::Malformed)?;
-        let mut fields = Reader::new(&bare[header.bytes..]);
         let mut reading = Reading::NOTHING;
         let (mut means, mut gps_ns) = (Means::default(), None);
-        for (group, mask) in header.masks.into_iter().enumerate() {
-            let mut rest = mask;
-            while rest != 0 {
-                let index = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                let mut field = fields;
-                fields.skip(usize::from(FIELD_BYTES[group][index]));
-                match (group, 1u16 << index) {
-                    (COMMON | TIME, TIME_STARTUP) => {
-                        let ns = field.u64_le();
-                        reading.stamp = Some(Stamp { ns, clock: StampClock::Startup });
-                    }
-                    (COMMON | TIME, TIME_GPS) => gps_ns = Some(field.u64_le()),
-                    (COMMON, COMMON_DELTA_THETA) => {
-                        reading.interval_s = Some(f64::from(field.f32_le()));
-                        reading.rotation = Some(degrees(&mut field));
-                        reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
-                    }
-                    (COMMON, COMMON_IMU) => {
-                        means.common_velocity = Some(floats(&mut field));
-                        means.common_rotation = Some(floats(&mut field));
-                    }
-                    // The field of the common group, if present, has the same values.
-                    (IMU, IMU_DELTA_THETA) if reading.rotation.is_none() => {
-                        reading.interval_s = Some(f64::from(field.f32_le()));
-                        reading.rotation = Some(degrees(&mut field));
-                    }
-                    (IMU, IMU_DELTA_VEL) if reading.velocity.is_none() => {
-                        reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
-                    }
-                    (IMU, IMU_UNCOMP_ACCEL) => means.velocity = Some(floats(&mut field)),
-                    (IMU, IMU_UNCOMP_GYRO) => means.rotation = Some(floats(&mut field)),
-                    (IMU, IMU_TEMP) => reading.temperature_c = Some(field.f32_le()),
-                    (IMU, IMU_SENS_SAT) => {
-                        let word = field.u16_le();
-                        reading.status_word = Some(word.into());
-                        let gyro = word & SATURATED_GYRO != 0;
-                        let accelerometer = word & SATURATED_ACCELEROMETER != 0;
-                        reading.status.set(Status::GYRO_SATURATED, gyro);
-                        reading.status.set(Status::ACCELEROMETER_SATURATED, accelerometer);
-                    }
-                    _ => {}
+        each_field(frame, |group, bit, mut field| {
+            match (group, bit) {
+                (COMMON | TIME, TIME_STARTUP) => {
+                    let ns = field.u64_le();
+                    reading.stamp = Some(Stamp { ns, clock: StampClock::Startup });
                 }
+                (COMMON | TIME, TIME_GPS) => gps_ns = Some(field.u64_le()),
+                (COMMON, COMMON_DELTA_THETA) => {
+                    reading.interval_s = Some(f64::from(field.f32_le()));
+                    reading.rotation = Some(degrees(&mut field));
+                    reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
+                }
+                (COMMON, COMMON_IMU) => {
+                    means.common_velocity = Some(floats(&mut field));
+                    means.common_rotation = Some(floats(&mut field));
+                }
+                // The field of the common group, if present, has the same values.
+                (IMU, IMU_DELTA_THETA) if reading.rotation.is_none() => {
+                    reading.interval_s = Some(f64::from(field.f32_le()));
+                    reading.rotation = Some(degrees(&mut field));
+                }
+                (IMU, IMU_DELTA_VEL) if reading.velocity.is_none() => {
+                    reading.velocity = Some(MeasuredTriad::increment(floats(&mut field)));
+                }
+                (IMU, IMU_UNCOMP_ACCEL) => means.velocity = Some(floats(&mut field)),
+                (IMU, IMU_UNCOMP_GYRO) => means.rotation = Some(floats(&mut field)),
+                (IMU, IMU_TEMP) => reading.temperature_c = Some(field.f32_le()),
+                (IMU, IMU_SENS_SAT) => {
+                    let word = field.u16_le();
+                    reading.status_word = Some(word.into());
+                    let gyro = word & SATURATED_GYRO != 0;
+                    let accelerometer = word & SATURATED_ACCELEROMETER != 0;
+                    reading.status.set(Status::GYRO_SATURATED, gyro);
+                    reading.status.set(Status::ACCELEROMETER_SATURATED, accelerometer);
+                }
+                _ => {}
             }
-        }
+        })?;
         if reading.stamp.is_none() {
             reading.stamp = gps_ns.map(|ns| Stamp { ns, clock: StampClock::Gps });
         }
@@ -235,6 +221,32 @@ impl Framing for VectorNav {
     }
 }
 
+/// Takes each field of a frame with the right checksum: its group, its bit and its bytes.
+#[inline]
+pub(crate) fn each_field(
+    frame: &[u8],
+    mut take: impl FnMut(usize, u16, Reader<'_>),
+) -> Result<(), ReadingDefect> {
+    let (bare, crc) = frame.split_last_chunk::<2>().ok_or(ReadingDefect::Malformed)?;
+    let found = u16::from_be_bytes(*crc);
+    let computed = checksum::vectornav(bare.get(1..).unwrap_or_default());
+    if found != computed {
+        return Err(ReadingDefect::Checksum { found: found.into(), computed: computed.into() });
+    }
+    let header = header(bare).map_err(|_| ReadingDefect::Malformed)?;
+    let mut fields = Reader::new(&bare[header.bytes..]);
+    for (group, mask) in header.masks.into_iter().enumerate() {
+        let mut rest = mask;
+        while rest != 0 {
+            let index = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            take(group, 1 << index, fields);
+            fields.skip(usize::from(FIELD_BYTES[group][index]));
+        }
+    }
+    Ok(())
+}
+
 /// Values that are used if there are no increments.
 #[derive(Default)]
 struct Means {
@@ -244,7 +256,7 @@ struct Means {
     velocity: Option<[f64; 3]>,
 }
 
-fn floats(field: &mut Reader<'_>) -> [f64; 3] {
+pub(crate) fn floats(field: &mut Reader<'_>) -> [f64; 3] {
     field.three(|field| f64::from(field.f32_le()))
 }
 

@@ -27,12 +27,12 @@ use octant_sample::Status;
 const HEAD: [u8; 3] = [0xFA, 0xFF, 0x36];
 /// Most data bytes of the protocol.
 const MAX_DATA_BYTES: usize = 2048;
-const MAX_BYTES: usize = 6 + MAX_DATA_BYTES + 1;
+pub(crate) const MAX_BYTES: usize = 6 + MAX_DATA_BYTES + 1;
 
 // Identifiers without the bits of precision and coordinates.
 const TEMPERATURE: u16 = 0x0810;
 const PACKET_COUNTER: u16 = 0x1020;
-const SAMPLE_TIME_FINE: u16 = 0x1060;
+pub(crate) const SAMPLE_TIME_FINE: u16 = 0x1060;
 const DELTA_V: u16 = 0x4010;
 const ACCELERATION: u16 = 0x4020;
 const ACCELERATION_HR: u16 = 0x4040;
@@ -40,10 +40,10 @@ const RATE_OF_TURN: u16 = 0x8020;
 const DELTA_Q: u16 = 0x8030;
 const RATE_OF_TURN_HR: u16 = 0x8040;
 const STATUS_BYTE: u16 = 0xE010;
-const STATUS_WORD: u16 = 0xE020;
+pub(crate) const STATUS_WORD: u16 = 0xE020;
 
 /// Size of a count of `SampleTimeFine`, ns.
-const FINE_NS: u64 = 100_000;
+pub(crate) const FINE_NS: u64 = 100_000;
 
 /// Bits of the status word for accelerometers and gyros out of range.
 const CLIPPED_ACCELEROMETER: u32 = 0b111 << 8;
@@ -98,7 +98,7 @@ impl Xsens {
 
 /// Format of a packet's numbers.
 #[derive(Clone, Copy)]
-enum Precision {
+pub(crate) enum Precision {
     Float,
     Fixed12,
     Fixed16,
@@ -106,7 +106,7 @@ enum Precision {
 }
 
 impl Precision {
-    fn of(identifier: u16) -> Self {
+    pub(crate) fn of(identifier: u16) -> Self {
         match identifier & 3 {
             0 => Self::Float,
             1 => Self::Fixed12,
@@ -115,7 +115,7 @@ impl Precision {
         }
     }
 
-    fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self {
             Self::Float | Self::Fixed12 => 4,
             Self::Fixed16 => 6,
@@ -123,7 +123,7 @@ impl Precision {
         }
     }
 
-    fn number(self, data: &mut Reader<'_>) -> f64 {
+    pub(crate) fn number(self, data: &mut Reader<'_>) -> f64 {
         match self {
             Self::Float => f64::from(data.f32_be()),
             Self::Fixed12 => f64::from(data.i32_be()) / f64::from(1 << 20),
@@ -138,6 +138,7 @@ impl Precision {
 }
 
 impl Framing for Xsens {
+    type Found = Reading;
     type Room = [u8; MAX_BYTES];
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
@@ -170,16 +171,7 @@ impl Framing for Xsens {
 
     #[inline]
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, ReadingDefect> {
-        let (checksum, summed) = frame.split_last().ok_or(ReadingDefect::Malformed)?;
-        let computed = checksum::sum(summed.get(1..).unwrap_or_default()).wrapping_neg();
-        if *checksum != computed {
-            return Err(ReadingDefect::Checksum {
-                found: (*checksum).into(),
-                computed: computed.into(),
-            });
-        }
-        let data = if frame[3] == 0xFF { 6 } else { 4 };
-        let found = Found::read(&summed[data..]).ok_or(ReadingDefect::Malformed)?;
+        let found = Found::read(checked(frame)?).ok_or(ReadingDefect::Malformed)?;
         let mut reading = Reading {
             rotation: found.delta_q.map(rotation).or(found.rate).or(found.rate_hr),
             velocity: found.delta_v.or(found.acceleration).or(found.acceleration_hr),
@@ -205,6 +197,21 @@ impl Framing for Xsens {
     }
 }
 
+/// Packets of a frame with the right checksum.
+#[inline]
+pub(crate) fn checked(frame: &[u8]) -> Result<&[u8], ReadingDefect> {
+    let (checksum, summed) = frame.split_last().ok_or(ReadingDefect::Malformed)?;
+    let computed = checksum::sum(summed.get(1..).unwrap_or_default()).wrapping_neg();
+    if *checksum != computed {
+        return Err(ReadingDefect::Checksum {
+            found: (*checksum).into(),
+            computed: computed.into(),
+        });
+    }
+    let data = if frame.get(3) == Some(&0xFF) { 6 } else { 4 };
+    summed.get(data..).ok_or(ReadingDefect::Malformed)
+}
+
 /// Packets of a frame that the decoder uses.
 #[derive(Default)]
 struct Found {
@@ -221,16 +228,22 @@ struct Found {
     temperature_c: Option<f32>,
 }
 
+/// Takes the next packet of a frame: its identifier and data.
+#[inline]
+pub(crate) fn packet<'a>(rest: &mut &'a [u8]) -> Option<(u16, &'a [u8])> {
+    let (head, tail) = rest.split_first_chunk::<3>()?;
+    let (data, tail) = tail.split_at_checked(usize::from(head[2]))?;
+    *rest = tail;
+    Some((u16::from_be_bytes([head[0], head[1]]), data))
+}
+
 impl Found {
     /// Reads the packets; `None` if they don't fill the data, or one doesn't have the length of its
     /// kind.
     fn read(mut rest: &[u8]) -> Option<Self> {
         let mut found = Self::default();
         while !rest.is_empty() {
-            let (head, tail) = rest.split_first_chunk::<3>()?;
-            let identifier = u16::from_be_bytes([head[0], head[1]]);
-            let (data, tail) = tail.split_at_checked(usize::from(head[2]))?;
-            rest = tail;
+            let (identifier, data) = packet(&mut rest)?;
             let precision = Precision::of(identifier);
             let is = |bytes: usize| (data.len() == bytes).then_some(());
             let data_reader = &mut Reader::new(data);

@@ -14,6 +14,7 @@ mod described;
 mod described_problems;
 mod fuzz_corpus;
 mod manuals;
+mod navigation;
 mod no_allocation;
 mod rollover;
 mod round_trip;

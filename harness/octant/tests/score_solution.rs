@@ -101,6 +101,62 @@ fn a_drift_is_scored_as_it_was_made() {
     }
 }
 
+/// A line of NovAtel's INSPVAS at a second of the Thursday of GPS week 2345, with the CRC of its manual.
+fn inspvas(second: f64, [latitude, longitude, north, east, heading]: [f64; 5]) -> String {
+    let second = 345_600.0 + second;
+    let text = format!(
+        "INSPVASA,2345,{second:.3};2345,{second:.9},{latitude:.12},{longitude:.12},0,{north:.9},{east:.9},0,0,0,\
+         {heading:.9},INS_SOLUTION_FREE"
+    );
+    let crc = text.bytes().fold(0_u32, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+            if crc & 1 == 1 { crc >> 1 ^ 0xEDB8_8320 } else { crc >> 1 }
+        })
+    });
+    format!("%{text}*{crc:08x}\r\n")
+}
+
+/// What a unit sent, among other bytes, against a reference with dates: both clocks are known.
+#[test]
+fn messages_of_a_unit_are_a_solution() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    // 2024-12-19 is that Thursday, and GPS time was 18 s ahead of UTC.
+    let reference: String = (0..=7300)
+        .map(|t| {
+            let [latitude, longitude, north, east, heading] = circle(f64::from(t));
+            let time = format!("{:02}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60);
+            format!("2024-12-19T{time}Z,{latitude:.12},{longitude:.12},{north:.9},{east:.9},0,0,{heading:.9}\n")
+        })
+        .collect();
+    std::fs::write(here.join("ref.csv"), HEADER.to_owned() + &reference).unwrap();
+    let sent = |damaged: bool| -> Vec<u8> {
+        let lines = seconds(60, 7260).flat_map(|t| {
+            let line = inspvas(t + 18.0, drifting(t));
+            let line = if damaged && t % 50.0 == 0.0 { line.replace("45.", "54.") } else { line };
+            [b"\xaa\x44\x12noise".to_vec(), line.into_bytes()].concat()
+        });
+        lines.collect()
+    };
+    std::fs::write(here.join("trial.toml"), REQUIRED.replace("1.5 nmi", "2.1 nmi")).unwrap();
+    let format = ["--scenario", "trial.toml", "--set", "source.solution.format=novatel"];
+    std::fs::write(here.join("ins.csv"), sent(false)).unwrap();
+    let ended = score(here, &format);
+    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+    let found = summary(here);
+    let number = |path: &str| found["navigation"].pointer(path).unwrap().as_f64().unwrap();
+    assert!((number("/latitude_error_arcmin/final") - 7260.0 / 3600.0).abs() < 1e-5, "{found}");
+    assert!(number("/longitude_error_arcmin/max") < 1e-5, "{found}");
+    assert!((number("/heading_error_arcmin/rms") - 3.0).abs() < 1e-4, "{found}");
+    // One line in fifty is damaged: more than one point in a hundred is missing.
+    std::fs::write(here.join("ins.csv"), sent(true)).unwrap();
+    assert_eq!(score(here, &format).status.code(), Some(3));
+    // Another unit's messages.
+    let ended = score(here, &["--scenario", "trial.toml", "--set", "source.solution.format=sbg"]);
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.code() == Some(2) && said.contains("expected EKF_NAV"), "{said}");
+}
+
 /// Every point counts: 60 nmi for a tenth of a second between two seconds.
 #[test]
 fn a_jump_between_two_seconds_is_scored() {

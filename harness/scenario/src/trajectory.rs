@@ -2,6 +2,7 @@
 
 use crate::model::FileName;
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+use octant_instruments::navigation::NavigationProtocol;
 
 /// A file with positions over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,8 @@ pub enum TrajectoryFormat {
     Rtklib,
     /// A smoothed best estimate of trajectory: records of 17 doubles.
     Sbet,
+    /// The bytes that a unit sent.
+    Messages(NavigationProtocol),
 }
 
 /// Columns of a text file; `None`: the name that Octant's exports have, where the header has it.

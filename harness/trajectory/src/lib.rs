@@ -3,7 +3,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`point`] | a position with velocity and attitude at a time, and the scale of that time |
-//! | [`reader`] | files: columns of text, NMEA 0183, RTKLIB, SBET |
+//! | [`reader`] | files: columns of text, NMEA 0183, RTKLIB, SBET, messages of units |
 //! | [`survey`] | what a file holds, from one pass through it |
 //! | [`track`] | a reference trajectory at any time |
 //! | [`pairs`] | the points of a solution, each with its reference |
@@ -11,6 +11,7 @@
 //! Nothing here is scored: a source and an endpoint of the harness give the points of two files to the run.
 
 mod columns;
+mod messages;
 mod nmea;
 pub mod pairs;
 pub mod point;

@@ -1,6 +1,7 @@
 //! Files of trajectories, point by point.
 
 use super::columns::ColumnsReader;
+use super::messages::MessageReader;
 use super::nmea::NmeaReader;
 use super::point::{TimeScale, TrajectoryPoint};
 use super::points::Points;
@@ -54,6 +55,9 @@ impl TrajectoryReader {
             TrajectoryFormat::Nmea => Box::new(NmeaReader::new(file).map_err(fail)?),
             TrajectoryFormat::Rtklib => Box::new(RtklibReader::new(file).map_err(fail)?),
             TrajectoryFormat::Sbet => Box::new(SbetReader::new(file).map_err(fail)?),
+            TrajectoryFormat::Messages(protocol) => {
+                Box::new(MessageReader::new(file, *protocol).map_err(fail)?)
+            }
         };
         Ok(Self { path: path.to_owned(), points, last_ns: None })
     }

@@ -257,6 +257,7 @@ impl Described {
 pub type DescribedDecoder = FrameDecoder<Described>;
 
 impl Framing for Described {
+    type Found = Reading;
     type Room = [u8; FRAME_BYTES_MAX];
     const EMPTY: Self::Room = [0; FRAME_BYTES_MAX];
 

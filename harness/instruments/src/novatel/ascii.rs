@@ -17,7 +17,7 @@ const TAIL_BYTES: usize = CRC_DIGITS + END.len();
 const END: &str = "\r\n";
 
 /// Returns whether a line can begin with a byte.
-pub(super) fn begins(byte: u8) -> bool {
+pub(crate) fn begins(byte: u8) -> bool {
     byte == SHORT.0 || byte == LONG.0
 }
 
@@ -37,13 +37,13 @@ pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
     }
 }
 
-/// Reads the log from a line.
-pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+/// First byte of a line with the right checksum, and the line between it and the checksum.
+pub(crate) fn checked(frame: &[u8]) -> Result<(u8, &str), ReadingDefect> {
     let text = core::str::from_utf8(frame).map_err(|_| ReadingDefect::Malformed)?;
-    let headed = [SHORT, LONG]
+    let headed = [SHORT.0, LONG.0]
         .into_iter()
-        .find_map(|(begin, name)| Some((text.strip_prefix(char::from(begin))?, name)));
-    let (text, name) = headed.ok_or(ReadingDefect::Malformed)?;
+        .find_map(|begin| Some((begin, text.strip_prefix(char::from(begin))?)));
+    let (begin, text) = headed.ok_or(ReadingDefect::Malformed)?;
     let text = text.strip_suffix(END).ok_or(ReadingDefect::Malformed)?;
     let (text, digits) = text.split_once('*').ok_or(ReadingDefect::Malformed)?;
     // A sign must be refused here, because the number parser accepts it.
@@ -55,6 +55,13 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
     if found != computed {
         return Err(ReadingDefect::Checksum { found, computed });
     }
+    Ok((begin, text))
+}
+
+/// Reads the log from a line.
+pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+    let (begin, text) = checked(frame)?;
+    let name = if begin == LONG.0 { LONG.1 } else { SHORT.1 };
     let Some((head, data)) = text.split_once(';') else { return Ok(None) };
     match head.split(',').next() {
         Some(found) if found == name => {}

@@ -11,7 +11,7 @@
 //! Other logs pass as frames without a reading, up to the length of the longest log with the short header. The
 //! bytes of longer ones count as lost.
 
-mod ascii;
+pub(crate) mod ascii;
 mod raw;
 mod scale;
 
@@ -28,7 +28,7 @@ use crate::framing::{Extent, Framing, ReadingDefect};
 use crate::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 use octant_sample::Status;
 
-const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
+pub(crate) const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
 const SYNC_LONG: [u8; 3] = [0xAA, 0x44, 0x12];
 /// Size of sync, length, message, week and milliseconds.
 const HEADER_BYTES: usize = 12;
@@ -52,7 +52,7 @@ const ENCRYPTED: u8 = 1 << 1;
 pub const IMU_TYPE: &str = "IMU type";
 
 /// Duration of a week, ns.
-const WEEK_NS: u64 = 604_800_000_000_000;
+pub(crate) const WEEK_NS: u64 = 604_800_000_000_000;
 
 /// Facts of the protocol: the counts are 2⁻³³ rad and 2⁻²⁹ m/s.
 pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
@@ -80,6 +80,7 @@ pub struct NovAtel {
 pub type NovatelDecoder = crate::framing::FrameDecoder<NovAtel>;
 
 impl Framing for NovAtel {
+    type Found = Reading;
     type Room = [u8; MAX_BYTES];
     const EMPTY: Self::Room = [0; MAX_BYTES];
 
@@ -90,19 +91,7 @@ impl Framing for NovAtel {
 
     #[inline]
     fn extent(&self, bytes: &[u8]) -> Extent {
-        let Some(first) = bytes.first() else { return Extent::Open(4) };
-        if ascii::begins(*first) {
-            return ascii::extent(bytes, MAX_BYTES);
-        }
-        let is_start = |sync: [u8; 3]| bytes.iter().zip(sync).all(|(byte, sync)| *byte == sync);
-        match bytes.get(3) {
-            Some(length) if is_start(SYNC) => {
-                Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES)
-            }
-            Some(header) if is_start(SYNC_LONG) => long_extent(bytes, usize::from(*header)),
-            None if is_start(SYNC) || is_start(SYNC_LONG) => Extent::Open(4 - bytes.len()),
-            _ => Extent::None,
-        }
+        extent(bytes, MAX_BYTES)
     }
 
     #[inline]
@@ -116,8 +105,26 @@ impl Framing for NovAtel {
     }
 }
 
+/// Extent of a binary frame or a line of at most so many bytes.
+#[inline]
+pub(crate) fn extent(bytes: &[u8], most: usize) -> Extent {
+    let Some(first) = bytes.first() else { return Extent::Open(4) };
+    if ascii::begins(*first) {
+        return ascii::extent(bytes, most);
+    }
+    let is_start = |sync: [u8; 3]| bytes.iter().zip(sync).all(|(byte, sync)| *byte == sync);
+    match bytes.get(3) {
+        Some(length) if is_start(SYNC) => {
+            Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES)
+        }
+        Some(header) if is_start(SYNC_LONG) => long_extent(bytes, usize::from(*header), most),
+        None if is_start(SYNC) || is_start(SYNC_LONG) => Extent::Open(4 - bytes.len()),
+        _ => Extent::None,
+    }
+}
+
 /// Extent of a frame with a long header of this length.
-fn long_extent(bytes: &[u8], header: usize) -> Extent {
+fn long_extent(bytes: &[u8], header: usize, most: usize) -> Extent {
     if header < LONG_HEADER_BYTES {
         return Extent::None;
     }
@@ -126,26 +133,48 @@ fn long_extent(bytes: &[u8], header: usize) -> Extent {
         Some(length) => {
             let data = usize::from(u16::from_le_bytes([length[0], length[1]]));
             match header + data + CRC_BYTES {
-                total if total <= MAX_BYTES => Extent::Bytes(total),
+                total if total <= most => Extent::Bytes(total),
                 _ => Extent::None,
             }
         }
     }
 }
 
-/// Reads the log from a binary frame.
-fn binary(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+/// A binary frame with the right checksum.
+pub(crate) struct BinaryLog<'a> {
+    /// True if its header is the long one.
+    pub(crate) long: bool,
+    pub(crate) message: u16,
+    /// Week, and milliseconds of the week.
+    pub(crate) time: (u16, u32),
+    pub(crate) data: &'a [u8],
+}
+
+/// Takes a binary frame apart.
+#[inline]
+pub(crate) fn checked(frame: &[u8]) -> Result<BinaryLog<'_>, ReadingDefect> {
     let (bare, crc) = frame.split_last_chunk::<CRC_BYTES>().ok_or(ReadingDefect::Malformed)?;
     let (found, computed) = (u32::from_le_bytes(*crc), checksum::novatel(bare));
     if found != computed {
         return Err(ReadingDefect::Checksum { found, computed });
     }
-    let (header, log) = match bare {
-        [_, _, sync, header, ..] if *sync == SYNC_LONG[2] => (usize::from(*header), RAWIMUX),
-        _ => (HEADER_BYTES, RAWIMUSX),
+    let (header, time_at) = match bare {
+        [_, _, sync, header, ..] if *sync == SYNC_LONG[2] => (usize::from(*header), 14),
+        _ => (HEADER_BYTES, 6),
     };
-    let data = bare.get(header..).ok_or(ReadingDefect::Malformed)?;
-    if bare.get(4..6) != Some(&log.to_le_bytes()) {
+    let (head, data) = bare.split_at_checked(header).ok_or(ReadingDefect::Malformed)?;
+    let mut fields = Reader::new(head);
+    fields.skip(4);
+    let message = fields.u16_le();
+    fields.skip(time_at - 6);
+    let time = (fields.u16_le(), fields.u32_le());
+    Ok(BinaryLog { long: time_at == 14, message, time, data })
+}
+
+/// Reads the log from a binary frame.
+fn binary(frame: &[u8]) -> Result<Option<RawImu>, ReadingDefect> {
+    let BinaryLog { long, message, data, .. } = checked(frame)?;
+    if message != if long { RAWIMUX } else { RAWIMUSX } {
         return Ok(None);
     }
     if data.len() != RAWIMUSX_BYTES {

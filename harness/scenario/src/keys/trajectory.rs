@@ -4,6 +4,7 @@ use super::columns::{column, time_unit};
 use super::definition::Kind;
 use super::table::{At, Of, choice, integer, keys, text, time};
 use crate::recorded::{Delimiter, RecordedColumn, TimeUnit};
+use octant_instruments::navigation::NavigationProtocol;
 
 /// Form of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,7 @@ pub(crate) enum TrajectoryForm {
     Nmea,
     Rtklib,
     Sbet,
+    Messages(NavigationProtocol),
 }
 
 const BY_NAME: &str =
@@ -30,6 +32,10 @@ macro_rules! trajectory {
                         "nmea" => TrajectoryForm::Nmea, "sentences of NMEA 0183 (IEC 61162-1)";
                         "rtklib" => TrajectoryForm::Rtklib, "a solution of RTKLIB, .pos";
                         "sbet" => TrajectoryForm::Sbet, "a smoothed best estimate of trajectory, binary";
+                        "novatel" => TrajectoryForm::Messages(NavigationProtocol::Novatel), "what a NovAtel receiver sent: INSPVA, INSPVAS or INSPVAX";
+                        "sbg" => TrajectoryForm::Messages(NavigationProtocol::Sbg), "what an SBG unit sent: EKF_NAV, with EKF_EULER or EKF_QUAT and UTC_TIME";
+                        "vectornav" => TrajectoryForm::Messages(NavigationProtocol::VectorNav), "what a VectorNav unit sent in binary, with its position";
+                        "xsens" => TrajectoryForm::Messages(NavigationProtocol::Xsens), "what an Xsens unit sent as MTData2, with LatLon";
                     }, derived(BY_NAME), "What the file is.";
                 delimiter: Delimiter = choice! {
                         "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";

@@ -94,6 +94,7 @@ fn format_of(
         Some(TrajectoryForm::Nmea) => TrajectoryFormat::Nmea,
         Some(TrajectoryForm::Rtklib) => TrajectoryFormat::Rtklib,
         Some(TrajectoryForm::Sbet) => TrajectoryFormat::Sbet,
+        Some(TrajectoryForm::Messages(protocol)) => TrajectoryFormat::Messages(protocol),
         None if ends(&["nmea", "nma"]) => TrajectoryFormat::Nmea,
         None if ends(&["pos"]) => TrajectoryFormat::Rtklib,
         None if ends(&["sbet", "out"]) => TrajectoryFormat::Sbet,

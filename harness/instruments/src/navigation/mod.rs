@@ -1,0 +1,161 @@
+//! Navigation messages: what a unit with a filter of its own says of its position, velocity and attitude.
+//!
+//! [`NavigationDecoder`] finds them in a stream of bytes, by the framing of the unit's protocol. A message has what it
+//! says to be valid: a position before its unit has one is none. Angles are those of this project: heading from
+//! north by east, pitch positive with the bow up, roll positive with the starboard side down. Velocities are north,
+//! east, down; heights are above the ellipsoid.
+//!
+//! | protocol | messages | source |
+//! |---|---|---|
+//! | NovAtel | `INSPVA`, `INSPVAS`, `INSPVAX`, binary and ASCII | OEM7 Commands and Logs Reference Manual |
+//! | SBG | `EKF_NAV`, `EKF_EULER`, `EKF_QUAT`, `UTC_TIME` | sbgECom's documentation of its binary messages |
+//! | VectorNav | position, velocity, attitude and `InsStatus` of the common, attitude and INS groups | VN-200 and VN-300 user manuals |
+//! | Xsens | `LatLon`, `AltitudeEllipsoid`, `VelocityXYZ`, `EulerAngles`, `Quaternion`, `UtcTime` | MT Low-Level Communication Protocol |
+
+mod novatel;
+mod sbg;
+mod time;
+mod vectornav;
+mod xsens;
+
+use crate::framing::{Finding, FrameDecoder, FramingEvent, ReadingCounters};
+pub use novatel::NovatelNavigation;
+pub use sbg::SbgNavigation;
+pub use time::NavigationTime;
+pub use vectornav::VectorNavNavigation;
+pub use xsens::XsensNavigation;
+
+/// What a message says. Messages of one time complete each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NavigationReading {
+    /// Time for which it is valid.
+    pub time: NavigationTime,
+    /// Geodetic latitude and longitude, rad.
+    pub position_rad: Option<[f64; 2]>,
+    /// Height above the ellipsoid, m.
+    pub height_m: Option<f64>,
+    /// Velocity over ground: north, east, down, m/s.
+    pub velocity_mps: Option<[f64; 3]>,
+    /// Roll, pitch and heading, rad.
+    pub attitude_rad: Option<[f64; 3]>,
+}
+
+impl NavigationReading {
+    fn at(time: NavigationTime) -> Self {
+        Self { time, position_rad: None, height_m: None, velocity_mps: None, attitude_rad: None }
+    }
+
+    /// The reading, if it says anything.
+    fn said(self) -> Option<Self> {
+        let is_something = self.position_rad.is_some()
+            || self.height_m.is_some()
+            || self.velocity_mps.is_some()
+            || self.attitude_rad.is_some();
+        is_something.then_some(self)
+    }
+}
+
+impl Finding for NavigationReading {
+    fn sequence(&self) -> Option<u64> {
+        None
+    }
+}
+
+/// Protocols whose navigation messages are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NavigationProtocol {
+    /// NovAtel.
+    Novatel,
+    /// SBG Systems' sbgECom.
+    Sbg,
+    /// VectorNav's binary output.
+    VectorNav,
+    /// Xsens' MTData2.
+    Xsens,
+}
+
+impl NavigationProtocol {
+    /// The messages, for errors.
+    #[must_use]
+    pub const fn messages(self) -> &'static str {
+        match self {
+            Self::Novatel => "INSPVA, INSPVAS or INSPVAX",
+            Self::Sbg => "EKF_NAV",
+            Self::VectorNav => "binary output with Position or PosLla",
+            Self::Xsens => "MTData2 with LatLon",
+        }
+    }
+}
+
+/// Finds navigation messages in a stream of bytes.
+#[derive(Debug)]
+pub enum NavigationDecoder {
+    /// NovAtel.
+    Novatel(FrameDecoder<NovatelNavigation>),
+    /// SBG Systems' sbgECom.
+    Sbg(FrameDecoder<SbgNavigation>),
+    /// VectorNav's binary output.
+    VectorNav(FrameDecoder<VectorNavNavigation>),
+    /// Xsens' MTData2.
+    Xsens(FrameDecoder<XsensNavigation>),
+}
+
+macro_rules! each {
+    ($self:ident, $decoder:ident => $what:expr) => {
+        match $self {
+            Self::Novatel($decoder) => $what,
+            Self::Sbg($decoder) => $what,
+            Self::VectorNav($decoder) => $what,
+            Self::Xsens($decoder) => $what,
+        }
+    };
+}
+
+impl NavigationDecoder {
+    /// Makes a decoder that has received nothing.
+    #[must_use]
+    pub fn new(protocol: NavigationProtocol) -> Self {
+        match protocol {
+            NavigationProtocol::Novatel => Self::Novatel(FrameDecoder::default()),
+            NavigationProtocol::Sbg => Self::Sbg(FrameDecoder::default()),
+            NavigationProtocol::VectorNav => Self::VectorNav(FrameDecoder::default()),
+            NavigationProtocol::Xsens => Self::Xsens(FrameDecoder::default()),
+        }
+    }
+
+    /// Takes bytes up to the next event; `None` when all are taken.
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<FramingEvent<NavigationReading>> {
+        each!(self, decoder => decoder.next(bytes))
+    }
+
+    /// Ends the input. Call it until it returns `None`.
+    pub fn end(&mut self) -> Option<FramingEvent<NavigationReading>> {
+        each!(self, decoder => decoder.end())
+    }
+
+    /// Counts of the traffic so far.
+    #[must_use]
+    pub fn counters(&self) -> &ReadingCounters {
+        each!(self, decoder => decoder.counters())
+    }
+}
+
+/// Latitude and longitude of degrees, rad.
+fn position_rad(degrees: [f64; 2]) -> Option<[f64; 2]> {
+    Some(degrees.map(f64::to_radians))
+}
+
+/// Roll, pitch and heading of a rotation from the body (forward, right, down) to north, east, down, as a quaternion
+/// with its scalar first, which need not be normal (Titterton and Weston, 3.6.5).
+fn angles_rad([w, x, y, z]: [f64; 4]) -> Option<[f64; 3]> {
+    let norm = w * w + x * x + y * y + z * z;
+    if !(norm > 0.25 && norm < 4.0) {
+        return None;
+    }
+    let sine = (2.0 * (w * y - z * x) / norm).clamp(-1.0, 1.0);
+    Some([
+        libm::atan2(2.0 * (w * x + y * z), w * w - x * x - y * y + z * z),
+        libm::asin(sine),
+        libm::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z),
+    ])
+}
