@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
-    campaign, characterise, compare, completions, design, diff, doctor, export, faults, fmu, new,
-    nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score, selftest,
-    serve, smooth, turntable, verify, watch,
+    campaign, capture, characterise, compare, completions, design, diff, doctor, export, faults,
+    fmu, new, nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score,
+    selftest, serve, smooth, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -48,6 +48,8 @@ enum Command {
     Requirements(requirements::Arguments),
     /// Serve the core as a device that a harness drives over a port.
     Serve(serve::Arguments),
+    /// Keep what an instrument sends over a port, byte for byte.
+    Capture(capture::CaptureArguments),
     /// Score a recording, without running the core.
     Score(score::Arguments),
     /// Export a recording to CSV, Parquet, MAT, KML, or MCAP with messages of ROS 2.
@@ -182,6 +184,7 @@ pub(crate) fn status() -> u8 {
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Smooth(arguments) => smooth::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
+        Command::Capture(arguments) => capture::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
         Command::Diff(arguments) => diff::command(&arguments),
         Command::Export(arguments) => export::command(&arguments),

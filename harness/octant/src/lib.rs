@@ -5,6 +5,7 @@
 
 mod arguments;
 mod campaign;
+mod capture;
 pub mod case_progress;
 mod characterise;
 mod commands;

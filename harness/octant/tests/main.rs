@@ -19,6 +19,8 @@ mod campaign_scale;
 mod campaign_selection;
 #[cfg(all(unix, feature = "can"))]
 mod can_source;
+#[cfg(unix)]
+mod capture;
 mod case_progress;
 mod chain;
 mod characterise;

@@ -1,0 +1,175 @@
+//! `octant capture`: what an instrument sends, byte for byte.
+
+use crate::arguments::seconds;
+use crate::failure::Failure;
+use crate::terminal::{note, print};
+use clap::Args;
+use octant_base::interrupt;
+use octant_link::Uri;
+use octant_link::port::{self, Bytes, Port};
+use octant_requirements::Verdict;
+use octant_wire::message::EndRole;
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+#[derive(Debug, Args)]
+pub(super) struct CaptureArguments {
+    /// Port of the instrument: serial:PORT?baud=N, udp:PORT (on loopback), udp:ADDRESS:PORT, tcp:PORT.
+    #[arg(value_name = "URI")]
+    uri: String,
+    /// New file for the bytes.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Ends this long after the first byte; by default at Ctrl-C.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    duration: Option<String>,
+    /// Ends as an error when nothing comes for so long; 0: never.
+    #[arg(long, value_name = "TIME", default_value = "10 s", allow_negative_numbers = true)]
+    silence: String,
+}
+
+/// Longest wait in one poll of the port, which bounds the reaction to Ctrl-C.
+const WAIT: Duration = Duration::from_millis(50);
+/// Interval between two writes of what came: a kill costs no more.
+const WRITTEN_EVERY: Duration = Duration::from_secs(1);
+/// Longest time on the command line, s.
+const TIME_MAX_S: f64 = 1e8;
+
+pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> {
+    let uri: Uri = (arguments.uri.parse())
+        .map_err(|error| Failure::input(format!("failed to read the port: {error}")))?;
+    let time = |name: &str, text: &str| {
+        let found = seconds(name, text)?;
+        let is_sound = (0.0..=TIME_MAX_S).contains(&found);
+        is_sound.then(|| Duration::from_secs_f64(found)).ok_or_else(|| {
+            Failure::input(format!("{name}: found {text:?}, expected 0 to {TIME_MAX_S:.0} s"))
+        })
+    };
+    let duration = arguments.duration.as_ref().map(|text| time("--duration", text)).transpose()?;
+    if duration.is_some_and(|duration| duration.is_zero()) {
+        return Err(Failure::input("--duration: found 0 s, expected more"));
+    }
+    let silence = Some(time("--silence", &arguments.silence)?).filter(|time| !time.is_zero());
+    let Port::Bytes(mut port) = port::open(&uri, EndRole::Device)
+        .map_err(|error| Failure::bench(format!("failed to {error}")))?
+    else {
+        return Err(Failure::input(format!("found {uri}, expected a serial line, UDP or TCP")));
+    };
+    let mut written = Written::new(&arguments.out)?;
+    interrupt::watch(|| {})
+        .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
+    note!("octant: listening on {}", port.reached_at());
+    let ended = written.receive(port.as_mut(), duration, silence);
+    written.flush()?;
+    print(&written.summary(&arguments.out))?;
+    ended
+}
+
+/// The file, and what came into it.
+struct Written {
+    file: File,
+    path: String,
+    waiting: Vec<u8>,
+    bytes: u64,
+    first: Option<Instant>,
+    last: Instant,
+    longest_silence: Duration,
+}
+
+impl Written {
+    fn new(path: &Path) -> Result<Self, Failure> {
+        let file = OpenOptions::new().write(true).create_new(true).open(path);
+        let file = file.map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => Failure::input(format!(
+                "{}: found a file, expected a new name: what was captured is never overwritten",
+                path.display()
+            )),
+            _ => Failure::bench(format!("failed to create {}: {error}", path.display())),
+        })?;
+        Ok(Self {
+            file,
+            path: path.display().to_string(),
+            waiting: Vec::new(),
+            bytes: 0,
+            first: None,
+            last: Instant::now(),
+            longest_silence: Duration::ZERO,
+        })
+    }
+
+    fn receive(
+        &mut self,
+        port: &mut dyn Bytes,
+        duration: Option<Duration>,
+        silence: Option<Duration>,
+    ) -> Result<Verdict, Failure> {
+        let mut buffer = [0; 1 << 16];
+        let mut flushed = Instant::now();
+        loop {
+            let count = port
+                .receive(&mut buffer, WAIT)
+                .map_err(|error| Failure::bench(format!("{error}; {}", self.kept())))?;
+            let now = Instant::now();
+            if count > 0 {
+                if self.first.is_none() {
+                    self.first = Some(now);
+                    // Of several senders on UDP the first one counts.
+                    port.hold_peer(true);
+                } else {
+                    self.longest_silence = self.longest_silence.max(now - self.last);
+                }
+                self.last = now;
+                self.bytes += count as u64;
+                self.waiting.extend_from_slice(&buffer[..count]);
+            }
+            if flushed.elapsed() >= WRITTEN_EVERY {
+                self.flush()?;
+                flushed = now;
+            }
+            if let (Some(first), Some(duration)) = (self.first, duration)
+                && now - first >= duration
+            {
+                return Ok(Verdict::Pass);
+            }
+            if interrupt::seen() {
+                // Without a duration that is how it ends.
+                let is_whole = duration.is_none() && self.bytes > 0;
+                return Ok(if is_whole { Verdict::Pass } else { Verdict::Inconclusive });
+            }
+            if silence.is_some_and(|silence| now - self.last >= silence) {
+                return Err(Failure::bench(format!(
+                    "nothing came for {:.1} s; {}",
+                    (now - self.last).as_secs_f64(),
+                    self.kept()
+                )));
+            }
+        }
+    }
+
+    fn kept(&self) -> String {
+        format!("{} bytes are kept in {}", self.bytes, self.path)
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        let written = self.file.write_all(&self.waiting).and_then(|()| self.file.sync_data());
+        written
+            .map_err(|error| Failure::bench(format!("failed to write {}: {error}", self.path)))?;
+        self.waiting.clear();
+        Ok(())
+    }
+
+    fn summary(&self, path: &Path) -> String {
+        let Some(first) = self.first else {
+            return format!("{}: nothing came\n", path.display());
+        };
+        format!(
+            "{}: {} bytes in {:.1} s, longest silence {:.2} s\n",
+            path.display(),
+            self.bytes,
+            (self.last - first).as_secs_f64(),
+            self.longest_silence.as_secs_f64()
+        )
+    }
+}
