@@ -20,31 +20,33 @@
 //! wavelet moments (Guerrier et al., JASA 108, 2013). An interval of 95 % has D − D_min ≤ 3.84 a, with a at its ends.
 //!
 //! A term that left, but lowers D by more than a, may be there all the same: the intervals of the others span those of the
-//! models with and without it.
+//! models with and without it. So do they for the Gauss-Markov term, where it isn't shown but lowers D by more than 6.63 a,
+//! the criterion of the other terms: flicker noise and a random walk can stand for it, and the other intervals would be
+//! those of a wrong model.
 //!
 //! A term is in the model if D rises by more than 6.63 a without it (99 % of χ²); the least needed leaves first. A
 //! term outside gets the upper end of its interval of 95 % as a limit. The Gauss-Markov term enters last, if it lowers D by more than 13.8 a
 //! (99.9 % for its two parameters), since some correlation time fits some part of any record.
 
+mod choice;
+mod intervals;
 mod scoring;
 mod uncertainty;
 
 use super::freedom::{Covariances, SquaredCoefficients, chi_squared_quantile};
 use super::kernel::{DifferenceOrder, Kernel, RandomTerm, TERMS};
-use scoring::{Fixed, Model, Rows};
+use choice::{Choice, Chosen, GAUSS_MARKOV, LEAVES, Rival, reduce};
+use intervals::{Parameter, limit, profile, span, widened};
+use scoring::{Model, Rows};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use uncertainty::Uncertainty;
 
-/// Rise of the deviance, as χ², below which a term leaves the model.
-pub const LEAVES: f64 = 6.634_896_601_021_214;
-/// Fall of the deviance, as χ², above which a term that isn't shown widens the intervals of the others.
-pub const WIDENS: f64 = 1.0;
 /// Fall of the deviance, as χ², above which the Gauss-Markov term enters.
 pub const ENTERS: f64 = 13.815_510_557_964_274;
-/// 95th percentile of χ² with one degree of freedom.
-const TWO_SIDED: f64 = 3.841_458_820_694_124;
+/// Fall of the deviance, as χ², above which the Gauss-Markov term widens the intervals of the others without being shown.
+const RIVALS: f64 = LEAVES;
 /// Degrees of freedom below which a variance is left out.
 const FREEDOM_MIN: f64 = 2.0;
 /// Rounds in which degrees of freedom and terms find each other.
@@ -178,18 +180,18 @@ impl NoiseFitter {
                 return None;
             }
             let found = self.choose(&rows, &covariances, span_s)?;
-            model = found.model;
+            model = found.chosen.model;
             chosen = Some((rows, found));
         }
         let (rows, found) = chosen?;
-        let covariances = self.covariances(found.model.time_s);
+        let covariances = self.covariances(found.chosen.model.time_s);
         Some(finish(&rows, &covariances, &found))
     }
 
     /// Chooses the terms.
-    fn choose(&mut self, rows: &Rows, covariances: &Covariances, span_s: f64) -> Option<Chosen> {
+    fn choose(&mut self, rows: &Rows, covariances: &Covariances, span_s: f64) -> Option<Choice> {
         let linear: Vec<usize> = (0..TERMS - 1).collect();
-        let without = reduce(rows, covariances, &linear, 4.0 * self.period_s)?;
+        let without = reduce(rows, covariances, &linear, 4.0 * self.period_s, None)?;
         // The correlation time that fits best beside all other terms.
         let first_s = 4.0 * self.period_s;
         let steps = (libm::log2(span_s / 6.0 / first_s) * f64::from(TIMES_IN_OCTAVE)) as i32;
@@ -199,76 +201,56 @@ impl NoiseFitter {
         let fits = times.filter_map(|time_s| rows.fit(&all, None, time_s));
         let best = fits.min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
         // Not worth the covariances of this time: the factor a is rarely below 1/2.
-        if without.model.deviance - best.deviance < 0.5 * ENTERS || best.squares[TERMS - 1] <= 0.0 {
-            return Some(without);
+        let falls = without.model.deviance - best.deviance;
+        if falls < 0.5 * RIVALS || best.squares[GAUSS_MARKOV] <= 0.0 {
+            return Some(Choice { chosen: without, rival: None });
         }
         let with_time = self.covariances(best.time_s);
-        let with = reduce(rows, &with_time, &all, best.time_s)?;
-        if !with.free.contains(&(TERMS - 1)) {
-            return Some(without);
+        let mut with = reduce(rows, &with_time, &all, best.time_s, None)?;
+        let needs = with.shows(GAUSS_MARKOV);
+        if !needs {
+            with = reduce(rows, &with_time, &all, best.time_s, Some(GAUSS_MARKOV))?;
         }
-        let a = Uncertainty::of(rows, &with_time, &with.model, &with.free).factor(TERMS - 1);
-        let falls = without.model.deviance - with.model.deviance > ENTERS * a;
-        Some(if falls { with } else { without })
-    }
-}
-
-/// Terms that a record shows.
-struct Chosen {
-    free: Vec<usize>,
-    model: Model,
-}
-
-/// Fits some terms, then leaves out those that the deviance doesn't need.
-fn reduce(rows: &Rows, covariances: &Covariances, terms: &[usize], time_s: f64) -> Option<Chosen> {
-    let mut free = terms.to_vec();
-    let mut model = rows.fit_time(&free, None, time_s)?;
-    while free.len() > 1 {
-        let without = |index: usize| -> Option<(f64, Chosen)> {
-            let rest: Vec<usize> = free.iter().copied().filter(|i| *i != index).collect();
-            let found = rows.fit_time(&rest, None, model.time_s)?;
-            let at = Model { time_s: model.time_s, ..found };
-            let a = Uncertainty::of(rows, covariances, &at, &free).factor(index);
-            Some(((found.deviance - model.deviance) / a, Chosen { free: rest, model: found }))
-        };
-        let least =
-            free.iter().filter_map(|index| without(*index)).min_by(|a, b| a.0.total_cmp(&b.0));
-        match least {
-            Some((rise, chosen)) if !(rise > LEAVES) => (free, model) = (chosen.free, chosen.model),
-            _ => break,
+        if !with.shows(GAUSS_MARKOV) {
+            return Some(Choice { chosen: without, rival: None });
         }
+        let a = Uncertainty::of(rows, &with_time, &with.model, &with.free).factor(GAUSS_MARKOV);
+        let falls = (without.model.deviance - with.model.deviance) / a;
+        if needs && falls > ENTERS {
+            return Some(Choice { chosen: with, rival: None });
+        }
+        let rival = (falls > RIVALS).then(|| Rival { chosen: with, covariances: with_time });
+        Some(Choice { chosen: without, rival })
     }
-    Some(Chosen { free, model })
 }
 
 /// Adds intervals and limits.
-fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> RandomTermsFit {
+fn finish(rows: &Rows, covariances: &Covariances, choice: &Choice) -> RandomTermsFit {
+    let Choice { chosen, rival } = choice;
     let Chosen { free, model } = chosen;
-    let gauss_markov = TERMS - 1;
     let wider = widened(rows, covariances, chosen);
     let estimate = |index: usize| {
-        let shown = free.contains(&index) && model.squares[index] > 0.0;
-        let interval = match (shown, index == gauss_markov) {
-            (true, _) => {
-                let both = [chosen, &wider]
-                    .map(|model| profile(rows, covariances, model, Parameter::Square(index)));
-                [both[0][0].min(both[1][0]), both[0][1].max(both[1][1])]
-            }
-            (false, true) => [0.0, f64::NAN],
-            (false, false) => [0.0, limit(rows, covariances, chosen, index)],
+        let shown = chosen.shows(index);
+        let own = if shown {
+            let [a, b] = [chosen, &wider]
+                .map(|model| profile(rows, covariances, model, Parameter::Square(index)));
+            span(a, b)
+        } else {
+            [0.0, limit(rows, covariances, chosen, index)]
         };
+        let interval = rival.as_ref().map_or(own, |rival| span(own, rival.interval(rows, index)));
         TermFit {
             term: RandomTerm::ALL[index],
             value: shown.then(|| libm::sqrt(model.squares[index])),
             interval: interval.map(libm::sqrt),
         }
     };
-    let shows_time = free.contains(&gauss_markov) && model.squares[gauss_markov] > 0.0;
+    let shows_time = chosen.shows(GAUSS_MARKOV);
     let uncertainty = Uncertainty::of(rows, covariances, model, free);
     let (mean, variance) = uncertainty.deviance(rows, covariances, model);
     RandomTermsFit {
         terms: (0..TERMS)
-            .filter(|index| *index != gauss_markov || shows_time)
+            .filter(|index| *index != GAUSS_MARKOV || shows_time)
             .map(estimate)
             .collect(),
         correlation_time: shows_time.then(|| TimeFit {
@@ -284,23 +266,6 @@ fn finish(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> RandomTerm
     }
 }
 
-/// The model with the terms that aren't shown and may be there all the same.
-fn widened(rows: &Rows, covariances: &Covariances, chosen: &Chosen) -> Chosen {
-    let mut wider = Chosen { free: chosen.free.clone(), model: chosen.model };
-    for index in (0..TERMS - 1).filter(|index| !chosen.free.contains(index)) {
-        let mut free = wider.free.clone();
-        free.push(index);
-        free.sort_unstable();
-        let Some(found) = rows.fit_time(&free, None, wider.model.time_s) else { continue };
-        let a = Uncertainty::of(rows, covariances, &wider.model, &free).factor(index);
-        let kept = chosen.free.iter().all(|index| found.squares[*index] > 0.0);
-        if kept && wider.model.deviance - found.deviance > WIDENS * a {
-            wider = Chosen { free, model: found };
-        }
-    }
-    wider
-}
-
 /// Probability that a scaled χ² of this mean and variance is above a value.
 fn exceeded(value: f64, mean: f64, variance: f64) -> f64 {
     let freedom = 2.0 * mean * mean / variance;
@@ -312,76 +277,6 @@ fn exceeded(value: f64, mean: f64, variance: f64) -> f64 {
         if chi_squared_quantile(middle, freedom) < scaled { low = middle } else { high = middle }
     }
     1.0 - 0.5 * (low + high)
-}
-
-/// Parameter whose interval is looked for.
-#[derive(Clone, Copy)]
-enum Parameter {
-    Square(usize),
-    Time,
-}
-
-/// Interval of 95 % by the profile of the deviance.
-fn profile(
-    rows: &Rows,
-    covariances: &Covariances,
-    chosen: &Chosen,
-    parameter: Parameter,
-) -> [f64; 2] {
-    let Chosen { free, model } = chosen;
-    let (value, column) = match parameter {
-        Parameter::Square(index) => (model.squares[index], index),
-        Parameter::Time => (model.time_s, TERMS),
-    };
-    let outside = |value: f64| {
-        let found = match parameter {
-            Parameter::Square(index) => {
-                let rest: Vec<usize> = free.iter().copied().filter(|i| *i != index).collect();
-                rows.fit_time(&rest, Some(Fixed { index, value }), model.time_s)
-            }
-            Parameter::Time => rows.fit(free, None, value),
-        };
-        let Some(found) = found else { return true };
-        let a = Uncertainty::of(rows, covariances, &found, free).factor(column);
-        !(found.deviance - model.deviance <= TWO_SIDED * a)
-    };
-    [end(value, 0.5, &outside), end(value, 2.0, &outside)]
-}
-
-/// Upper end of the interval of 95 % of the squared coefficient of a term that isn't shown.
-fn limit(rows: &Rows, covariances: &Covariances, chosen: &Chosen, index: usize) -> f64 {
-    let mut all = chosen.free.clone();
-    all.push(index);
-    all.sort_unstable();
-    let Some(best) = rows.fit_time(&all, None, chosen.model.time_s) else { return f64::NAN };
-    let outside = |value: f64| {
-        let fixed = Some(Fixed { index, value });
-        let Some(found) = rows.fit_time(&chosen.free, fixed, chosen.model.time_s) else {
-            return true;
-        };
-        let a = Uncertainty::of(rows, covariances, &found, &all).factor(index);
-        !(found.deviance - best.deviance <= TWO_SIDED * a)
-    };
-    let least = rows.least(index);
-    end(best.squares[index].max(least), 2.0, &outside)
-}
-
-/// Place where the deviance has risen, going from a value by a factor; 0 where it never does downwards.
-fn end(value: f64, factor: f64, outside: &dyn Fn(f64) -> bool) -> f64 {
-    let (mut inside, mut beyond) = (value, value * factor);
-    let mut steps = 0;
-    while !outside(beyond) {
-        (inside, beyond) = (beyond, beyond * factor);
-        steps += 1;
-        if steps > 60 {
-            return if factor < 1.0 { 0.0 } else { f64::INFINITY };
-        }
-    }
-    for _ in 0..24 {
-        let middle = libm::sqrt(inside * beyond);
-        if outside(middle) { beyond = middle } else { inside = middle }
-    }
-    libm::sqrt(inside * beyond)
 }
 
 /// Variance of the terms of a model at an averaging time.
