@@ -20,7 +20,6 @@ mod load;
 mod model;
 mod other_format;
 mod ports;
-pub mod quantity;
 pub mod read;
 pub mod recorded;
 pub mod reference;
@@ -29,7 +28,6 @@ mod schema;
 pub mod suite;
 mod tour;
 pub mod trajectory;
-mod unit;
 mod write;
 
 pub use arguments::override_set;
@@ -44,6 +42,7 @@ pub use model::{
     Set, Setting, ShipSpectrum, SourceSpec, Speaks, UnknownFault,
 };
 pub use octant_instruments::grades::{FLICKER, GRADES, GradeSheet};
+pub use octant_quantity as quantity;
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
 pub use quantity::{Quantity, UnitDimension};

@@ -3,10 +3,12 @@
 //! A unit is a product or quotient of unit names, each with an integer power or under a root:
 //! `deg/h/g`, `ug/sqrt(Hz)`, `m/s^2`, `°/√h`. Values are SI and rad inside; g is 9.80665 m/s².
 
-pub use super::unit::{Powers, unit_names};
+mod unit;
 
-use super::unit::parse_unit;
+pub use unit::{Powers, unit_names};
+
 use octant_base::names::nearest;
+use unit::parse_unit;
 
 /// Dimension of a quantity: the powers of its unit, with texts for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +24,7 @@ pub struct UnitDimension {
     si_unit: &'static str,
 }
 
-/// Declares the dimensions: powers of m, s, rad, K and samples in halves, name, example, unit, SI unit.
+/// Declares the dimensions: powers of m, s, rad, K, samples, V and A in halves, name, example, unit, SI unit.
 macro_rules! dimensions {
     ($($(#[$doc:meta])* $item:ident
         = $powers:expr, $name:literal, $example:literal, $unit:literal, $si_unit:literal;)+) => {
@@ -38,57 +40,61 @@ macro_rules! dimensions {
 
 dimensions! {
     /// Duration or period.
-    TIME = [0, 2, 0, 0, 0], "a time", "12 h", "s", "s";
+    TIME = [0, 2, 0, 0, 0, 0, 0], "a time", "12 h", "s", "s";
     /// Duration much shorter than a run.
-    SHORT_TIME = [0, 2, 0, 0, 0], "a time", "500 us", "s", "s";
+    SHORT_TIME = [0, 2, 0, 0, 0, 0, 0], "a time", "500 us", "s", "s";
     /// Number of samples, distinguished from a ratio: `"20 samples"`.
-    SAMPLES = [0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples";
+    SAMPLES = [0, 0, 0, 0, 2, 0, 0], "a number of samples", "20 samples", "samples", "samples";
     /// Frequency or rate of samples.
-    FREQUENCY = [0, -2, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz";
+    FREQUENCY = [0, -2, 0, 0, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz";
     /// Angle.
-    ANGLE = [0, 0, 2, 0, 0], "an angle", "30.5 deg", "deg", "rad";
+    ANGLE = [0, 0, 2, 0, 0, 0, 0], "an angle", "30.5 deg", "deg", "rad";
     /// Small angle, written in arcsec.
-    SMALL_ANGLE = [0, 0, 2, 0, 0], "an angle", "40 arcsec", "arcsec", "rad";
+    SMALL_ANGLE = [0, 0, 2, 0, 0, 0, 0], "an angle", "40 arcsec", "arcsec", "rad";
     /// Angular rate of a motion.
-    ANGULAR_RATE = [0, -2, 2, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s";
+    ANGULAR_RATE = [0, -2, 2, 0, 0, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s";
     /// Angular rate of a gyro error.
-    GYRO_BIAS = [0, -2, 2, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s";
+    GYRO_BIAS = [0, -2, 2, 0, 0, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s";
     /// Angular acceleration.
-    ANGULAR_ACCELERATION = [0, -4, 2, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2";
+    ANGULAR_ACCELERATION = [0, -4, 2, 0, 0, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2";
     /// Angle random walk.
-    ANGLE_RANDOM_WALK = [0, -1, 2, 0, 0], "an angle random walk", "0.0007 deg/sqrt(h)", "deg/sqrt(h)", "rad/sqrt(s)";
+    ANGLE_RANDOM_WALK = [0, -1, 2, 0, 0, 0, 0], "an angle random walk", "0.0007 deg/sqrt(h)", "deg/sqrt(h)", "rad/sqrt(s)";
     /// Rate random walk.
-    RATE_RANDOM_WALK = [0, -3, 2, 0, 0], "a rate random walk", "0.0001 deg/h/sqrt(h)", "deg/h/sqrt(h)", "rad/s/sqrt(s)";
+    RATE_RANDOM_WALK = [0, -3, 2, 0, 0, 0, 0], "a rate random walk", "0.0001 deg/h/sqrt(h)", "deg/h/sqrt(h)", "rad/s/sqrt(s)";
     /// Gyro bias per acceleration.
-    G_DEPENDENT = [-2, 2, 2, 0, 0], "a g-dependent gyro bias", "0.0005 deg/h/g", "deg/h/g", "rad/s/(m/s^2)";
+    G_DEPENDENT = [-2, 2, 2, 0, 0, 0, 0], "a g-dependent gyro bias", "0.0005 deg/h/g", "deg/h/g", "rad/s/(m/s^2)";
     /// Length.
-    LENGTH = [2, 0, 0, 0, 0], "a length", "0.15 m", "m", "m";
+    LENGTH = [2, 0, 0, 0, 0, 0, 0], "a length", "0.15 m", "m", "m";
     /// Velocity.
-    VELOCITY = [2, -2, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s";
+    VELOCITY = [2, -2, 0, 0, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s";
     /// Acceleration.
-    ACCELERATION = [2, -4, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2";
+    ACCELERATION = [2, -4, 0, 0, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2";
     /// Acceleration of an accelerometer error.
-    ACCEL_BIAS = [2, -4, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2";
+    ACCEL_BIAS = [2, -4, 0, 0, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2";
     /// Accelerometer noise density.
-    VELOCITY_RANDOM_WALK = [2, -3, 0, 0, 0], "an accelerometer noise density", "50 ug/sqrt(Hz)", "ug/sqrt(Hz)", "m/s^2/sqrt(Hz)";
+    VELOCITY_RANDOM_WALK = [2, -3, 0, 0, 0, 0, 0], "an accelerometer noise density", "50 ug/sqrt(Hz)", "ug/sqrt(Hz)", "m/s^2/sqrt(Hz)";
     /// Ratio.
-    RATIO = [0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m";
+    RATIO = [0, 0, 0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m";
     /// Temperature difference.
-    TEMPERATURE = [0, 0, 0, 2, 0], "a temperature difference", "20 K", "K", "K";
+    TEMPERATURE = [0, 0, 0, 2, 0, 0, 0], "a temperature difference", "20 K", "K", "K";
     /// Temperature rate.
-    TEMPERATURE_RATE = [0, -2, 0, 2, 0], "a temperature rate", "5 K/h", "K/h", "K/s";
+    TEMPERATURE_RATE = [0, -2, 0, 2, 0, 0, 0], "a temperature rate", "5 K/h", "K/h", "K/s";
     /// Gyro bias per kelvin.
-    GYRO_BIAS_PER_K = [0, -2, 2, -2, 0], "a gyro bias sensitivity", "0.0002 deg/h/K", "deg/h/K", "rad/s/K";
+    GYRO_BIAS_PER_K = [0, -2, 2, -2, 0, 0, 0], "a gyro bias sensitivity", "0.0002 deg/h/K", "deg/h/K", "rad/s/K";
     /// Accelerometer bias per kelvin.
-    ACCEL_BIAS_PER_K = [2, -4, 0, -2, 0], "an accelerometer bias sensitivity", "2 ug/K", "ug/K", "m/s^2/K";
+    ACCEL_BIAS_PER_K = [2, -4, 0, -2, 0, 0, 0], "an accelerometer bias sensitivity", "2 ug/K", "ug/K", "m/s^2/K";
     /// Scale factor per kelvin.
-    SCALE_PER_K = [0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K";
+    SCALE_PER_K = [0, 0, 0, -2, 0, 0, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K";
     /// Random walk of an accelerometer bias.
-    ACCEL_RANDOM_WALK = [2, -5, 0, 0, 0], "a random walk of acceleration", "1 ug/sqrt(h)", "ug/sqrt(h)", "m/s^2/sqrt(s)";
+    ACCEL_RANDOM_WALK = [2, -5, 0, 0, 0, 0, 0], "a random walk of acceleration", "1 ug/sqrt(h)", "ug/sqrt(h)", "m/s^2/sqrt(s)";
     /// Second-order coefficient of an accelerometer.
-    ACCEL_QUADRATIC = [-2, 4, 0, 0, 0], "a second-order coefficient", "10 ug/g^2", "ug/g^2", "s^2/m";
+    ACCEL_QUADRATIC = [-2, 4, 0, 0, 0, 0, 0], "a second-order coefficient", "10 ug/g^2", "ug/g^2", "s^2/m";
     /// Power spectral density of a vibration.
-    ACCELERATION_PSD = [4, -6, 0, 0, 0], "a spectral density of acceleration", "0.01 g^2/Hz", "g^2/Hz", "(m/s^2)^2/Hz";
+    ACCELERATION_PSD = [4, -6, 0, 0, 0, 0, 0], "a spectral density of acceleration", "0.01 g^2/Hz", "g^2/Hz", "(m/s^2)^2/Hz";
+    /// Voltage.
+    VOLTAGE = [0, 0, 0, 0, 0, 2, 0], "a voltage", "24 V", "V", "V";
+    /// Current.
+    CURRENT = [0, 0, 0, 0, 0, 0, 2], "a current", "2 A", "A", "A";
 }
 
 impl UnitDimension {
@@ -137,12 +143,14 @@ impl UnitDimension {
     }
 }
 
-fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
-    if samples != 0 || [m, s, rad, k].iter().any(|power| power % 2 != 0) {
+fn exponents([m, s, rad, k, samples, volt, ampere]: Powers) -> Option<[i8; 8]> {
+    // A volt is a kg·m²/(s³·A).
+    let powers = [volt, m + 2 * volt, s - 3 * volt, ampere - volt, k, rad];
+    if samples != 0 || powers.iter().any(|power| power % 2 != 0) {
         return None;
     }
-    let half = |power: i16| i8::try_from(power / 2).ok();
-    Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
+    let [kg, m, s, ampere, k, rad] = powers.map(|power| i8::try_from(power / 2));
+    Some([kg.ok()?, m.ok()?, s.ok()?, ampere.ok()?, k.ok()?, 0, 0, rad.ok()?])
 }
 
 /// Writes a number without exponent if that is readable.
@@ -268,6 +276,8 @@ mod tests {
             ("10 °/s²", 10.0 * units::DEG, UnitDimension::ANGULAR_ACCELERATION),
             ("1 mm/s", 1e-3, UnitDimension::VELOCITY),
             ("2.4 m/s^2", 2.4, UnitDimension::ACCELERATION),
+            ("24 V", 24.0, UnitDimension::VOLTAGE),
+            ("500 mA", 0.5, UnitDimension::CURRENT),
             ("40 g", 40.0 * units::STANDARD_GRAVITY_MPS2, UnitDimension::ACCELERATION),
         ];
         for (text, si, dimension) in cases {
@@ -285,6 +295,17 @@ mod tests {
         assert_eq!(parse("12 parsec"), Err(NotAQuantity::UnknownUnit("parsec".into())));
         assert_eq!(parse("1 deg/hour"), Err(NotAQuantity::UnknownUnit("hour".into())));
         assert!(parse("1 m/").is_err() && parse("1 sqrt(Hz").is_err());
+    }
+
+    #[test]
+    fn a_volt_has_the_exponents_of_the_si() {
+        // kg·m²/(s³·A): the SI brochure, table 4.
+        let volt = parse("1 V").unwrap().exponents().unwrap();
+        assert_eq!(volt, [1, 2, -3, -1, 0, 0, 0, 0]);
+        assert_eq!(UnitDimension::with_exponents(&volt), Some(UnitDimension::VOLTAGE));
+        assert_eq!(parse("1 A").unwrap().exponents().unwrap(), [0, 0, 0, 1, 0, 0, 0, 0]);
+        // A watt.
+        assert_eq!(parse("1 V*A").unwrap().exponents().unwrap(), [1, 2, -3, 0, 0, 0, 0, 0]);
     }
 
     proptest! {

@@ -2,48 +2,52 @@
 
 use octant_earth::units::{ARCMIN, ARCSEC, DEG, NAUTICAL_MILE_M, STANDARD_GRAVITY_MPS2};
 
-/// Powers of metre, second, radian, kelvin and sample, doubled so that roots are whole numbers.
-pub type Powers = [i16; 5];
+/// Powers of metre, second, radian, kelvin, sample, volt and ampere, doubled so that roots are whole numbers.
+pub type Powers = [i16; 7];
 
 /// Names of units, with their SI values and powers.
 const UNITS: &[(&str, f64, Powers)] = &[
-    ("1", 1.0, [0, 0, 0, 0, 0]),
-    ("rad", 1.0, [0, 0, 2, 0, 0]),
-    ("mrad", 1e-3, [0, 0, 2, 0, 0]),
-    ("urad", 1e-6, [0, 0, 2, 0, 0]),
-    ("deg", DEG, [0, 0, 2, 0, 0]),
-    ("°", DEG, [0, 0, 2, 0, 0]),
-    ("arcmin", ARCMIN, [0, 0, 2, 0, 0]),
-    ("'", ARCMIN, [0, 0, 2, 0, 0]),
-    ("′", ARCMIN, [0, 0, 2, 0, 0]),
-    ("arcsec", ARCSEC, [0, 0, 2, 0, 0]),
-    ("\"", ARCSEC, [0, 0, 2, 0, 0]),
-    ("″", ARCSEC, [0, 0, 2, 0, 0]),
-    ("s", 1.0, [0, 2, 0, 0, 0]),
-    ("ms", 1e-3, [0, 2, 0, 0, 0]),
-    ("us", 1e-6, [0, 2, 0, 0, 0]),
-    ("ns", 1e-9, [0, 2, 0, 0, 0]),
-    ("min", 60.0, [0, 2, 0, 0, 0]),
-    ("h", 3600.0, [0, 2, 0, 0, 0]),
-    ("day", 86400.0, [0, 2, 0, 0, 0]),
-    ("Hz", 1.0, [0, -2, 0, 0, 0]),
-    ("kHz", 1e3, [0, -2, 0, 0, 0]),
-    ("m", 1.0, [2, 0, 0, 0, 0]),
-    ("mm", 1e-3, [2, 0, 0, 0, 0]),
-    ("cm", 1e-2, [2, 0, 0, 0, 0]),
-    ("um", 1e-6, [2, 0, 0, 0, 0]),
-    ("km", 1e3, [2, 0, 0, 0, 0]),
-    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0, 0]),
-    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0, 0]),
-    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
-    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
-    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0, 0]),
-    ("ppm", 1e-6, [0, 0, 0, 0, 0]),
-    ("%", 1e-2, [0, 0, 0, 0, 0]),
-    ("K", 1.0, [0, 0, 0, 2, 0]),
-    ("mK", 1e-3, [0, 0, 0, 2, 0]),
-    ("samples", 1.0, [0, 0, 0, 0, 2]),
-    ("sample", 1.0, [0, 0, 0, 0, 2]),
+    ("1", 1.0, [0, 0, 0, 0, 0, 0, 0]),
+    ("rad", 1.0, [0, 0, 2, 0, 0, 0, 0]),
+    ("mrad", 1e-3, [0, 0, 2, 0, 0, 0, 0]),
+    ("urad", 1e-6, [0, 0, 2, 0, 0, 0, 0]),
+    ("deg", DEG, [0, 0, 2, 0, 0, 0, 0]),
+    ("°", DEG, [0, 0, 2, 0, 0, 0, 0]),
+    ("arcmin", ARCMIN, [0, 0, 2, 0, 0, 0, 0]),
+    ("'", ARCMIN, [0, 0, 2, 0, 0, 0, 0]),
+    ("′", ARCMIN, [0, 0, 2, 0, 0, 0, 0]),
+    ("arcsec", ARCSEC, [0, 0, 2, 0, 0, 0, 0]),
+    ("\"", ARCSEC, [0, 0, 2, 0, 0, 0, 0]),
+    ("″", ARCSEC, [0, 0, 2, 0, 0, 0, 0]),
+    ("s", 1.0, [0, 2, 0, 0, 0, 0, 0]),
+    ("ms", 1e-3, [0, 2, 0, 0, 0, 0, 0]),
+    ("us", 1e-6, [0, 2, 0, 0, 0, 0, 0]),
+    ("ns", 1e-9, [0, 2, 0, 0, 0, 0, 0]),
+    ("min", 60.0, [0, 2, 0, 0, 0, 0, 0]),
+    ("h", 3600.0, [0, 2, 0, 0, 0, 0, 0]),
+    ("day", 86400.0, [0, 2, 0, 0, 0, 0, 0]),
+    ("Hz", 1.0, [0, -2, 0, 0, 0, 0, 0]),
+    ("kHz", 1e3, [0, -2, 0, 0, 0, 0, 0]),
+    ("m", 1.0, [2, 0, 0, 0, 0, 0, 0]),
+    ("mm", 1e-3, [2, 0, 0, 0, 0, 0, 0]),
+    ("cm", 1e-2, [2, 0, 0, 0, 0, 0, 0]),
+    ("um", 1e-6, [2, 0, 0, 0, 0, 0, 0]),
+    ("km", 1e3, [2, 0, 0, 0, 0, 0, 0]),
+    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0, 0, 0, 0]),
+    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0, 0, 0, 0]),
+    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0, 0, 0]),
+    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0, 0, 0]),
+    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0, 0, 0, 0]),
+    ("ppm", 1e-6, [0, 0, 0, 0, 0, 0, 0]),
+    ("%", 1e-2, [0, 0, 0, 0, 0, 0, 0]),
+    ("K", 1.0, [0, 0, 0, 2, 0, 0, 0]),
+    ("mK", 1e-3, [0, 0, 0, 2, 0, 0, 0]),
+    ("V", 1.0, [0, 0, 0, 0, 0, 2, 0]),
+    ("mV", 1e-3, [0, 0, 0, 0, 0, 2, 0]),
+    ("A", 1.0, [0, 0, 0, 0, 0, 0, 2]),
+    ("mA", 1e-3, [0, 0, 0, 0, 0, 0, 2]),
+    ("samples", 1.0, [0, 0, 0, 0, 2, 0, 0]),
+    ("sample", 1.0, [0, 0, 0, 0, 2, 0, 0]),
 ];
 
 /// Names of the units that products consist of.
@@ -106,7 +110,7 @@ impl UnitParser<'_> {
         for _ in 0..exponent.abs() {
             factor = if exponent < 0 { factor / base } else { factor * base };
         }
-        let mut raised = [0; 5];
+        let mut raised = [0; 7];
         for (a, b) in raised.iter_mut().zip(powers) {
             *a = add(0, exponent, b)?;
         }
