@@ -49,9 +49,8 @@ pub(super) static SAMPLE: Model = Model {
             .of(&quantities::ANGLE_RANDOM_WALK)
             .min(0.0)
             .start(&[2e-7]),
-        DeclaredVariable::parameter("gate", ElementType::Boolean)
+        DeclaredVariable::tunable_parameter("gate", ElementType::Boolean)
             .described("With the gate")
-            .tunable()
             .start(&[1.0]),
         DeclaredVariable::parameter("seed", ElementType::Count)
             .within(0.0, 9007199254740992.0)

@@ -23,8 +23,18 @@ pub trait ModelComponent: Clone + Send + Sync + Sized + 'static {
     /// Sample period, ns; time is an integer number of periods.
     fn period_ns(&self) -> u64;
 
+    /// Takes tunable parameters that have changed after the initialization, for the next step and
+    /// all later ones. Outputs stay as they are until then. A model that reads its tunable
+    /// parameters in every step has nothing to do.
+    ///
+    /// # Errors
+    /// If the parameters contradict each other; the component is as before, and so are the values.
+    fn tune(&mut self, values: &CellValues) -> Result<(), Self::Error> {
+        let _ = values;
+        Ok(())
+    }
+
     /// Makes one sample period: takes the inputs from `values` and writes the outputs there.
-    /// Tunable parameters may have changed.
     ///
     /// # Errors
     /// If an input can't be used; the component and its outputs are as before.

@@ -207,6 +207,14 @@ impl DeclaredVariable {
         Self::new(name, kind, DeclaredCausality::Parameter)
     }
 
+    /// Makes a scalar parameter that starts at zero, and that the importer may change between steps.
+    #[must_use]
+    pub const fn tunable_parameter(name: &'static str, kind: ElementType) -> Self {
+        let mut parameter = Self::parameter(name, kind);
+        parameter.variability = DeclaredVariability::Tunable;
+        parameter
+    }
+
     /// Sets the description.
     #[must_use]
     pub const fn described(mut self, description: &'static str) -> Self {
@@ -261,13 +269,6 @@ impl DeclaredVariable {
     #[must_use]
     pub const fn non_finite(mut self) -> Self {
         self.non_finite = true;
-        self
-    }
-
-    /// Lets the importer change the variable between steps.
-    #[must_use]
-    pub const fn tunable(mut self) -> Self {
-        self.variability = DeclaredVariability::Tunable;
         self
     }
 

@@ -12,7 +12,7 @@ const SOURCES: [&str; 10] =
     ["main", "handles", "order", "values", "time", "states", "random", "threads", "bus", "stack"];
 
 /// Value references that the program uses.
-const NAMES: [(&str, &str); 24] = [
+const NAMES: [(&str, &str); 25] = [
     ("GYRO", "gyro.delta_theta"),
     ("ACCELEROMETER", "accelerometer.delta_velocity"),
     ("GIMBAL_AZIMUTH", "gimbal.azimuth"),
@@ -37,6 +37,7 @@ const NAMES: [(&str, &str); 24] = [
     ("SITE_LATITUDE", "site.latitude"),
     ("ALIGNMENT_METHOD", "procedure.alignment.method"),
     ("ALIGNMENT_DURATION", "procedure.alignment.duration"),
+    ("GATE_NIS", "screening.gate.nis"),
 ];
 
 /// Those of the Calibrator on a bus.
@@ -68,6 +69,8 @@ fn header() -> String {
     for (constant, name) in BUS_NAMES {
         let _ = writeln!(text, "#define {constant} {}u", calibrator_can::table::MODEL.slot(name));
     }
+    let bias = plant::table::MODEL.slot("imu.parameters.gyro_bias");
+    let _ = writeln!(text, "#define PLANT_GYRO_BIAS {bias}u");
     let bus = token(&calibrator_can::table::MODEL, ServedStandard::Fmi3);
     let _ = writeln!(text, "#define TOKEN_BUS \"{bus}\"");
     let of_fmi2 = token(&calibrator_can::table::MODEL, ServedStandard::Fmi2);

@@ -16,6 +16,7 @@ mod plant_table;
 mod quantities;
 mod tables;
 mod token;
+mod tunable;
 
 // Where the files of `c_parts` look for it.
 use octant_fmu::table;

@@ -303,6 +303,11 @@ impl DriftTest {
         self.marks[..self.len].iter().map(|mark| mark.time_s)
     }
 
+    /// Changes the limit. The corrections so far are held against it too.
+    pub(crate) fn tune(&mut self, limit_sigmas: f64) {
+        self.limit_sigmas = limit_sigmas;
+    }
+
     /// The largest correction so far.
     #[must_use]
     pub fn largest(&self) -> &Largest {

@@ -200,6 +200,15 @@ impl CalibrationFilter {
         }
     }
 
+    /// Changes the gate, the standard deviation of the reference and the limit of the drift.
+    pub(crate) fn tune(&mut self, kalman: &Kalman, screening: &Screening) {
+        self.aiding = kalman.aiding;
+        self.gate = screening.gate;
+        if let (Some(drift), Some(limit)) = (&mut self.drift, screening.drift_sigmas) {
+            drift.tune(limit);
+        }
+    }
+
     /// Takes an interval that the strapdown has just integrated.
     #[inline]
     pub fn accumulate(

@@ -12,3 +12,5 @@ mod real_recording;
 mod standstill;
 #[cfg(feature = "state")]
 mod state;
+#[cfg(feature = "state")]
+mod tune;

@@ -21,7 +21,7 @@ fn q_nc() -> UnitQuaternion<f64> {
     quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0))
 }
 
-fn kalman() -> Estimator {
+pub(super) fn kalman() -> Estimator {
     Estimator::Kalman(Kalman {
         error_model: ErrorModel::Phi,
         estimated: [true; 7],
@@ -47,7 +47,7 @@ fn kalman() -> Estimator {
     })
 }
 
-fn config(estimator: Estimator, screening: Screening) -> CoreConfig {
+pub(super) fn config(estimator: Estimator, screening: Screening) -> CoreConfig {
     let stops: Vec<_> = EIGHT.iter().map(|(azimuth, roll)| (*azimuth, *roll, 1.0)).collect();
     CoreConfig {
         sample_period_ns: PERIOD_NS,
@@ -84,13 +84,13 @@ static STREAM: LazyLock<Vec<(Sample, Option<Aiding>)>> = LazyLock::new(|| {
     all
 });
 
-fn go_on(core: &mut Core, from: usize, to: usize) {
+pub(super) fn go_on(core: &mut Core, from: usize, to: usize) {
     for (sample, aiding) in &STREAM[from.min(STREAM.len())..to.min(STREAM.len())] {
         core.step(sample, aiding.as_ref());
     }
 }
 
-fn after(config: &CoreConfig, samples: usize) -> Core {
+pub(super) fn after(config: &CoreConfig, samples: usize) -> Core {
     let mut core = Core::new(config).unwrap();
     go_on(&mut core, 0, samples);
     core

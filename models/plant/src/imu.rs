@@ -98,6 +98,12 @@ impl Triple {
             wander.stream.navigate();
         }
     }
+
+    /// Takes over the noise and the range of another triad. What carries over from sample to sample stays.
+    fn tune(&mut self, other: &Self) {
+        self.sigma_counts = other.sigma_counts;
+        self.limit_counts = other.limit_counts;
+    }
 }
 
 /// Processes of the bias instability of a triad, each with its own stream; none without it.
@@ -219,6 +225,29 @@ impl Sensors {
                 e.accel_quantization_mps,
             ),
         }
+    }
+
+    /// Takes over parameters, noise and ranges of other sensors of the same kind.
+    pub(crate) fn tune(&mut self, other: &Self) {
+        let Self {
+            dt: _,
+            gyro_matrix,
+            g_matrix,
+            gyro_bias,
+            accel_matrix,
+            accel_bias,
+            nonlinear: _,
+            temperatures: _,
+            gyro,
+            accelerometer,
+        } = other;
+        self.gyro_matrix = *gyro_matrix;
+        self.g_matrix = *g_matrix;
+        self.gyro_bias = *gyro_bias;
+        self.accel_matrix = *accel_matrix;
+        self.accel_bias = *accel_bias;
+        self.gyro.tune(gyro);
+        self.accelerometer.tune(accelerometer);
     }
 
     /// Checks that every change of temperature, and every return, began no later than now.

@@ -1,6 +1,7 @@
 //! The plant, advanced one sample at a time.
 
 mod state;
+mod tune;
 
 use crate::config::{PlantConfig, Temperature};
 use crate::course::Course;

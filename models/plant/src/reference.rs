@@ -29,6 +29,11 @@ impl Aider {
         }
     }
 
+    /// Changes the noise: the kind is that of before.
+    pub(crate) fn tune(&mut self, kind: AidingKind) {
+        self.kind = kind;
+    }
+
     pub(crate) fn period_samples(&self) -> u64 {
         self.period_samples
     }

@@ -11,4 +11,5 @@ mod nonlinear;
 mod sensors;
 mod state;
 mod strapdown;
+mod tune;
 mod turntable;

@@ -6,6 +6,7 @@ use super::instance::Instance;
 use super::layout::{Cell, EXACT_MAX, Settable, Slot};
 use super::mode::{self, Mode, Refusal};
 use super::types::Type;
+use crate::values::CellValues;
 
 /// Arrays of the importer: value references, and the values.
 pub(super) struct Arrays<V> {
@@ -139,12 +140,13 @@ impl Instance {
         arrays.check(arrays.values.is_null(), self.slots().len())?;
         let before = matches!(self.mode(), Mode::Instantiated | Mode::Initialization);
         let slots = self.slots();
-        let mut next = 0;
+        let (mut next, mut tunes) = (0, false);
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
             let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
                 return Err(self.unknown::<T>(reference));
             };
+            tunes |= slot.tunable;
             // Without arrays there is one value for each reference.
             let (first, length) = if ARRAYS { (next, usize::from(slot.elements)) } else { (i, 1) };
             if ARRAYS {
@@ -166,6 +168,7 @@ impl Instance {
         if ARRAYS && next != arrays.value_count {
             return Err(self.wrong_length(&arrays));
         }
+        let before = (tunes && !before).then(|| self.run.values.clone());
         let (slots, cells) = self.slots_and_cells();
         let cells = &mut cells[..slots.len()];
         let mut next = 0;
@@ -193,7 +196,25 @@ impl Instance {
             next += length;
         }
         self.values_changed();
-        Ok(())
+        match before {
+            Some(before) => self.tune(before),
+            None => Ok(()),
+        }
+    }
+
+    /// Hands tunable parameters that were set to the model; one that refuses them has those of before.
+    #[cold]
+    fn tune(&mut self, before: CellValues) -> Result<(), Refusal> {
+        let run = &mut self.run;
+        // A parameter that is set to its value changes nothing, whatever the model makes of it.
+        if run.values.cells() == before.cells() {
+            return Ok(());
+        }
+        let Some(component) = &mut run.component else { return Ok(()) };
+        component.tune(&run.values).map_err(|reason| {
+            run.values = before;
+            Refusal::discard(reason)
+        })
     }
 
     /// Computes the outputs, which follow from the parameters before the end of initialization, if

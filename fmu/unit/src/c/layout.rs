@@ -40,6 +40,8 @@ pub(super) struct Slot {
     pub settable: Settable,
     /// True if every value is accepted, including NaN.
     pub any: bool,
+    /// True for a tunable parameter, which the model takes anew.
+    pub tunable: bool,
     /// True if the model computes the value.
     pub computed: bool,
     /// Number of elements of the variable that begins here; 0: none begins.
@@ -85,6 +87,7 @@ impl Layout {
             cell: Cell::Real,
             settable: Settable::Never,
             any: false,
+            tunable: false,
             computed: false,
             elements: 1,
             min: -f64::MAX,
@@ -102,17 +105,18 @@ impl Layout {
                 ElementType::Binary(_) => Cell::Binary,
                 ElementType::Clock(_) => Cell::Clock,
             };
+            let tunable = variable.causality == DeclaredCausality::Parameter
+                && variable.variability == DeclaredVariability::Tunable;
             let slot = Slot {
                 cell,
-                settable: match (variable.causality, variable.variability) {
-                    (DeclaredCausality::Input, _)
-                    | (DeclaredCausality::Parameter, DeclaredVariability::Tunable) => {
-                        Settable::Always
-                    }
-                    (DeclaredCausality::Parameter, _) => Settable::Fixed,
+                settable: match variable.causality {
+                    DeclaredCausality::Parameter if tunable => Settable::Always,
+                    DeclaredCausality::Input => Settable::Always,
+                    DeclaredCausality::Parameter => Settable::Fixed,
                     _ => Settable::Never,
                 },
                 any: variable.non_finite,
+                tunable,
                 computed: matches!(
                     variable.causality,
                     DeclaredCausality::Output

@@ -14,6 +14,7 @@ use std::sync::OnceLock;
 
 /// A component of unknown type.
 pub(super) trait AnyComponent: Send + core::fmt::Debug {
+    fn tune(&mut self, values: &CellValues) -> Result<(), String>;
     fn step(&mut self, values: &mut CellValues) -> Result<(), String>;
     fn period_ns(&self) -> u64;
     fn terminate(&mut self, values: &mut CellValues);
@@ -33,6 +34,10 @@ impl<C: ModelComponent> core::fmt::Debug for Boxed<C> {
 }
 
 impl<C: ModelComponent> AnyComponent for Boxed<C> {
+    fn tune(&mut self, values: &CellValues) -> Result<(), String> {
+        with_room(|| self.0.tune(values)).map_err(|error| error.to_string())
+    }
+
     fn step(&mut self, values: &mut CellValues) -> Result<(), String> {
         self.0.step(values).map_err(|error| error.to_string())
     }

@@ -146,6 +146,11 @@ impl ModelComponent for Calibrator {
         self.period_ns
     }
 
+    fn tune(&mut self, values: &CellValues) -> Result<(), CalibratorFailure> {
+        self.core.tune(&config(values)?)?;
+        Ok(())
+    }
+
     #[inline]
     fn step(&mut self, values: &mut CellValues) -> Result<(), CalibratorFailure> {
         let valid = values.boolean(slot::IMU_VALID);

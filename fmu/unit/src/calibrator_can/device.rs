@@ -92,6 +92,13 @@ impl Device {
         })
     }
 
+    /// Changes the core, and the configuration of those that a restart makes.
+    pub(super) fn tune(&mut self, config: CoreConfig) -> Result<(), CoreConfigError> {
+        self.core.tune(&config)?;
+        *self.config = config;
+        Ok(())
+    }
+
     pub(super) fn core(&self) -> &Core {
         &self.core
     }

@@ -20,7 +20,7 @@ pub use error::CalibratorCanFailure;
 
 use crate::calibrator;
 use crate::component::{ModelComponent, Network};
-use crate::table::{DeclaredCausality, Model};
+use crate::table::{DeclaredCausality, DeclaredVariable, Model};
 use crate::values::CellValues;
 use controller::{Controller, Setup};
 use device::{Changed, Device};
@@ -50,16 +50,13 @@ fn ns(time_s: f64) -> u64 {
     ((time_s * 1e9).round() as u64).min(TIME_MAX_NS)
 }
 
-/// Copies the cells of variables that both tables have, of one causality.
-fn copy_same(
-    causality: DeclaredCausality,
-    from: (&Model, &CellValues),
-    to: (&Model, &mut CellValues),
-) {
-    for (slot, variable) in from.0.with_slots().filter(|(_, v)| v.causality == causality) {
-        if let Some((other, _)) = to.0.find(variable.name) {
-            let cells = &from.1.cells()[slot..slot + variable.slots()];
-            to.1.cells_mut()[other..other + variable.slots()].copy_from_slice(cells);
+/// Copies the cells of the parameters that the Calibrator has too.
+fn copy_parameters(from: &CellValues, to: &mut CellValues) {
+    let is_parameter = |v: &DeclaredVariable| v.causality == DeclaredCausality::Parameter;
+    for (slot, variable) in table::MODEL.with_slots().filter(|(_, v)| is_parameter(v)) {
+        if let Some((other, _)) = calibrator::table::MODEL.find(variable.name) {
+            let cells = &from.cells()[slot..slot + variable.slots()];
+            to.cells_mut()[other..other + variable.slots()].copy_from_slice(cells);
         }
     }
 }
@@ -68,11 +65,7 @@ impl CalibratorCan {
     /// Makes a device from the parameters alone, as after power on and before its first message.
     fn new(values: &CellValues) -> Result<Self, CalibratorCanFailure> {
         let mut core_values = CellValues::new(&calibrator::table::MODEL);
-        copy_same(
-            DeclaredCausality::Parameter,
-            (&table::MODEL, values),
-            (&calibrator::table::MODEL, &mut core_values),
-        );
+        copy_parameters(values, &mut core_values);
         let config = calibrator::config(&core_values)?;
         let fd = values.boolean(slot::FD);
         let notifications = values.boolean(slot::NOTIFICATIONS);
@@ -165,6 +158,14 @@ impl ModelComponent for CalibratorCan {
 
     fn period_ns(&self) -> u64 {
         self.period_ns
+    }
+
+    fn tune(&mut self, values: &CellValues) -> Result<(), CalibratorCanFailure> {
+        let mut core_values = self.core_values.clone();
+        copy_parameters(values, &mut core_values);
+        self.device.tune(calibrator::config(&core_values)?)?;
+        self.core_values = core_values;
+        Ok(())
     }
 
     /// Does nothing: the device acts only at events.

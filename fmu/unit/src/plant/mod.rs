@@ -216,6 +216,27 @@ impl ModelComponent for PlantFmu {
         self.period_ns
     }
 
+    fn tune(&mut self, values: &CellValues) -> Result<(), PlantFailure> {
+        let config = config(values)?;
+        // Kinds of faults that are multiples of the noise are those of the new noise.
+        let station = match &self.faults {
+            Some(faults) if setup(&config) != setup(self.plant.config()) => {
+                let mut bytes = Vec::new();
+                faults.station.save(&mut bytes);
+                let specs: Vec<FaultSpec> =
+                    self::faults(values)?.into_iter().map(|(_, spec)| spec).collect();
+                Some(Station::load(&specs, &setup(&config), &bytes)?)
+            }
+            _ => None,
+        };
+        self.plant.tune(&config)?;
+        if let (Some(faults), Some(station)) = (&mut self.faults, station) {
+            faults.station = station;
+        }
+        self.with_truth = values.boolean(slot::TRUTH_ENABLED);
+        Ok(())
+    }
+
     #[inline]
     fn step(&mut self, values: &mut CellValues) -> Result<(), PlantFailure> {
         let target = GimbalAngles::from_rad(

@@ -95,6 +95,12 @@ static void steps2(Subject *s) {
     }
 }
 
+static void tune2(Subject *s) {
+    const unsigned reference = s->is_calibrator ? GATE_NIS : PLANT_GYRO_BIAS;
+    const double value = 25.0;
+    STATUS(OK, fmi2.SetReal(s->instance, &reference, 1, &value));
+}
+
 static void get2(Subject *s) { STATUS(OK, fmi2.GetFMUstate(s->instance, &s->state)); }
 static void set2(Subject *s) { STATUS(OK, fmi2.SetFMUstate(s->instance, s->state)); }
 static void serialize2(Subject *s) {
@@ -138,6 +144,12 @@ static void steps3(Subject *s) {
     }
 }
 
+static void tune3(Subject *s) {
+    const unsigned reference = s->is_calibrator ? GATE_NIS : PLANT_GYRO_BIAS;
+    const double values[3] = {25.0, 0.0, 0.0};
+    STATUS(OK, fmi3.SetFloat64(s->instance, &reference, 1, values, s->is_calibrator ? 1 : 3));
+}
+
 static void get3(Subject *s) { STATUS(OK, fmi3.GetFMUState(s->instance, &s->state)); }
 static void set3(Subject *s) { STATUS(OK, fmi3.SetFMUState(s->instance, s->state)); }
 static void serialize3(Subject *s) {
@@ -158,7 +170,7 @@ static void free3(Subject *s) { fmi3.FreeInstance(s->instance); }
 
 #define STEP(Standard, Name) take("FMI " #Standard, #Name, Name##Standard, subject);
 #define LIFE(Standard) \
-    STEP(Standard, instantiate) STEP(Standard, enter) STEP(Standard, exit) STEP(Standard, steps) \
+    STEP(Standard, instantiate) STEP(Standard, enter) STEP(Standard, exit) STEP(Standard, steps) STEP(Standard, tune) \
     STEP(Standard, get) STEP(Standard, set) STEP(Standard, serialize) STEP(Standard, deserialize) \
     STEP(Standard, terminate) STEP(Standard, reset) STEP(Standard, enter) STEP(Standard, exit) STEP(Standard, free)
 

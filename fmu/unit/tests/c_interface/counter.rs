@@ -17,7 +17,7 @@ static VARIABLES: [DeclaredVariable; 9] = [
     DeclaredVariable::input("anything", ElementType::Real).non_finite(),
     DeclaredVariable::input("level", ElementType::Enumeration(&LEVEL)).start(&[1.0]),
     DeclaredVariable::input("on", ElementType::Boolean),
-    DeclaredVariable::parameter("gain", ElementType::Real).start(&[2.0]).tunable(),
+    DeclaredVariable::tunable_parameter("gain", ElementType::Real).start(&[2.0]),
     DeclaredVariable::parameter("limit", ElementType::Count).within(1.0, 1000.0).start(&[100.0]),
     depending(DeclaredVariable::output("y", ElementType::Real)),
     DeclaredVariable::output("count", ElementType::Count),
@@ -49,7 +49,7 @@ pub(super) const COUNT: usize = MODEL.slot("count");
 pub(super) const PERIOD_S: f64 = 0.01;
 
 /// Test model that sums `gain · u[1]`; `trouble` 1 panics, 2 refuses, 3 refuses in every second
-/// period, 4 panics at the end. It refuses a limit of 13.
+/// period, 4 panics at the end. It refuses a limit of 13, and a gain of 13 between steps.
 #[derive(Clone)]
 struct Counter {
     count: u64,
@@ -77,6 +77,13 @@ impl ModelComponent for Counter {
 
     fn period_ns(&self) -> u64 {
         10_000_000
+    }
+
+    fn tune(&mut self, values: &CellValues) -> Result<(), Trouble> {
+        match values.real(GAIN) {
+            13.0 => Err(Trouble("gain is 13, a lucky number is expected")),
+            _ => Ok(()),
+        }
     }
 
     fn step(&mut self, values: &mut CellValues) -> Result<(), Trouble> {

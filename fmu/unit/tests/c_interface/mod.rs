@@ -349,6 +349,9 @@ fn what_can_be_set_depends_on_the_variable_and_on_the_time() {
     // SAFETY: one reference, one value each.
     unsafe {
         assert_eq!(fmi2SetReal(c, &(GAIN as u32), 1, &3.0), OK, "tunable");
+        let references = [U as u32, GAIN as u32];
+        assert_eq!(fmi2SetReal(c, references.as_ptr(), 2, [5.0, 13.0].as_ptr()), DISCARD);
+        assert_eq!((real(c, U), real(c, GAIN)), (0.0, 3.0), "all or nothing");
         assert_eq!(fmi2SetReal(c, &(ANYTHING as u32), 1, &f64::NAN), OK);
         assert_eq!(fmi2SetReal(c, &(U as u32), 1, &f64::INFINITY), DISCARD);
         assert_eq!(real(c, U), 0.0);

@@ -60,6 +60,14 @@ pub enum CoreConfigError {
     /// A navigation can't be planned any more.
     #[error("plan another navigation: the calibration has ended")]
     CalibrationOver,
+    /// A part of the configuration that can't change in a core that runs.
+    #[error(
+        "{part} differs from the configuration that the core was made with: it can't change in a core that runs"
+    )]
+    Fixed {
+        /// Name of the part.
+        part: &'static str,
+    },
     /// A test for identical counts that every sample would fail.
     #[error("the number of identical samples is {found}, at least 2 are expected")]
     StuckSamples {

@@ -16,6 +16,7 @@ mod slips;
 mod state;
 mod step;
 mod stretch;
+mod tune;
 mod uncertainty;
 
 pub use aligning::prior_after_alignment;

@@ -172,14 +172,14 @@ const PRIOR: [DeclaredVariable; 9] = prior! {
 };
 
 const AIDING: [DeclaredVariable; 6] = variables! {
-    parameter("procedure.calibration.refuse_above_mean_nis", Real) nominal(9.0) start(&[9.0]):
+    tunable_parameter("procedure.calibration.refuse_above_mean_nis", Real) nominal(9.0) start(&[9.0]):
         "Mean normalized innovation squared (three axes) above which the calibration is refused.";
     parameter("procedure.calibration.aiding.reference", Enumeration(&of::AIDING)):
         "The reference that the Kalman filter measures against.";
-    parameter("procedure.calibration.aiding.velocity_sigma", Real) of(&q::SMALL_VELOCITY) min(0.0)
+    tunable_parameter("procedure.calibration.aiding.velocity_sigma", Real) of(&q::SMALL_VELOCITY) min(0.0)
         nominal(1e-3) start(&[1e-3]):
         "Standard deviation of each axis of a velocity reference, above 0.";
-    parameter("procedure.calibration.aiding.position_sigma", Real) of(&q::LENGTH) min(0.0)
+    tunable_parameter("procedure.calibration.aiding.position_sigma", Real) of(&q::LENGTH) min(0.0)
         nominal(0.15) start(&[0.15]):
         "Standard deviation of each axis of a position reference, above 0.";
     parameter("procedure.calibration.aiding.period_ns", Count) of(&q::NANOSECONDS) min(1.0)

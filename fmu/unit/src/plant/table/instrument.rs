@@ -12,17 +12,17 @@ const PERIOD: [DeclaredVariable; 1] = variables! {
 };
 
 const TRUE_PARAMETERS: [DeclaredVariable; 7] = groups!(
-    parameter,
+    tunable_parameter,
     "imu.parameters",
     "True coefficients of the error model (measured less true): ",
     ""
 );
 
 const NOISE: [DeclaredVariable; 2] = variables! {
-    parameter("imu.angle_random_walk", Real) of(&q::ANGLE_RANDOM_WALK) min(0.0)
+    tunable_parameter("imu.angle_random_walk", Real) of(&q::ANGLE_RANDOM_WALK) min(0.0)
         nominal(0.0007 * DEG_PER_SQRT_HOUR) start(&[0.0007 * DEG_PER_SQRT_HOUR]):
         "Angle random walk of the gyros.";
-    parameter("imu.velocity_random_walk", Real) of(&q::VELOCITY_RANDOM_WALK) min(0.0)
+    tunable_parameter("imu.velocity_random_walk", Real) of(&q::VELOCITY_RANDOM_WALK) min(0.0)
         nominal(50.0 * MICRO_G) start(&[50.0 * MICRO_G]): "Noise density of the accelerometers.";
 };
 
@@ -61,9 +61,9 @@ const LIMITS: [DeclaredVariable; 7] = variables! {
         "Quantum of the gyros, coarser than that of the counts; 0: none.";
     parameter("imu.accel_quantization", Real) of(&q::VELOCITY_INCREMENT) min(0.0) nominal(1e-5):
         "Quantum of the accelerometers, coarser than that of the counts; 0: none.";
-    parameter("imu.gyro_range", Real) of(&q::TURN_RATE) min(0.0) nominal(300.0 * DEG):
+    tunable_parameter("imu.gyro_range", Real) of(&q::TURN_RATE) min(0.0) nominal(300.0 * DEG):
         "Range of the gyros; 0: that of the counts.";
-    parameter("imu.accel_range", Real) of(&q::ACCELERATION) min(0.0) nominal(400.0):
+    tunable_parameter("imu.accel_range", Real) of(&q::ACCELERATION) min(0.0) nominal(400.0):
         "Range of the accelerometers; 0: that of the counts.";
 };
 

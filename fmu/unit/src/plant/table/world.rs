@@ -102,13 +102,13 @@ const TURNTABLE: [DeclaredVariable; 5] = variables! {
 const REFERENCE: [DeclaredVariable; 5] = variables! {
     parameter("aiding.reference", Enumeration(&of::AIDING)):
         "What the reference of the calibration measures.";
-    parameter("aiding.velocity_sigma", Real) of(&q::SMALL_VELOCITY) min(0.0) nominal(1e-3)
+    tunable_parameter("aiding.velocity_sigma", Real) of(&q::SMALL_VELOCITY) min(0.0) nominal(1e-3)
         start(&[1e-3]): "Reference of velocity: standard deviation of its noise, each axis.";
-    parameter("aiding.position_sigma", Real) of(&q::LENGTH) min(0.0) nominal(0.01) start(&[0.01]):
+    tunable_parameter("aiding.position_sigma", Real) of(&q::LENGTH) min(0.0) nominal(0.01) start(&[0.01]):
         "Reference of position: standard deviation of its noise, each axis.";
     parameter("aiding.period_ns", Count) of(&q::NANOSECONDS) within(1.0, EXACT_MAX) start(&[1e9]):
         "Period of the reference, ns: a multiple of imu.period_ns.";
-    parameter("truth.enabled", Boolean) start(&[1.0]):
+    tunable_parameter("truth.enabled", Boolean) start(&[1.0]):
         "The outputs of truth are computed in every step; else they stay as they are at the start.";
 };
 

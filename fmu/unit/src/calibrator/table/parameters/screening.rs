@@ -14,21 +14,21 @@ const HARDENED_STUCK_SAMPLES: u32 = HARDENED.stuck_samples.expect("it has a test
 const HARDENED_DRIFT_SIGMAS: f64 = HARDENED.drift_sigmas.expect("it has a limit");
 
 pub(super) const GATE: [DeclaredVariable; 7] = variables! {
-    parameter("screening.gate.enabled", Boolean) start(&[1.0]):
+    tunable_parameter("screening.gate.enabled", Boolean) start(&[1.0]):
         "Innovations are gated; else every measurement is used.";
-    parameter("screening.gate.nis", Real) min(0.0) nominal(36.0) start(&[HARDENED_GATE.nis]):
+    tunable_parameter("screening.gate.nis", Real) min(0.0) nominal(36.0) start(&[HARDENED_GATE.nis]):
         "Gate: normalized innovation squared (three axes) above which a measurement is rejected, \
          above 0.";
-    parameter("screening.gate.rejections", Count) within(0.0, u32::MAX as f64)
+    tunable_parameter("screening.gate.rejections", Count) within(0.0, u32::MAX as f64)
         start(&[HARDENED_GATE.rejections as f64]):
         "Gate: rejections in a row that start a recovery.";
-    parameter("screening.gate.recovery", Enumeration(&of::RECOVERY)): "Gate: what a recovery does.";
-    parameter("screening.gate.reset_attitude", Real) of(&q::SMALL_ANGLE) min(0.0)
+    tunable_parameter("screening.gate.recovery", Enumeration(&of::RECOVERY)): "Gate: what a recovery does.";
+    tunable_parameter("screening.gate.reset_attitude", Real) of(&q::SMALL_ANGLE) min(0.0)
         nominal(600.0 * ARCSEC) start(&[600.0 * ARCSEC]):
         "Gate, recovery by reset: standard deviation of attitude.";
-    parameter("screening.gate.reset_velocity", Real) of(&q::VELOCITY) min(0.0) nominal(1.0)
+    tunable_parameter("screening.gate.reset_velocity", Real) of(&q::VELOCITY) min(0.0) nominal(1.0)
         start(&[1.0]): "Gate, recovery by reset: standard deviation of velocity.";
-    parameter("screening.gate.reset_position", Real) of(&q::LENGTH) min(0.0) nominal(10.0)
+    tunable_parameter("screening.gate.reset_position", Real) of(&q::LENGTH) min(0.0) nominal(10.0)
         start(&[10.0]): "Gate, recovery by reset: standard deviation of position.";
 };
 
@@ -47,12 +47,12 @@ pub(super) const SCREENS: [DeclaredVariable; 9] = variables! {
         "Turns by gyros and by encoders are compared, and encoders with the set point.";
     parameter("screening.drift.enabled", Boolean) start(&[1.0]):
         "A calibration whose parameters drift is refused.";
-    parameter("screening.drift.sigmas", Real) min(0.0) nominal(6.0) start(&[HARDENED_DRIFT_SIGMAS]):
+    tunable_parameter("screening.drift.sigmas", Real) min(0.0) nominal(6.0) start(&[HARDENED_DRIFT_SIGMAS]):
         "Correction of a parameter over a stretch of the calibration, in the standard deviations \
          that it should have, above which it drifts; above 0.";
     parameter("screening.checkpoints", Boolean) start(&[1.0]):
         "A recovery goes back to the parameters of one to two minutes before it.";
-    parameter("screening.aiding_stamps", Boolean) start(&[1.0]):
+    tunable_parameter("screening.aiding_stamps", Boolean) start(&[1.0]):
         "A reference that doesn't carry the stamp of its sample is not used.";
 };
 
