@@ -61,12 +61,12 @@ impl ReadingDefect {
 }
 
 /// What a frame may hold.
-pub trait Finding: Copy + Debug {
+pub trait FrameContent: Copy + Debug {
     /// Number among its kind, where the protocol counts them.
     fn sequence(&self) -> Option<u64>;
 }
 
-impl Finding for Reading {
+impl FrameContent for Reading {
     fn sequence(&self) -> Option<u64> {
         self.sequence
     }
@@ -75,7 +75,7 @@ impl Finding for Reading {
 /// A protocol: form and content of its frames.
 pub trait Framing {
     /// What is found in a frame.
-    type Found: Finding;
+    type Found: FrameContent;
     /// Buffer for the longest frame.
     type Room: AsRef<[u8]> + AsMut<[u8]> + Clone + Debug;
     /// Empty buffer.

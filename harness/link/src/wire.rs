@@ -292,10 +292,7 @@ impl Wire {
     /// Number of datagrams that came without the seal of the port's secret.
     #[must_use]
     pub fn unsealed(&self) -> u64 {
-        match &self.medium {
-            Medium::Bytes(medium) => medium.port.unsealed(),
-            Medium::Frames(_) => 0,
-        }
+        if let Medium::Bytes(medium) = &self.medium { medium.port.unsealed() } else { 0 }
     }
 
     /// Reason why the last intact message that could not be read could not.

@@ -18,7 +18,7 @@ mod time;
 mod vectornav;
 mod xsens;
 
-use crate::framing::{Finding, FrameDecoder, FramingEvent, ReadingCounters};
+use crate::framing::{FrameContent, FrameDecoder, FramingEvent, ReadingCounters};
 pub use novatel::NovatelNavigation;
 pub use sbg::SbgNavigation;
 pub use time::NavigationTime;
@@ -55,7 +55,7 @@ impl NavigationReading {
     }
 }
 
-impl Finding for NavigationReading {
+impl FrameContent for NavigationReading {
     fn sequence(&self) -> Option<u64> {
         None
     }
