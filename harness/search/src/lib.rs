@@ -19,6 +19,8 @@ pub mod journal;
 pub mod latin;
 pub mod minimal;
 pub mod page;
+#[cfg(test)]
+mod planted;
 pub mod search;
 pub mod space;
 pub mod space_file;
