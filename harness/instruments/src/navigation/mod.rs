@@ -89,6 +89,7 @@ impl NavigationProtocol {
 
 /// Finds navigation messages in a stream of bytes.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one for a file")]
 pub enum NavigationDecoder {
     /// NovAtel.
     Novatel(FrameDecoder<NovatelNavigation>),
