@@ -2184,9 +2184,9 @@ class SourceSolution(Section):
     east: int | str
     """Velocity over ground, east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
-    format: Literal["csv", "nmea", "rtklib", "sbet"]
-    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet". Default: by the name's ending: nmea and
-    nma; pos; sbet and out; others are columns of text."""
+    format: Literal["csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens"]
+    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens".
+    Default: by the name's ending: nmea and nma; pos; sbet and out; others are columns of text."""
     heading: int | str
     """Heading from north by east. Takes a column number from 1, or a column's name. Default: the name of
     Octant's exports, where the header has it."""
@@ -2349,9 +2349,9 @@ class SourceTrajectory(Section):
     Octant's exports, where the header has it."""
     file: str
     """Its file. Relative to the scenario. Takes a text in quotes."""
-    format: Literal["csv", "nmea", "rtklib", "sbet"]
-    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet". Default: by the name's ending: nmea and
-    nma; pos; sbet and out; others are columns of text."""
+    format: Literal["csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens"]
+    """What the file is. Takes one of "csv", "nmea", "rtklib", "sbet", "novatel", "sbg", "vectornav", "xsens".
+    Default: by the name's ending: nmea and nma; pos; sbet and out; others are columns of text."""
     gap: str
     """Rows further apart than this have a gap between them, in which nothing is scored. Takes a time such as "12
     h". Default: "2 s"."""
