@@ -219,7 +219,7 @@ impl NoiseFitter {
         if needs && falls > ENTERS {
             return Some(Choice { chosen: with, rival: None });
         }
-        let rival = (falls > RIVALS).then(|| Rival { chosen: with, covariances: with_time });
+        let rival = (falls > RIVALS).then_some(Rival { chosen: with, covariances: with_time });
         Some(Choice { chosen: without, rival })
     }
 }
