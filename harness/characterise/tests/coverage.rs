@@ -1,4 +1,5 @@
 //! Coverage of the intervals over streams of known noise.
+#![allow(clippy::print_stdout, reason = "a study prints its figures")]
 
 use crate::synthetic::{Coefficients, stream};
 use octant_characterise::deviations::Deviations;

@@ -2,6 +2,7 @@
 //!
 //! A screen of the core is weakened. The fault that counts is harmful and unnoticed then, and noticed by the core with
 //! all of its screens: what that core lets through itself doesn't count.
+#![allow(clippy::print_stdout, reason = "a study prints its figures")]
 
 use crate::bench::SearchBench;
 use crate::derived::{RunTimes, derived};

@@ -105,13 +105,16 @@ fn a_calibration_is_judged_by_the_limits_at_its_end() {
     assert!(matches!(found, Some(CalibrationRefusal::Drift { .. })), "{found:?}");
 }
 
+/// A change of a configuration.
+type Change = fn(&mut CoreConfig);
+
 #[test]
 fn what_can_t_change_is_refused_and_changes_nothing() {
     let mut core = after(&hardened(), BEFORE);
     let before = bytes(&core);
     core.tune(&hardened()).unwrap();
     assert_eq!(bytes(&core), before, "the same configuration");
-    let fixed: [(&str, fn(&mut CoreConfig)); 9] = [
+    let fixed: [(&str, Change); 9] = [
         ("the sample period", |c| c.sample_period_ns /= 2),
         ("the site", |c| c.site.height_m += 1.0),
         ("the noise", |c| c.noise.angle_random_walk *= 2.0),
