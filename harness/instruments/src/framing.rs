@@ -60,7 +60,7 @@ impl ReadingDefect {
     }
 }
 
-/// What a frame may hold.
+/// Content of a frame: a reading, or a navigation message.
 pub trait FrameContent: Copy + Debug {
     /// Number among its kind, where the protocol counts them.
     fn sequence(&self) -> Option<u64>;
@@ -74,7 +74,7 @@ impl FrameContent for Reading {
 
 /// A protocol: form and content of its frames.
 pub trait Framing {
-    /// What is found in a frame.
+    /// Content that the frames are read for.
     type Found: FrameContent;
     /// Buffer for the longest frame.
     type Room: AsRef<[u8]> + AsMut<[u8]> + Clone + Debug;

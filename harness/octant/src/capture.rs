@@ -52,6 +52,11 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
         return Err(Failure::input("--duration: found 0 s, expected more"));
     }
     let silence = Some(time("--silence", &arguments.silence)?).filter(|time| !time.is_zero());
+    if matches!(&uri, Uri::Udp(udp) if udp.secret.is_some()) {
+        let message =
+            format!("found {uri}, expected no secret: an instrument's datagrams have no seal");
+        return Err(Failure::input(message));
+    }
     let Port::Bytes(mut port) = port::open(&uri, EndRole::Device)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?
     else {
@@ -115,7 +120,7 @@ impl Written {
             if count > 0 {
                 if self.first.is_none() {
                     self.first = Some(now);
-                    // Of several senders on UDP the first one counts.
+                    // The first sender on UDP counts, and no other.
                     port.hold_peer(true);
                 } else {
                     self.longest_silence = self.longest_silence.max(now - self.last);

@@ -86,7 +86,7 @@ struct ChangeRow {
 }
 
 impl ChangeRow {
-    /// What isn't a number is no agreement.
+    /// True above the limit, and for a σ that isn't a number.
     fn is_found(&self) -> bool {
         !(self.sigmas <= self.limit_sigmas)
     }

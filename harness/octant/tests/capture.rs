@@ -114,5 +114,6 @@ fn nonsense_is_refused() {
     assert_eq!(refused(&["udp:0", "--duration", "0 s"], "expected more"), Some(2));
     assert_eq!(refused(&["udp:0", "--silence", "-1"], "expected 0 to"), Some(2));
     assert_eq!(refused(&["udp:0", "--duration", "NaN"], "expected a time such as"), Some(2));
+    assert_eq!(refused(&["udp:0?secret=key"], "expected no secret"), Some(2));
     assert_eq!(refused(&["serial:/dev/nowhere"], "/dev/nowhere"), Some(4));
 }

@@ -25,7 +25,7 @@ pub use time::NavigationTime;
 pub use vectornav::VectorNavNavigation;
 pub use xsens::XsensNavigation;
 
-/// What a message says. Messages of one time complete each other.
+/// Content of a navigation message. Messages of one time complete each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NavigationReading {
     /// Time for which it is valid.

@@ -54,7 +54,7 @@ impl SealEnd {
     }
 }
 
-/// What came of a datagram.
+/// Outcome of opening a datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OpenedSeal {
     /// Frames of the peer, this many bytes.

@@ -12,7 +12,7 @@ const NIS: std::ops::RangeInclusive<f64> = 2.5..=3.5;
 /// Largest share of a calibration that may be left out before the first smoothed measurement.
 const LEFT_OUT: f64 = 0.1;
 
-/// What stands against a verdict.
+/// Reasons against a verdict.
 #[derive(Debug, Default)]
 pub(super) struct Doubts {
     /// The tests aren't normal here: neither their silence nor what they find counts.
@@ -67,8 +67,8 @@ impl Doubts {
                 history.begins_s()
             ));
         }
-        // What is known no better than by its prior has its σ too: where nothing is claimed nothing has to be tested. But
-        // no calibration is there for less than the biases.
+        // A parameter known no better than by its prior is published with the prior's σ, so nothing is claimed of it. The
+        // biases, though, are what every calibration is for.
         let untested = |i: &usize| !tested.contains(i) && NAMES[*i].contains("_bias_");
         let untested: Vec<&str> = (0..PARAMETER_COUNT).filter(untested).map(|i| NAMES[i]).collect();
         if !untested.is_empty() {
