@@ -189,7 +189,8 @@ fn binary_logs_of_novatel_are_read() {
     waiting[status] = 9;
     let crc = octant_instruments::checksum::novatel(&waiting[..status + 4]).to_le_bytes();
     waiting[status + 4..].copy_from_slice(&crc);
-    assert_eq!(readings(NavigationProtocol::Novatel, &waiting, 7), []);
+    let found = readings(NavigationProtocol::Novatel, &waiting, 7);
+    assert!(found.len() == 1 && found[0].position_rad.is_none() && found[0].attitude_rad.is_none());
 }
 
 #[test]
@@ -199,7 +200,8 @@ fn sbg_tells_utc_across_the_roll_over_of_its_clock() {
         .flat_map(|hex| bytes(hex))
         .collect();
     let found = readings(NavigationProtocol::Sbg, &all, 5);
-    let [position, euler, quaternion] = found[..] else { panic!("{found:?}") };
+    let [position, euler, quaternion, invalid] = found[..] else { panic!("{found:?}") };
+    assert!(invalid.position_rad.is_none() && invalid.velocity_mps.is_none());
     for reading in [position, euler, quaternion] {
         assert_eq!(reading.time, NavigationTime::Utc(MARCH_NS + 500_000_000));
         is_the_state(&reading);
@@ -240,7 +242,7 @@ fn xsens_is_read_in_all_axes_and_precisions() {
     }
     assert!(one(NavigationProtocol::Xsens, XS_ENU).height_m.is_some());
     assert!(one(NavigationProtocol::Xsens, XS_NED).velocity_mps.is_some());
-    assert_eq!(readings(NavigationProtocol::Xsens, &bytes(XS_INVALID), 9), []);
+    assert!(one(NavigationProtocol::Xsens, XS_INVALID).position_rad.is_none());
     let own = one(NavigationProtocol::Xsens, XS_OWN);
     assert_eq!(own.time, NavigationTime::Own(12_345_600_000));
     // A frame of a real unit, as a user published it: sample time and Euler angles, east, north, up.

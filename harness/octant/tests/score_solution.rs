@@ -108,12 +108,22 @@ fn inspvas(second: f64, [latitude, longitude, north, east, heading]: [f64; 5]) -
         "INSPVASA,2345,{second:.3};2345,{second:.9},{latitude:.12},{longitude:.12},0,{north:.9},{east:.9},0,0,0,\
          {heading:.9},INS_SOLUTION_FREE"
     );
+    with_crc(&text)
+}
+
+fn with_crc(text: &str) -> String {
     let crc = text.bytes().fold(0_u32, |crc, byte| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| {
             if crc & 1 == 1 { crc >> 1 ^ 0xEDB8_8320 } else { crc >> 1 }
         })
     });
     format!("%{text}*{crc:08x}\r\n")
+}
+
+/// The same line of a unit that has no solution.
+fn inactive(line: &str) -> String {
+    let text = line.trim_start_matches('%').split('*').next().unwrap();
+    with_crc(&text.replace("INS_SOLUTION_FREE", "INS_INACTIVE"))
 }
 
 /// What a unit sent, among other bytes, against a reference with dates: both clocks are known.
@@ -150,6 +160,15 @@ fn messages_of_a_unit_are_a_solution() {
     assert!((number("/heading_error_arcmin/rms") - 3.0).abs() < 1e-4, "{found}");
     // One line in fifty is damaged: more than one point in a hundred is missing.
     std::fs::write(here.join("ins.csv"), sent(true)).unwrap();
+    assert_eq!(score(here, &format).status.code(), Some(3));
+    // A unit that gives up, and sends on without a solution: less than the whole of it is there.
+    let gives_up: String = seconds(60, 7260)
+        .map(|t| {
+            let line = inspvas(t + 18.0, drifting(t));
+            if t < 3600.0 { line } else { inactive(&line) }
+        })
+        .collect();
+    std::fs::write(here.join("ins.csv"), gives_up).unwrap();
     assert_eq!(score(here, &format).status.code(), Some(3));
     // Another unit's messages.
     let ended = score(here, &["--scenario", "trial.toml", "--set", "source.solution.format=sbg"]);

@@ -19,6 +19,7 @@ pub(crate) struct MessageReader {
     scale: TimeScale,
     messages: Messages,
     begun: Option<(i64, NavigationReading)>,
+    heard_ns: Option<i64>,
 }
 
 impl MessageReader {
@@ -44,7 +45,7 @@ impl MessageReader {
         let mut file = messages.file;
         file.rewind().map_err(|error| error.to_string())?;
         let scale = if is_utc { TimeScale::Utc } else { TimeScale::Own };
-        Ok(Self { scale, messages: Messages::new(file, protocol), begun: None })
+        Ok(Self { scale, messages: Messages::new(file, protocol), begun: None, heard_ns: None })
     }
 
     fn time_ns(&self, time: NavigationTime) -> Option<i64> {
@@ -58,6 +59,7 @@ impl MessageReader {
     /// Takes a reading; returns the point that it ends.
     fn take(&mut self, reading: NavigationReading) -> Option<TrajectoryPoint> {
         let time_ns = self.time_ns(reading.time)?;
+        self.heard_ns = self.heard_ns.max(Some(time_ns));
         match &mut self.begun {
             Some((begun_ns, begun)) if *begun_ns == time_ns => {
                 begun.position_rad = begun.position_rad.or(reading.position_rad);
@@ -110,6 +112,10 @@ impl Points for MessageReader {
 
     fn scale(&self) -> TimeScale {
         self.scale
+    }
+
+    fn heard_ns(&self) -> Option<i64> {
+        self.heard_ns
     }
 }
 

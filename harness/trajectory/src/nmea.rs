@@ -21,6 +21,7 @@ pub(crate) struct NmeaReader {
     /// Day of the present point, ns since 1970.
     day_ns: i64,
     begun: Option<Begun>,
+    heard_ns: Option<i64>,
 }
 
 /// A point whose sentences are still coming.
@@ -39,7 +40,7 @@ impl NmeaReader {
         let first_day_ns = first_day(&mut lines)?;
         let mut file = lines.file.into_inner();
         file.rewind().map_err(|error| error.to_string())?;
-        Ok(Self { lines: NmeaLines::new(file), day_ns: first_day_ns, begun: None })
+        Ok(Self { lines: NmeaLines::new(file), day_ns: first_day_ns, begun: None, heard_ns: None })
     }
 
     /// Takes a sentence; returns the point that it ends.
@@ -59,6 +60,7 @@ impl NmeaReader {
             if let Some(day_ns) = sentence.day_ns {
                 self.day_ns = day_ns;
             }
+            self.heard_ns = self.heard_ns.max(Some(self.day_ns + of_day_ns));
         }
         if let Some(begun) = &mut self.begun {
             begun.position = begun.position.or(sentence.position);
@@ -104,6 +106,10 @@ impl Points for NmeaReader {
 
     fn scale(&self) -> TimeScale {
         TimeScale::Utc
+    }
+
+    fn heard_ns(&self) -> Option<i64> {
+        self.heard_ns
     }
 }
 

@@ -12,4 +12,8 @@ pub(crate) trait Points: Send {
     /// Place of the last point, as in "line 17".
     fn place(&self) -> String;
     fn scale(&self) -> TimeScale;
+    /// Latest time that the file told so far, also of what isn't valid and so no point; `None`: that of the last point.
+    fn heard_ns(&self) -> Option<i64> {
+        None
+    }
 }

@@ -68,6 +68,11 @@ impl TrajectoryReader {
         self.points.scale()
     }
 
+    /// Latest time that the file told so far, if that of a point that isn't valid counts too.
+    pub(crate) fn heard_ns(&self) -> Option<i64> {
+        self.points.heard_ns()
+    }
+
     /// Returns the next point; `None` at the end.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ pub struct TrajectorySurvey {
     pub scale: TimeScale,
     /// The first point.
     pub first: TrajectoryPoint,
-    /// Times of the first and the last point, ns.
+    /// Times of the first and the last point, ns; of the last message, where the points end before.
     pub span_ns: (i64, i64),
     /// Number of points, two or more.
     pub points: u64,
@@ -59,6 +59,9 @@ impl TrajectorySurvey {
             let reason = format!("found {points} points with a position, expected two or more");
             return Err(TrajectoryError::new(path, reason));
         };
+        // A unit that sends on without a solution hasn't ended where its last point is.
+        let heard_ns = reader.heard_ns().filter(|heard_ns| heard_ns - span_ns.1 > period_ns.max(1));
+        let span_ns = (span_ns.0, heard_ns.unwrap_or(span_ns.1));
         let most = |count: u64| count as f64 >= SHARE * points as f64;
         Ok(Self {
             scale: reader.scale(),

@@ -1,7 +1,7 @@
 //! Navigation messages: what a unit with a filter of its own says of its position, velocity and attitude.
 //!
 //! [`NavigationDecoder`] finds them in a stream of bytes, by the framing of the unit's protocol. A message has what it
-//! says to be valid: a position before its unit has one is none. Angles are those of this project: heading from
+//! says to be valid: a position before its unit has one is none, and then the time alone is left. Angles are those of this project: heading from
 //! north by east, pitch positive with the bow up, roll positive with the starboard side down. Velocities are north,
 //! east, down; heights are above the ellipsoid.
 //!
@@ -43,15 +43,6 @@ pub struct NavigationReading {
 impl NavigationReading {
     fn at(time: NavigationTime) -> Self {
         Self { time, position_rad: None, height_m: None, velocity_mps: None, attitude_rad: None }
-    }
-
-    /// The reading, if it says anything.
-    fn said(self) -> Option<Self> {
-        let is_something = self.position_rad.is_some()
-            || self.height_m.is_some()
-            || self.velocity_mps.is_some()
-            || self.attitude_rad.is_some();
-        is_something.then_some(self)
     }
 }
 

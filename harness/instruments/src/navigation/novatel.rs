@@ -49,10 +49,11 @@ impl Framing for NovatelNavigation {
     fn read(&mut self, frame: &[u8]) -> Result<Option<NavigationReading>, ReadingDefect> {
         let found = if frame.first() == Some(&SYNC[0]) { binary(frame)? } else { line(frame)? };
         let Some((log, reading)) = found else { return Ok(None) };
-        if *self.log.get_or_insert(log) != log {
-            return Ok(None);
+        if reading.position_rad.is_some() {
+            self.log.get_or_insert(log);
         }
-        Ok(Some(reading))
+        let counts = self.log.is_none_or(|counts| counts == log);
+        Ok(counts.then_some(reading))
     }
 }
 
@@ -61,11 +62,15 @@ type Log = Option<(u16, NavigationReading)>;
 /// Values in the order of both logs: latitude, longitude, height; north, east, up; roll, pitch, azimuth.
 fn reading(
     time: (u32, f64),
+    is_solution: bool,
     height_m: f64,
     values: [f64; 9],
 ) -> Result<NavigationReading, ReadingDefect> {
     let time = gps(time.0, time.1)
         .ok_or(ReadingDefect::Unknown { field: "second of the week", found: time.1 as u32 })?;
+    if !is_solution {
+        return Ok(NavigationReading::at(time));
+    }
     let [latitude, longitude, _, north, east, up, roll, pitch, azimuth] = values;
     Ok(NavigationReading {
         time,
@@ -90,10 +95,8 @@ fn binary(frame: &[u8]) -> Result<Log, ReadingDefect> {
             is(INSPVA_BYTES)?;
             let time = (fields.u32_le(), fields.f64_le());
             let values: [f64; 9] = core::array::from_fn(|_| fields.f64_le());
-            if !is_solution(fields.u32_le()) {
-                return Ok(None);
-            }
-            Ok(Some((INSPVA, reading(time, values[2], values)?)))
+            let is_solution = is_solution(fields.u32_le());
+            Ok(Some((INSPVA, reading(time, is_solution, values[2], values)?)))
         }
         INSPVAX => {
             is(INSPVAX_BYTES)?;
@@ -102,12 +105,12 @@ fn binary(frame: &[u8]) -> Result<Log, ReadingDefect> {
             let position: [f64; 3] = core::array::from_fn(|_| fields.f64_le());
             let undulation_m = f64::from(fields.f32_le());
             let rest: [f64; 6] = core::array::from_fn(|_| fields.f64_le());
-            if !is_solution(status) {
-                return Ok(None);
-            }
             let ([a, b, c], [d, e, f, g, h, i]) = (position, rest);
             let time = (u32::from(log.time.0), f64::from(log.time.1) * 1e-3);
-            Ok(Some((INSPVAX, reading(time, c + undulation_m, [a, b, c, d, e, f, g, h, i])?)))
+            Ok(Some((
+                INSPVAX,
+                reading(time, is_solution(status), c + undulation_m, [a, b, c, d, e, f, g, h, i])?,
+            )))
         }
         _ => Ok(None),
     }
@@ -133,10 +136,8 @@ fn line(frame: &[u8]) -> Result<Log, ReadingDefect> {
             for value in &mut values {
                 *value = number(fields.next(), "solution")?;
             }
-            if !is_solution(fields.next()) {
-                return Ok(None);
-            }
-            Ok(Some((INSPVA, reading(time, values[2], values)?)))
+            let is_solution = is_solution(fields.next());
+            Ok(Some((INSPVA, reading(time, is_solution, values[2], values)?)))
         }
         Some("INSPVAXA") => {
             // Port, sequence, idle time and time status come before the time.
@@ -149,11 +150,11 @@ fn line(frame: &[u8]) -> Result<Log, ReadingDefect> {
             for value in &mut all {
                 *value = number(fields.next(), "solution")?;
             }
-            if !is_solution(status) {
-                return Ok(None);
-            }
             let [a, b, c, undulation_m, d, e, f, g, h, i] = all;
-            Ok(Some((INSPVAX, reading(time, c + undulation_m, [a, b, c, d, e, f, g, h, i])?)))
+            Ok(Some((
+                INSPVAX,
+                reading(time, is_solution(status), c + undulation_m, [a, b, c, d, e, f, g, h, i])?,
+            )))
         }
         _ => Ok(None),
     }

@@ -129,6 +129,6 @@ impl Framing for SbgNavigation {
                 reading.velocity_mps = (status & VELOCITY_VALID != 0).then_some(velocity);
             }
         }
-        Ok(reading.said())
+        Ok(Some(reading))
     }
 }

@@ -119,14 +119,13 @@ impl Found {
             moves && (self.mode.is_some() || (*latitude, *longitude) != (0.0, 0.0))
         });
         let [yaw, pitch, roll] = self.yaw_pitch_roll.unwrap_or_default();
-        NavigationReading {
+        Some(NavigationReading {
             time: self.time()?,
             position_rad: position.and_then(|[a, b, _]| position_rad([a, b])),
             height_m: position.map(|[_, _, height_m]| height_m),
             velocity_mps: self.velocity_mps.filter(|_| moves),
             attitude_rad: (points && self.yaw_pitch_roll.is_some())
                 .then(|| [roll, pitch, yaw].map(f64::to_radians)),
-        }
-        .said()
+        })
     }
 }

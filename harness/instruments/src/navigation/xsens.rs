@@ -2,7 +2,7 @@
 //!
 //! Velocity and attitude are in the axes that the identifier tells: east, north, up; north, east, down; north, west, up. The body is
 //! forward, left, up in the first and last, and forward, right, down in the second. The time is `UtcTime` where its flags say
-//! that it is valid, else `SampleTimeFine`. A frame whose status word says that the filter is not valid says nothing.
+//! that it is valid, else `SampleTimeFine`. A frame whose status word says that the filter is not valid has its time alone.
 
 use super::time::{Calendar, NavigationTime};
 use super::{NavigationReading, angles_rad, position_rad};
@@ -177,16 +177,15 @@ impl Framing for XsensNavigation {
         let fine_ns =
             found.fine.map(|fine| self.fine.continued(fine.into()).saturating_mul(FINE_NS));
         let time = found.utc_ns.map(NavigationTime::Utc).or(fine_ns.map(NavigationTime::Own));
-        if found.is_valid == Some(false) {
-            return Ok(None);
-        }
-        let reading = time.map(|time| NavigationReading {
-            time,
-            position_rad: found.position.and_then(position_rad),
-            height_m: found.height_m,
-            velocity_mps: found.velocity_mps,
-            attitude_rad: found.attitude_rad,
-        });
-        Ok(reading.and_then(NavigationReading::said))
+        Ok(time.map(|time| match found.is_valid {
+            Some(false) => NavigationReading::at(time),
+            _ => NavigationReading {
+                time,
+                position_rad: found.position.and_then(position_rad),
+                height_m: found.height_m,
+                velocity_mps: found.velocity_mps,
+                attitude_rad: found.attitude_rad,
+            },
+        }))
     }
 }
