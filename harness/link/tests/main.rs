@@ -16,6 +16,8 @@ mod misbehaving;
 #[cfg(unix)]
 mod no_allocation;
 #[cfg(unix)]
+mod power;
+#[cfg(unix)]
 mod sessions;
 mod slcan;
 #[cfg(all(target_os = "linux", feature = "can"))]
