@@ -80,7 +80,7 @@ fn the_items_are_the_kinds_that_can_act_by_their_places() {
     let mut left: Vec<_> = all
         .iter()
         // Inside an FMU there is no wire, and no harness.
-        .filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host))
+        .filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power))
         .filter(|kind| !FAULT_KIND.items.iter().any(|item| item.1 == kind.name))
         .map(|kind| kind.name)
         .collect();

@@ -8,6 +8,7 @@ use octant_faults::wire::Wired;
 use octant_realtime::clock::MonotonicTime;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance, Output, Parameters};
+use std::time::Duration;
 
 /// An endpoint of any kind.
 pub struct AnyEndpoint(Kind);
@@ -74,6 +75,23 @@ impl Endpoint for AnyEndpoint {
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         each!(&mut self.0, endpoint => endpoint.restart(offset))
+    }
+
+    fn power_off(&mut self, sample: u64) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.power_off(sample))
+    }
+
+    fn power_on(&mut self, sample: u64) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.power_on(sample))
+    }
+
+    fn voltage_dip(
+        &mut self,
+        voltage_v: f64,
+        length: Duration,
+        sample: u64,
+    ) -> Result<bool, EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.voltage_dip(voltage_v, length, sample))
     }
 
     fn parameters(&self) -> ParameterEstimate {

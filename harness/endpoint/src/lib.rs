@@ -5,6 +5,7 @@ mod any;
 mod fmu;
 mod in_process;
 mod live;
+mod powered;
 mod served;
 mod solution;
 
@@ -22,6 +23,7 @@ use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
 use octant_mapping::stepper::UseError;
+use octant_power::PowerError;
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::Event;
 use octant_sample::further::FurtherEstimates;
@@ -30,6 +32,7 @@ use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
 use octant_scenario::{self as scenario, Scenario};
 use octant_trajectory::PairsError;
+use std::time::Duration;
 
 /// Realisation of the calibration core.
 pub trait Endpoint {
@@ -83,6 +86,36 @@ pub trait Endpoint {
     /// # Errors
     /// If the endpoint failed, or can't restart its core.
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError>;
+
+    /// Cuts the power before the epoch of this number, from 1. Nothing is asked of the core until [`Self::power_on`].
+    ///
+    /// # Errors
+    /// If the power can't be cut.
+    fn power_off(&mut self, _sample: u64) -> Result<(), EndpointError> {
+        Ok(())
+    }
+
+    /// Gives the power back before the epoch of this number: the core restarts.
+    ///
+    /// # Errors
+    /// If the power can't be given, or the core doesn't come back.
+    fn power_on(&mut self, _sample: u64) -> Result<(), EndpointError> {
+        self.restart(None)
+    }
+
+    /// Lowers the voltage of the supply, V, for a time of the host before the epoch of this number. True: the core
+    /// restarted; false: it rode through.
+    ///
+    /// # Errors
+    /// If there is no such supply, or the core doesn't come back.
+    fn voltage_dip(
+        &mut self,
+        _voltage_v: f64,
+        _length: Duration,
+        _sample: u64,
+    ) -> Result<bool, EndpointError> {
+        Err(EndpointError::Unpowered { uri: self.uri() })
+    }
 
     /// Returns the parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;
@@ -207,6 +240,9 @@ pub enum EndpointOpenError {
     /// A device can't be used.
     #[error("begin a session with the device: {0}")]
     Live(#[from] SessionError),
+    /// The power of a device can't be switched.
+    #[error("give power to the device: {0}")]
+    Power(#[from] PowerError),
     /// The line or bus is too slow for the clock.
     #[error(transparent)]
     Load(#[from] octant_link::load::LoadError),
@@ -278,6 +314,15 @@ pub enum EndpointError {
     /// The session with the device can't go on.
     #[error("endpoint {0}")]
     Live(#[from] SessionError),
+    /// The power of the device failed.
+    #[error("power of the device: {0}")]
+    Power(#[from] PowerError),
+    /// The endpoint has no supply.
+    #[error("lower the supply of the core at {uri}: it has none that this program knows of")]
+    Unpowered {
+        /// URI of the endpoint.
+        uri: String,
+    },
     /// The core's answer broke the rules.
     #[error(transparent)]
     Misbehaved(#[from] answer::Misbehaviour),

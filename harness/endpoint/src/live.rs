@@ -4,6 +4,7 @@
 //! come: the outputs are therefore those of the device's core to the last bit, however bad the line
 //! is. By the clock a sample is sent once, and its answer is taken when it comes.
 
+use super::powered::Powered;
 use super::{Conclusion, Endpoint, EndpointError, EndpointOpenError, RemoteClock, Sent};
 use octant_calibration::CoreConfig;
 use octant_faults::catalogue::Acts;
@@ -13,6 +14,7 @@ use octant_link::harness::{
     ANEW, Harness, LinkEvent, Patience, Sending, SessionError, SessionOptions,
 };
 use octant_link::{PortError, Uri, Wire, load, port};
+use octant_power::PowerError;
 use octant_realtime::clock::{MonotonicTime, now};
 use octant_recorder::event::{self, LinkRecord};
 use octant_sample::Epoch;
@@ -34,6 +36,10 @@ pub struct LiveEndpoint {
     estimate: ParameterEstimate,
     begun: Instant,
     underway: Underway,
+    /// What feeds the device. Dropped last: the device hears its bye before.
+    power: Option<Powered>,
+    /// Failure to bring the power to its end state.
+    power_error: Option<PowerError>,
 }
 
 /// Samples that were sent by the clock and are not answered yet.
@@ -97,7 +103,14 @@ impl LiveEndpoint {
         let pacing =
             if scenario.realtime.by_clock { StepPacing::RealTime } else { StepPacing::LockStep };
         let options = SessionOptions { pacing, ..options };
-        let mut port = port::open(&live.uri, EndRole::Harness).map_err(SessionError::from)?;
+        let power = scenario.power.as_ref();
+        let power =
+            power.map(|plan| Powered::begin(plan, scenario.sample_period_ns)).transpose()?;
+        let mut port = match &power {
+            None => port::open(&live.uri, EndRole::Harness),
+            Some(_) => Powered::open_port(&live.uri, options.patience.hello),
+        }
+        .map_err(SessionError::from)?;
         if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
             port = octant_link::fault::around(port);
         }
@@ -120,6 +133,8 @@ impl LiveEndpoint {
                 asked: MonotonicTime::default(),
                 anew: 0,
             },
+            power,
+            power_error: None,
         })
     }
 
@@ -285,11 +300,48 @@ impl Endpoint for LiveEndpoint {
         Ok(self.harness.restart(offset)?)
     }
 
+    fn power_off(&mut self, sample: u64) -> Result<(), EndpointError> {
+        Ok(self.power.as_mut().map_or(Ok(()), |power| power.cut(sample))?)
+    }
+
+    fn power_on(&mut self, sample: u64) -> Result<(), EndpointError> {
+        if self.power.is_none() {
+            return self.restart(None);
+        }
+        self.estimate = NOTHING;
+        self.underway.steps.clear();
+        self.underway.held = None;
+        match &mut self.power {
+            Some(power) => power.back(sample, &mut self.harness),
+            None => Ok(()),
+        }
+    }
+
+    fn voltage_dip(
+        &mut self,
+        voltage_v: f64,
+        length: Duration,
+        sample: u64,
+    ) -> Result<bool, EndpointError> {
+        let Some(power) = &mut self.power else {
+            return Err(EndpointError::Unpowered { uri: self.uri.to_string() });
+        };
+        let restarted = power.dip((voltage_v, length), sample, &mut self.harness)?;
+        if restarted {
+            self.estimate = NOTHING;
+        }
+        Ok(restarted)
+    }
+
     fn parameters(&self) -> ParameterEstimate {
         self.estimate
     }
 
     fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        if self.power.as_ref().is_some_and(Powered::is_cut) {
+            // Nobody is there to conclude.
+            return Ok(None);
+        }
         let output = self.harness.end()?;
         self.take_parameters();
         Ok(output)
@@ -329,8 +381,18 @@ impl Endpoint for LiveEndpoint {
             unreadable: counts.unreadable,
             wall_s,
         };
-        let event = event::Event::Link(Box::new(link));
-        Conclusion { events: vec![event], ..Conclusion::default() }
+        let mut events = vec![event::Event::Link(Box::new(link))];
+        if let Some(power) = &mut self.power {
+            // Before its power goes, the device hears that the run is over.
+            self.harness.bye(Reason::DONE, "the run is over");
+            self.power_error = power.end().err();
+            events.push(event::Event::Power(Box::new(power.record())));
+        }
+        Conclusion { events, ..Conclusion::default() }
+    }
+
+    fn close(&mut self) -> Result<(), EndpointError> {
+        self.power_error.take().map_or(Ok(()), |error| Err(error.into()))
     }
 }
 

@@ -168,9 +168,15 @@ impl Manifest {
         });
         // The parts of the bench that a report shows are stored as text under their names.
         let bench = self.bench.iter().flat_map(|bench| {
-            ["instrument", "instrument's clock", "turntable", "table's angles"]
-                .into_iter()
-                .filter_map(|name| Some((name.to_owned(), bench.get(name)?.as_str()?.to_owned())))
+            [
+                "instrument",
+                "instrument's clock",
+                "turntable",
+                "table's angles",
+                "power of the device",
+            ]
+            .into_iter()
+            .filter_map(|name| Some((name.to_owned(), bench.get(name)?.as_str()?.to_owned())))
         });
         let realtime = self.realtime.iter().flat_map(|granted| {
             [

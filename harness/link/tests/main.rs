@@ -15,6 +15,8 @@ mod load;
 mod misbehaving;
 #[cfg(unix)]
 mod no_allocation;
+#[cfg(unix)]
+mod power;
 mod seal;
 mod sealed;
 #[cfg(unix)]

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, capture, characterise, compare, completions, design, diff, doctor, export, faults,
-    fmu, new, nightly, observe, progress, rare, rejudge, replay, report, requirements, run, score,
-    selftest, serve, smooth, turntable, verify, watch,
+    fmu, new, nightly, observe, power, progress, rare, rejudge, replay, report, requirements, run,
+    score, selftest, serve, smooth, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -74,6 +74,8 @@ enum Command {
     Rare(rare::Arguments),
     /// Build, check and step FMUs.
     Fmu(fmu::Arguments),
+    /// Look at the supply or the relay of a device, and switch it by hand.
+    Power(power::Arguments),
     /// Query, move or stop a turntable by hand, or simulate one.
     Turntable(turntable::Arguments),
     /// Check whether this host is fit for real-time runs, and advise what to change.
@@ -198,6 +200,7 @@ pub(crate) fn status() -> u8 {
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Rare(arguments) => rare::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
+        Command::Power(arguments) => power::command(&arguments),
         Command::Turntable(arguments) => turntable::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),

@@ -9,6 +9,7 @@ use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
+use octant_recorder::event::PowerRecord;
 use octant_report as report;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
@@ -19,6 +20,7 @@ use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
 use octant_scenario::{FilePlaces, Method, Scenario};
 use octant_score::junit::junit;
 use octant_source::configure::configurations;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -239,6 +241,7 @@ impl Asked {
         let reasons = what_broke(&primary, baseline.as_ref());
         let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
         let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
+        let bench = with_power(bench, primary.power.as_deref());
         let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
         let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
         let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
@@ -429,4 +432,24 @@ pub(crate) fn case(
         require: true,
         ..RunRequest::default()
     })
+}
+
+/// Adds the power of the device to what the manifest tells of the bench.
+fn with_power(bench: Option<Value>, power: Option<&PowerRecord>) -> Option<Value> {
+    let Some(power) = power else { return bench };
+    let mut bench = match bench {
+        Some(Value::Object(bench)) => bench,
+        _ => serde_json::Map::new(),
+    };
+    let end = power.end.map_or("in an unknown state", |end| if end.on { "on" } else { "off" });
+    let text = format!(
+        "{} ({}, {}), switched {} times, left {end}",
+        power.identity,
+        power.port,
+        power.outlet,
+        power.switchings.len()
+    );
+    bench.insert("power of the device".to_owned(), Value::String(text));
+    bench.insert("power".to_owned(), serde_json::to_value(power).unwrap_or_default());
+    Some(Value::Object(bench))
 }

@@ -62,6 +62,7 @@ impl From<octant_run::method::MethodError> for Failure {
                 )
                 | SetupError::Endpoint(
                     EndpointOpenError::Use(UseError::Gone { .. })
+                    | EndpointOpenError::Power(_)
                     | EndpointOpenError::Live(
                         SessionError::Port(_)
                         | SessionError::NoAnswer { .. }

@@ -68,7 +68,7 @@ pub(super) fn markdown(kind: &'static FaultKind) -> String {
 /// Returns whether a kind has a picture: a fault of the wire alters frames, and one of the host
 /// only their timing, so there is no sample to draw.
 pub(super) fn has_picture(kind: &FaultKind) -> bool {
-    !matches!(kind.acts, Acts::Wire | Acts::Host)
+    !matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power)
 }
 
 /// Draws the picture of a kind: its example, simulated.

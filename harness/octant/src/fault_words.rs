@@ -12,6 +12,7 @@ pub(crate) fn acts(acts: Acts) -> &'static str {
         Acts::Unit => "on the unit under test itself",
         Acts::Wire => "on the wire between the harness and a device",
         Acts::Host => "on the host that the harness runs on",
+        Acts::Power => "on the supply of a device",
         _ => "elsewhere",
     }
 }

@@ -31,6 +31,7 @@ pub mod new;
 mod nightly;
 mod observe;
 mod place;
+mod power;
 mod progress;
 pub mod progress_bar;
 mod rare;

@@ -124,6 +124,7 @@ pub(super) fn watch_interrupts() {
     // If no handler can be set, Ctrl-C ends the program at once; the recording survives.
     let _ = interrupt::watch(|| {
         octant_turntable::stop_all("the program was interrupted");
+        octant_power::write_all_ends();
         std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
     });
 }

@@ -178,10 +178,13 @@ fn every_kind_has_an_example_that_parses_and_builds() {
         // Faults of the wire need one; their name tells which.
         let port = if kind.name.starts_with("can-") { "can:can0" } else { "serial:/dev/ttyUSB0" };
         let endpoint = format!("[endpoint]\nuri = {port:?}\n");
+        let supply = "[power]\nport = \"tcp:psu\"\nvoltage = \"24 V\"\ncurrent_limit = \"2 A\"\n";
+        let powered = format!("{endpoint}{supply}");
         let more = match kind.acts {
             Acts::Wire => endpoint.as_str(),
             // Without the clock nothing can be late.
             Acts::Host => "[realtime]\npace = \"clock\"\n",
+            Acts::Power => powered.as_str(),
             _ => "",
         };
         let scenario = match parse(&format!("{HEAD}{more}{example}")) {

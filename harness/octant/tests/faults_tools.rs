@@ -200,8 +200,10 @@ fn minimise_finds_the_two_faults_that_break_a_run() {
 fn a_picture_of_nothing_is_refused() {
     let said = refused(&["faults", "describe", "spyke", "--picture", "x.svg"]);
     assert!(said.contains("unknown kind of fault \"spyke\", did you mean \"spike\"?"), "{said}");
-    // Faults of the wire and of the host alter no sample that could be drawn.
-    for kind in kinds::all().filter(|kind| matches!(kind.acts, Acts::Wire | Acts::Host)) {
+    // Faults of the wire, of the host and of a supply alter no sample that could be drawn.
+    for kind in
+        kinds::all().filter(|kind| matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power))
+    {
         let said = refused(&["faults", "describe", kind.name, "--picture", "x.svg"]);
         assert!(said.contains("to draw a picture"), "{said}");
     }

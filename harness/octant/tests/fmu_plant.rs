@@ -422,7 +422,7 @@ fn four_at_once_and_what_has_no_place() {
         let why = match kind.acts {
             Acts::Unit => "acts on the unit under test, and a plant has none",
             // These kinds need a device, or a harness, and have no scenario here.
-            Acts::Wire | Acts::Host => continue,
+            Acts::Wire | Acts::Host | Acts::Power => continue,
             _ => "can deliver several samples at once, and a plant gives one sample a step",
         };
         let fault = fault_of(kind.name);

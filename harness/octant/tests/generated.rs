@@ -53,7 +53,7 @@ fn names<'a>(kinds: impl Iterator<Item = &'a FaultKind>) -> Vec<&'a str> {
 /// Kinds that alter samples. Those of the wire need a device and those of the host the clock: they
 /// have no sample that could be drawn, and no short scenario.
 fn in_samples() -> impl Iterator<Item = &'static FaultKind> {
-    kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host))
+    kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power))
 }
 
 #[test]

@@ -80,6 +80,8 @@ mod new_scenario;
 mod nightly;
 mod observe_protection;
 mod own_sequences;
+#[cfg(unix)]
+mod power;
 mod progress_bar;
 mod qualification;
 mod rare;

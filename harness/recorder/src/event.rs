@@ -6,11 +6,13 @@ mod bench;
 mod fault_result;
 mod link;
 mod pacing;
+mod power;
 
 pub use bench::{BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchTable};
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;
 pub use pacing::{DeviceClock, LatenessOverRun, LatenessQuantiles, PacingRecord};
+pub use power::{PowerReadingRecord, PowerRecord, SwitchingRecord};
 
 use octant_realtime::schedule::Granted;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
@@ -84,6 +86,8 @@ pub enum Event {
         #[serde(serialize_with = "sorted")]
         pacing: Box<PacingRecord>,
     },
+    /// The supply or the relay of a device, at the end of a run.
+    Power(Box<PowerRecord>),
     /// Results of all faults, at the end of a run.
     Receipts(#[serde(serialize_with = "sorted")] Vec<FaultResult>),
     /// Refusal of a calibration.

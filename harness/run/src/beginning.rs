@@ -44,7 +44,7 @@ pub(super) struct Beginning {
 /// Returns what decides a run but its faults; `None` if it can't be divided.
 pub(super) fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues)> {
     let BranchPlan { scenario, method, seed, .. } = plan;
-    let elsewhere = |acts| matches!(acts, Acts::Host | Acts::Wire);
+    let elsewhere = |acts| matches!(acts, Acts::Host | Acts::Wire | Acts::Power);
     let divisible = scenario.source.is_plant_alone()
         && matches!(scenario.endpoint, EndpointSpec::InProcess)
         && !scenario.realtime.by_clock

@@ -146,9 +146,11 @@ impl Steps {
         }
         let epoch = &*epoch;
         for event in faults.unit_events(source)? {
-            unit::happen(event, endpoint)?;
+            let happened = unit::happen(event, *number, endpoint)?;
             *powered = *event != UnitEvent::PowerOff;
-            keeper.unit(event, *number);
+            if let Some(event) = happened {
+                keeper.unit(&event, *number);
+            }
         }
         let these = match faults.after(epoch, output) {
             _ if !*powered => &[],

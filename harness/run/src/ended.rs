@@ -67,6 +67,7 @@ impl RunError {
                 | Self::Endpoint(
                     EndpointError::Gone { .. }
                         | EndpointError::Live(_)
+                        | EndpointError::Power(_)
                         | EndpointError::Restart { .. }
                 )
                 | Self::Recorder(RecorderError::Write { .. })

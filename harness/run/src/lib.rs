@@ -35,6 +35,7 @@ pub mod method;
 pub mod minimise;
 pub mod paired;
 pub mod passes;
+mod planned;
 pub mod prepared;
 pub mod raw_counts;
 pub mod realtime;

@@ -1,6 +1,7 @@
 //! Runs one method of a scenario, from its configuration to its scores.
 
 pub use super::error::{MethodError, SetupError, core_problem};
+pub use super::planned::planned_of;
 pub use super::recording::StreamKeeping;
 
 use super::aligned::{self, uncertainty_of};
@@ -11,24 +12,25 @@ use super::faulted::Faulted;
 use super::filtered::FilteredSeries;
 use super::host::RunHost;
 use super::in_time::drive_in_time;
+use super::planned::estimator_name;
 use super::realtime::{TimeKeeping, drive_by_clock};
 use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY, Watcher};
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
+use octant_base::interrupt;
 use octant_calibration::config as core;
 use octant_calibration::table::CalibrationTable;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
-use octant_recorder::event::{BenchRecord, LinkRecord};
+use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble,
     Samples, concluded,
 };
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::DrawnValues;
-use octant_scenario::{self as scenario, Method, Realtime, Scenario};
+use octant_scenario::{Method, Realtime, Scenario};
 use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
 use octant_score::summary::{
     AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
@@ -74,6 +76,8 @@ pub struct MethodRun {
     pub link: Option<Box<LinkRecord>>,
     /// Clocks and counts of a real instrument and its table; as in the recording.
     pub bench: Option<Box<BenchRecord>>,
+    /// Switchings of the device's power; as in the recording.
+    pub power: Option<Box<PowerRecord>>,
     /// Description of the point where the source ended in the middle of something.
     pub cut_short: Option<String>,
 }
@@ -215,6 +219,7 @@ pub(super) struct Closed {
     kept: Option<TimeKeeping>,
     link: Option<Box<LinkRecord>>,
     bench: Option<Box<BenchRecord>>,
+    power: Option<Box<PowerRecord>>,
     cut_short: Option<String>,
 }
 
@@ -270,7 +275,9 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
         _ if watcher.misbehaved.is_some() => (Ended::Misbehaved, None, None),
         Ok((ended, last)) => (ended, last, None),
         // An interrupt stopped the moving equipment without waiting for the run.
-        Err(error) if error.is_gone() && control.cancel.load(Ordering::Relaxed) => {
+        Err(error)
+            if error.is_gone() && (control.cancel.load(Ordering::Relaxed) || interrupt::seen()) =>
+        {
             (Ended::Cancelled, None, None)
         }
         Err(error) if error.is_gone() => {
@@ -282,6 +289,10 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
     let mut conclusion = endpoint.conclusion();
     let link = conclusion.events.iter().find_map(|event| match event {
         Event::Link(link) => Some(link.clone()),
+        _ => None,
+    });
+    let power = conclusion.events.iter().find_map(|event| match event {
+        Event::Power(power) => Some(power.clone()),
         _ => None,
     });
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
@@ -296,7 +307,7 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
         }
         _ => (ended, broken),
     };
-    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short })
+    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, power, cut_short })
 }
 
 /// Builds the station of a scenario, with a host without targets; `None` without faults.
@@ -390,7 +401,8 @@ pub(super) fn finish(
     mut watcher: Watcher,
     truth: Option<&DrawnValues>,
 ) -> Result<MethodRun, MethodError> {
-    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short } = closed;
+    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench, power, cut_short } =
+        closed;
     if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample belongs to this output: the recording stores the parameters as an event.
@@ -474,26 +486,7 @@ pub(super) fn finish(
         kept,
         link,
         bench,
+        power,
         cut_short,
     })
-}
-
-/// Lists the parameters that a calibration is to estimate, where the plan names them.
-#[must_use]
-pub fn planned_of(plan: &scenario::CalibrationSpec) -> Vec<&'static str> {
-    match &plan.estimator {
-        core::Estimator::Kalman(_) => (0..NAMES.len())
-            .filter(|i| plan.estimates(ParameterGroup::of(*i)))
-            .map(|i| NAMES[i])
-            .collect(),
-        core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => Vec::new(),
-    }
-}
-
-fn estimator_name(estimator: &core::Estimator) -> &'static str {
-    match estimator {
-        core::Estimator::Kalman(_) => "kalman",
-        core::Estimator::LeastSquares(_) => "least-squares",
-        core::Estimator::ExternalTurntable(_) => "external-turntable",
-    }
 }

@@ -7,12 +7,14 @@ use octant_recorder::event::{UnitAction, by_name};
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
 use serde_json::Value;
+use std::time::Duration;
 
 /// Builds the event that happened before the unit got the sample of this number.
 #[must_use]
 pub fn event(event: &UnitEvent, sample: u64) -> Event {
     let (action, offset) = match event {
-        UnitEvent::Restart => (UnitAction::Restart, None),
+        // Of a dip only a restart is an event of the unit.
+        UnitEvent::VoltageDip { .. } | UnitEvent::Restart => (UnitAction::Restart, None),
         UnitEvent::PowerOff => (UnitAction::PowerOff, None),
         UnitEvent::PowerOn => (UnitAction::PowerOn, None),
         UnitEvent::RestartWith { offset } => {
@@ -72,18 +74,26 @@ pub fn of(event: &Event) -> Result<Option<UnitEvent>, UnitEventError> {
     }))
 }
 
-/// Applies the event to an endpoint. A power-off needs no action: no epoch reaches the unit, and it
-/// restarts when power comes back.
+/// Applies the event, which comes before the epoch of this number, to an endpoint. Returns what a replay has to apply: of a dip
+/// it is the restart, where there was one.
 ///
 /// # Errors
 /// If the endpoint can't.
 pub fn happen<E: Endpoint + ?Sized>(
     event: &UnitEvent,
+    sample: u64,
     endpoint: &mut E,
-) -> Result<(), EndpointError> {
+) -> Result<Option<UnitEvent>, EndpointError> {
     match event {
-        UnitEvent::PowerOff => Ok(()),
-        UnitEvent::PowerOn | UnitEvent::Restart => endpoint.restart(None),
-        UnitEvent::RestartWith { offset } => endpoint.restart(Some(offset)),
+        UnitEvent::PowerOff => endpoint.power_off(sample)?,
+        UnitEvent::PowerOn => endpoint.power_on(sample)?,
+        UnitEvent::Restart => endpoint.restart(None)?,
+        UnitEvent::RestartWith { offset } => endpoint.restart(Some(offset))?,
+        UnitEvent::VoltageDip { voltage_v, length_s } => {
+            let length = Duration::try_from_secs_f64(*length_s).unwrap_or_default();
+            let restarted = endpoint.voltage_dip(*voltage_v, length, sample)?;
+            return Ok(restarted.then_some(UnitEvent::Restart));
+        }
     }
+    Ok(Some(*event))
 }

@@ -41,6 +41,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("turntable.drive.azimuth", r#"["-185 deg", "365 deg"]"#),
     ("turntable.drive.roll", r#"["-185 deg", "365 deg"]"#),
     ("turntable.drive.guard", r#""1 s""#),
+    ("power.port", r#""tcp:192.168.1.30""#),
+    ("power.relay", "1"),
     ("procedure.calibration.name", r#""eight with other tilts""#),
     ("baseline.name", r#""level and on edge""#),
     ("imu.extensions.temperature.plateau", r#""15 K""#),

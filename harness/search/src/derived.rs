@@ -26,7 +26,7 @@ pub struct RunTimes {
 /// Kinds that a search can draw from: those that act on samples and on what makes them, not on a wire or on the
 /// host, whose effects are not those of the seed alone.
 pub fn searchable() -> impl Iterator<Item = &'static FaultKind> {
-    kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host))
+    kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power))
 }
 
 /// Makes the space of some kinds: sizes from a thousandth of the example's to a thousand times of it within the

@@ -326,7 +326,11 @@ fn words(event: &Event) -> String {
         Event::Pacing { .. } => "how time was kept".to_owned(),
         Event::Calibration { .. } => "calibration concluded by the end of the stream".to_owned(),
         Event::Other { kind, detail } => format!("{kind}: {detail}"),
-        Event::Bench(_) | Event::Host { .. } | Event::Link(_) | Event::Pace(_) => {
+        Event::Bench(_)
+        | Event::Host { .. }
+        | Event::Link(_)
+        | Event::Pace(_)
+        | Event::Power(_) => {
             let stored = serde_json::to_value(event).unwrap_or_default();
             format!("{}: {}", stored["kind"].as_str().unwrap_or_default(), stored["detail"])
         }

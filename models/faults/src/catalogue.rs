@@ -115,6 +115,8 @@ pub enum Acts {
     Wire,
     /// On the host that the harness runs on. The kind says what it needs.
     Host,
+    /// On the supply of the unit under test. Needs a device with a supply whose voltage can be set.
+    Power,
 }
 
 /// Duration of a fault of a kind.

@@ -51,4 +51,6 @@ pub enum Dimension {
     ScalePerK,
     /// (m/s²)²/Hz, written in g²/Hz.
     AccelerationPsd,
+    /// V.
+    Voltage,
 }

@@ -243,4 +243,12 @@ pub enum UnitEvent {
         /// Difference added to the initial parameters.
         offset: Parameters,
     },
+    /// The voltage of the unit's supply is lowered for a time of the host, and comes back. The unit itself shows whether it
+    /// restarts.
+    VoltageDip {
+        /// Voltage while it lasts, V.
+        voltage_v: f64,
+        /// Duration, s.
+        length_s: f64,
+    },
 }

@@ -50,6 +50,27 @@ fn power_goes_and_comes() {
 }
 
 #[test]
+fn a_dip_is_one_event_and_alters_no_sample() {
+    let values = [
+        ("voltage", Value::Quantity(9.0, Dimension::Voltage)),
+        ("length", Value::Quantity(0.25, Dimension::Time)),
+    ];
+    let dip = UnitEvent::VoltageDip { voltage_v: 9.0, length_s: 0.25 };
+    let outcome = run(&[fault("voltage-dip", &values, 20, 1)], 100);
+    assert_eq!(outcome.events, [(20, dip)]);
+    assert!(outcome.delivered.iter().all(|(at, epoch)| epoch.same_bits(&clean(*at))));
+    let receipt = &outcome.receipts[0];
+    assert_eq!((receipt.samples_altered, receipt.first_sample), (1, Some(20)));
+    // A unit without power has no voltage to lower.
+    let specs = [
+        named("dip", fault("voltage-dip", &values, 30, 1)),
+        named("cut", fault("brown-out", &[], 20, 30)),
+    ];
+    let outcome = run(&specs, 100);
+    assert_eq!(outcome.events, [(20, UnitEvent::PowerOff), (50, UnitEvent::PowerOn)]);
+}
+
+#[test]
 fn power_is_back_when_the_last_fault_ends() {
     for swapped in [false, true] {
         let mut specs = [

@@ -118,6 +118,7 @@ fn unit(dimension: Dimension) -> &'static str {
         Dimension::AccelBiasPerK => "m/s2/K",
         Dimension::ScalePerK => "1/K",
         Dimension::AccelerationPsd => "(m/s2)^2/Hz",
+        Dimension::Voltage => "V",
     }
 }
 
@@ -310,7 +311,7 @@ fn fault(place: usize, values: &CellValues) -> Result<Option<FaultSpec>, FaultEr
 fn refuse(kind: &FaultKind) -> Result<(), Misplaced> {
     match kind.acts {
         _ if acts_in_plant(kind) => Ok(()),
-        Acts::Unit => Err(Misplaced::Unit),
+        Acts::Unit | Acts::Power => Err(Misplaced::Unit),
         Acts::Delivery => Err(Misplaced::Delivery),
         _ => Err(Misplaced::Elsewhere),
     }

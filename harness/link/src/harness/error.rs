@@ -79,6 +79,19 @@ pub enum SessionError {
         /// The port.
         port: String,
     },
+    /// The device is another one than before it was without power.
+    #[error(
+        "{port}: {found:?} answers after the power was back, expected {expected:?} as before: another \
+         firmware, or another device"
+    )]
+    OtherDevice {
+        /// The port.
+        port: String,
+        /// Name and firmware found.
+        found: String,
+        /// Name and firmware before.
+        expected: String,
+    },
     /// The device lacks a capability that was asked for.
     #[error("{port}: the device doesn't do {what}")]
     Unsupported {

@@ -1,14 +1,17 @@
 //! Greeting of a session: hellos until the other end answers.
 
 use super::error::{HeardTraffic, SessionError};
-use super::options::Patience;
+use super::options::{Patience, SessionOptions};
 use crate::asking::Taken;
 use crate::wire::{Incoming, TrafficCounts, Wire};
-use octant_wire::message::{Hello, Message, Reason};
-use std::time::Instant;
+use octant_wire::Text;
+use octant_wire::message::{
+    Agreement, Bye, Capabilities, EndLimits, EndRole, Hello, Message, Reason, agree,
+};
+use std::time::{Duration, Instant};
 
 /// Draws a random session number other than 0, so that no recent session has the same.
-pub(super) fn draw_session() -> u32 {
+fn draw_session() -> u32 {
     use std::hash::{BuildHasher, Hasher};
     // `RandomState` is keyed by random numbers of the system.
     let mut hasher = std::collections::hash_map::RandomState::new().build_hasher();
@@ -57,11 +60,11 @@ fn refuses(reason: Reason) -> bool {
 }
 
 /// True if a terminal would execute a character, or reorder the line because of it.
-pub(super) fn is_control(c: char) -> bool {
+fn is_control(c: char) -> bool {
     c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-pub(super) fn say_hello(
+fn say_hello(
     wire: &mut Wire,
     ours: &Hello,
     patience: &Patience,
@@ -116,4 +119,45 @@ pub(super) fn say_hello(
             });
         }
     }
+}
+
+/// Says hello until the other end answers, for as long as `hello`, and checks that the two fit together.
+pub(super) fn greet(
+    wire: &mut Wire,
+    options: &SessionOptions,
+    hello: Duration,
+) -> Result<(Hello, Agreement), SessionError> {
+    let session = draw_session();
+    let ours = Hello {
+        role: EndRole::Harness,
+        pacing: options.pacing,
+        session,
+        capabilities: Capabilities::empty(),
+        sample_period_ns: options.sample_period_ns,
+        limits: EndLimits::default(),
+        configuration: options.configuration,
+        name: options.name,
+        firmware: options.firmware,
+        ..Hello::default()
+    };
+    let mut stale = None;
+    let theirs = say_hello(wire, &ours, &Patience { hello, ..options.patience }, &mut stale)?;
+    for (field, text) in [("name", theirs.name.as_str()), ("firmware", theirs.firmware.as_str())] {
+        let Some(character) = text.chars().find(|c| is_control(*c)) else { continue };
+        let bye =
+            Bye { reason: Reason::FAILED, text: Text::fitting("control characters in a name") };
+        let _ = wire.send(&Message::Bye(bye), options.patience.repeat);
+        return Err(SessionError::Control {
+            port: wire.name().to_owned(),
+            field,
+            found: text.to_owned(),
+            character,
+        });
+    }
+    let agreement = agree(&ours, &theirs).map_err(|reason| {
+        // The device may be gone before it receives the bye.
+        let _ = wire.send(&Message::Bye(reason.bye()), options.patience.repeat);
+        SessionError::Refused { port: wire.name().to_owned(), reason }
+    })?;
+    Ok((theirs, agreement))
 }

@@ -9,6 +9,7 @@ mod event;
 mod greeting;
 mod incoming;
 mod options;
+mod power;
 
 pub use error::{HeardTraffic, SessionError};
 pub use event::{Effort, LinkEvent, Sending};
@@ -17,13 +18,13 @@ pub use options::{Patience, SessionOptions};
 use crate::asking::Taken;
 use crate::port::PortError;
 use crate::wire::{TrafficCounts, Wire};
-use greeting::{draw_session, is_control, say_hello};
+use greeting::greet;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_wire::Text;
 use octant_wire::message::{
     Agreement, AidingMessage, Bye, Capabilities, ClockTime, DeviceStatus, End, EndCondition,
-    EndLimits, EndRole, Gathered, Gathering, Heartbeat, Hello, Message, OutputMessage, Reason,
-    Restart, SampleMessage, StepNumber, TimeRequest, agree,
+    Gathered, Gathering, Heartbeat, Hello, Message, OutputMessage, Reason, Restart, SampleMessage,
+    StepNumber, TimeRequest,
 };
 use std::time::{Duration, Instant};
 
@@ -56,40 +57,7 @@ impl Harness {
     /// # Errors
     /// If nobody answers, or the two ends don't fit together.
     pub fn open(mut wire: Wire, options: SessionOptions) -> Result<Self, SessionError> {
-        let session = draw_session();
-        let ours = Hello {
-            role: EndRole::Harness,
-            pacing: options.pacing,
-            session,
-            capabilities: Capabilities::empty(),
-            sample_period_ns: options.sample_period_ns,
-            limits: EndLimits::default(),
-            configuration: options.configuration,
-            name: options.name,
-            firmware: options.firmware,
-            ..Hello::default()
-        };
-        let mut stale = None;
-        let theirs = say_hello(&mut wire, &ours, &options.patience, &mut stale)?;
-        for (field, text) in
-            [("name", theirs.name.as_str()), ("firmware", theirs.firmware.as_str())]
-        {
-            let Some(character) = text.chars().find(|c| is_control(*c)) else { continue };
-            let bye =
-                Bye { reason: Reason::FAILED, text: Text::fitting("control characters in a name") };
-            let _ = wire.send(&Message::Bye(bye), options.patience.repeat);
-            return Err(SessionError::Control {
-                port: wire.name().to_owned(),
-                field,
-                found: text.to_owned(),
-                character,
-            });
-        }
-        let agreement = agree(&ours, &theirs).map_err(|reason| {
-            // The device may be gone before it receives the bye.
-            let _ = wire.send(&Message::Bye(reason.bye()), options.patience.repeat);
-            SessionError::Refused { port: wire.name().to_owned(), reason }
-        })?;
+        let (theirs, agreement) = greet(&mut wire, &options, options.patience.hello)?;
         Ok(Self {
             wire,
             options,

@@ -1151,6 +1151,44 @@ class Motion(Section):
     @ship.setter
     def ship(self, value: MotionShip | Mapping[str, Any]) -> None: ...
 
+class Power(Section):
+    """The supply or the relay that feeds the device of the endpoint, over SCPI. Takes a table with port,
+    channel, relay, voltage, current_limit, tolerance, settle, rest, lead, reply, remote, end. Left out:
+    nothing is switched."""
+
+    channel: int
+    """Channel of the supply, selected by its number. Takes a whole number from 1 to 999. Left out: the supply
+    has one channel, or the selected one is meant."""
+    current_limit: str
+    """Current limit of the supply. Takes a current such as "2 A". Left out: a relay has none."""
+    end: Literal["off", "on"]
+    """How the output is left when the run has ended, however it ended. Takes one of "off", "on". Default: "off"."""
+    lead: str
+    """How long the device is on before it is greeted and the run begins. Takes a time such as "12 h". Default:
+    "0 s"."""
+    port: str
+    """Port of the supply or of the relays, which speak SCPI: tcp:HOST, tcp:HOST:PORT (5025 by default) or
+    serial:DEVICE?baud=RATE. Takes a text in quotes."""
+    relay: int
+    """Number of the relay that feeds the device, in place of a channel: closed is on. Takes a whole number from
+    1 to 999999999. Left out: a supply feeds the device."""
+    remote: bool
+    """Whether SYST:REM is sent first: some supplies need it on a serial line. Takes true or false. Default:
+    false."""
+    reply: str
+    """How long a reply of the instrument is waited for. Takes a time such as "12 h". Default: "2 s"."""
+    rest: str
+    """How long the output is off before it is switched on for the run. 0 s: a device that is on stays on. Takes
+    a time such as "12 h". Default: "1 s"."""
+    settle: str
+    """How long a measured voltage may take to come to its value; then the run ends as an error of the bench.
+    Takes a time such as "12 h". Default: "2 s"."""
+    tolerance: str
+    """Largest deviation of a measured voltage, as a share of the voltage; also the largest voltage that is off.
+    Takes a ratio such as "30 ppm". Default: "5 %"."""
+    voltage: str
+    """Voltage of the supply. Takes a voltage such as "24 V". Left out: a relay has none."""
+
 class ProcedureAlignment(Section):
     """How the initial attitude is found. Takes a table with method, tilt, azimuth, velocity, attitude_error,
     velocity_error, duration."""
@@ -2647,6 +2685,13 @@ class Scenario(Section):
         """How the case of the instrument moves. Takes a table with kind, heading, pitch, roll, ship."""
     @motion.setter
     def motion(self, value: Motion | Mapping[str, Any]) -> None: ...
+    @property
+    def power(self) -> Power:
+        """The supply or the relay that feeds the device of the endpoint, over SCPI. Takes a table with port,
+        channel, relay, voltage, current_limit, tolerance, settle, rest, lead, reply, remote, end. Left out:
+        nothing is switched."""
+    @power.setter
+    def power(self, value: Power | Mapping[str, Any]) -> None: ...
     @property
     def procedure(self) -> Procedure:
         """What the core does: align, calibrate, navigate. Takes a table with alignment, calibration, navigation,

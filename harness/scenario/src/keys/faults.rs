@@ -171,6 +171,7 @@ pub fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
         Of::AccelBiasPerK => UnitDimension::ACCEL_BIAS_PER_K,
         Of::ScalePerK => UnitDimension::SCALE_PER_K,
         Of::AccelerationPsd => UnitDimension::ACCELERATION_PSD,
+        Of::Voltage => UnitDimension::VOLTAGE,
     }
 }
 

@@ -16,6 +16,7 @@ mod fmu;
 mod further;
 mod instrument;
 mod link;
+mod power;
 mod run;
 mod screening;
 mod source;
@@ -44,6 +45,7 @@ pub(crate) use further::{
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;
+pub(crate) use power::PowerKeys;
 pub(crate) use run::{
     DecisionKeys, EndpointKeys, EquipmentKeys, MotionKeys, MotionKind, RealtimeKeys, RecordKeys,
     RequirementKeys, ScenarioKeys,

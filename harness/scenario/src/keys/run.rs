@@ -7,6 +7,7 @@ use super::fmu::EndpointFmuKeys;
 use super::further::DrawnSiteKeys;
 use super::instrument::{ImuKeys, TurntableKeys};
 use super::link::LinkKeys;
+use super::power::PowerKeys;
 use super::screening::{ScreeningKeys, on_off};
 use super::source::SourceKeys;
 use super::table::{
@@ -53,6 +54,8 @@ keys! {
         record: RecordKeys = table(), section, "What is recorded, and how often.";
         source: SourceKeys = table(), section, "Where the samples come from.";
         endpoint: EndpointKeys = table(), section, "Where the core runs.";
+        power: Option<PowerKeys> = table::<PowerKeys>(), absent("nothing is switched"),
+            "The supply or the relay that feeds the device of the endpoint, over SCPI.";
         realtime: RealtimeKeys = table(), section,
             "Whether the run goes by the clock, how, and what makes it too late.";
         display: DisplayKeys = table(), section,

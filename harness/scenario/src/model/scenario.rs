@@ -14,6 +14,7 @@ use octant_calibration::config as core;
 use octant_faults::station::FaultSpec;
 use octant_faults::{FaultBuildError, Setup, Station};
 use octant_plant::config as plant;
+use octant_power::PowerPlan;
 #[cfg(doc)]
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
@@ -74,6 +75,8 @@ pub struct Scenario {
     pub reference: Option<ReferenceSpec>,
     /// Place of the core.
     pub endpoint: EndpointSpec,
+    /// What feeds the device of the endpoint, if it is switched.
+    pub power: Option<PowerPlan>,
     /// Pacing by the clock.
     pub realtime: Realtime,
     /// Units of errors in report and terminal, at the scenario's site.

@@ -6,6 +6,7 @@ mod grid;
 mod schedule;
 mod value;
 
+use super::power;
 use super::reader::Reader;
 use crate::error::Problem;
 use crate::keys::{At, FaultKeys, FromTable, Raw};
@@ -96,6 +97,9 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
         return Err(table.problem("kind", format!("{name} {why}")));
     }
     if let Some((key, why)) = on_this_host(kind, scenario, table) {
+        return Err(table.problem(key, format!("{name} {why}")));
+    }
+    if let Some((key, why)) = power::without_power(kind, scenario, table) {
         return Err(table.problem(key, format!("{name} {why}")));
     }
     let mut values = Values::default();

@@ -8,6 +8,7 @@ mod further;
 mod instrument;
 mod instrument_port;
 mod live;
+mod power;
 mod procedure;
 pub(crate) mod reader;
 mod reference;
@@ -86,6 +87,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         source,
         reference: None,
         endpoint,
+        power: None,
         realtime: realtime(&keys.realtime),
         display: display(&keys),
         motion,
@@ -94,7 +96,8 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         document: DocumentTable::default(),
     };
     let reference = reference::read(&keys, &scenario)?;
-    let scenario = Scenario { reference, ..scenario };
+    let power = power::read(&keys, &scenario)?;
+    let scenario = Scenario { reference, power, ..scenario };
     check_once(&keys, &scenario)?;
     further::check_endpoint(&keys.endpoint.uri, &scenario)?;
     trajectory::check(&keys, &scenario)?;

@@ -14,9 +14,10 @@ mod plant;
 mod ring_laser;
 mod six;
 mod span;
+mod supply;
 mod time;
 mod turntable;
-mod unit;
+pub mod unit;
 pub mod wire;
 
 use crate::catalogue::FaultKind;
@@ -33,6 +34,7 @@ pub static KINDS: &[&[&FaultKind]] = &[
     aiding::KINDS,
     wire::KINDS,
     host::KINDS,
+    supply::KINDS,
 ];
 
 /// Iterates over all kinds.

@@ -36,8 +36,8 @@ fn build_restart(_: &Values, _: &Setup) -> Result<FaultRule, FaultBuildError> {
 
 /// One event at each onset.
 #[derive(Clone, Debug)]
-pub(super) struct Once {
-    pub(super) event: UnitEvent,
+pub(crate) struct Once {
+    pub(crate) event: UnitEvent,
 }
 
 octant_state::state! { Once { values: ; parts: ; kept: event } }
@@ -48,7 +48,8 @@ impl UnitRule for Once {
     }
 }
 
-pub(super) static BROWN_OUT: FaultKind = FaultKind {
+/// Loss of power for a time; of a device with a supply it is a real one.
+pub static BROWN_OUT: FaultKind = FaultKind {
     name: "brown-out",
     family: Family::Unit,
     acts: Acts::Unit,
@@ -59,7 +60,11 @@ pub(super) static BROWN_OUT: FaultKind = FaultKind {
             turntable and reference keep their power: time, numbers and motion go on.\n\n\
             Of several faults that cut the power, it goes with the first onset and comes back with \
             the last end; what else would happen to the unit meanwhile doesn't. Every epoch that \
-            it missed counts as altered. Without a duration the unit stays off.",
+            it missed counts as altered. Without a duration the unit stays off.\n\n\
+            A device with `[power]` loses real power: its supply or relay is switched off before the \
+            epoch of the onset and on before that of the end, and a new session begins when the device \
+            has started. It is off for no less than the fault's duration in time of the host as well: \
+            in lock-step the source waits.",
     parameters: &[],
     lasts: Lasts::Span,
     example: Example::of(&[("duration", r#""5 s""#)]),
