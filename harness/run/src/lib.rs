@@ -4,7 +4,7 @@
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work, [`at_rest`] keeps the noise of
-//! the sensors, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
+//! the sensors, `attended` asks a person, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
 //! scores;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
@@ -15,6 +15,7 @@
 mod aligned;
 pub mod assemble;
 pub mod at_rest;
+mod attended;
 mod beginning;
 mod branch;
 pub mod branches;
@@ -35,6 +36,7 @@ pub mod method;
 pub mod minimise;
 pub mod paired;
 pub mod passes;
+mod planned;
 pub mod prepared;
 pub mod raw_counts;
 pub mod realtime;
