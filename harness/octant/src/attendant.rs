@@ -1,7 +1,7 @@
 //! The operator of a run: whether somebody can be asked, on which ways, and what they are told.
 
 use crate::failure::Failure;
-use crate::operator_page::OperatorPage;
+use crate::operator_page::{BoundOperatorPage, OperatorPage};
 use crate::operator_terminal::{OperatorTerminal, TypedLine};
 use crate::terminal::note;
 use octant_base::control::Control;
@@ -37,7 +37,7 @@ pub struct OperatorWays {
 pub(crate) struct OperatorPlan {
     script: Option<Vec<ScriptAnswer>>,
     terminal: bool,
-    page: Option<String>,
+    page: Option<BoundOperatorPage>,
     runs_on: Option<String>,
 }
 
@@ -52,8 +52,10 @@ impl OperatorWays {
                 let message = "--answers: the scenario has no steps in [[operator]]";
                 return Err(Failure::input(message));
             }
-            let plan = self.with(None, false, runs_on(instrument, by_clock));
-            return Ok((self.page.is_some() || self.attended && is_bench).then_some(plan));
+            if self.page.is_none() && !(self.attended && is_bench) {
+                return Ok(None);
+            }
+            return self.with(None, false, runs_on(instrument, by_clock)).map(Some);
         };
         let refused =
             |why: &str| Err(Failure::input(format!("failed to ask step {first:?}: {why}")));
@@ -90,7 +92,7 @@ impl OperatorWays {
                 None
             }
         };
-        Ok(Some(self.with(script, terminal, runs_on(instrument, by_clock))))
+        self.with(script, terminal, runs_on(instrument, by_clock)).map(Some)
     }
 
     fn with(
@@ -98,9 +100,9 @@ impl OperatorWays {
         script: Option<Vec<ScriptAnswer>>,
         terminal: bool,
         runs_on: Option<&str>,
-    ) -> OperatorPlan {
-        let (page, runs_on) = (self.page.clone(), runs_on.map(str::to_owned));
-        OperatorPlan { script, terminal, page, runs_on }
+    ) -> Result<OperatorPlan, Failure> {
+        let page = self.page.as_deref().map(BoundOperatorPage::bind).transpose()?;
+        Ok(OperatorPlan { script, terminal, page, runs_on: runs_on.map(str::to_owned) })
     }
 }
 
@@ -125,7 +127,7 @@ impl Attendant {
         let desk = Arc::new(Desk::new(&scenario.operator, folder, runs_on, script));
         let mailbox =
             Mailbox::open(folder).map_err(|error| Failure::bench(format!("failed to {error}")))?;
-        let page = page.map(|address| OperatorPage::start(&address, &scenario.title, &desk));
+        let page = page.map(|page| page.serve(&scenario.title, &desk));
         let _page = page.transpose()?;
         Ok(Self { desk, mailbox, terminal, _page, folder: folder.to_owned() })
     }

@@ -23,7 +23,7 @@ pub(super) struct AnswerArguments {
     #[arg(value_name = "ID")]
     id: String,
     /// The answer: yes or no, a number, a text, a choice.
-    #[arg(value_name = "VALUE", allow_negative_numbers = true)]
+    #[arg(value_name = "VALUE", allow_hyphen_values = true)]
     value: String,
     #[command(flatten)]
     who: Who,

@@ -116,9 +116,27 @@ fn a_page_asks_and_takes_answers_with_the_token_of_the_run_alone() {
         assert!(status == 409 && told.contains(words), "{told}");
     }
     assert_eq!(http(address, "GET /else", Some(token), "").0, 404);
+    // Without the token nobody takes the run's memory or time.
+    let raw = |text: &str| {
+        let mut stream = std::net::TcpStream::connect(address).unwrap();
+        stream.write_all(text.as_bytes()).unwrap();
+        stream
+    };
+    let silent = ["", "GET /", "POST /do HTTP/1.1\r\nContent-Length: 9\r\n\r\n"].map(raw);
+    for (text, status) in [
+        ("POST /do HTTP/1.1\r\nContent-Length: 9000000000000000000\r\n\r\n", "413"),
+        ("POST /do HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n", "400"),
+        ("POST /do HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n", "411"),
+        ("nonsense\r\n\r\n", "400"),
+    ] {
+        let mut told = String::new();
+        raw(text).read_to_string(&mut told).unwrap();
+        assert!(told.starts_with(&format!("HTTP/1.1 {status} ")), "{text}: {told}");
+    }
     assert_eq!(http(address, "POST /do", Some(token), yes).0, 200);
     let (status, words) = run.end();
     assert_eq!(status, Some(0), "{words}");
     assert_eq!(bench.acts("run")[1], record(["answered", "door", "yes", "Ada", "page"]));
     assert!(std::net::TcpStream::connect(address).is_err(), "the page outlasts its run");
+    drop(silent);
 }

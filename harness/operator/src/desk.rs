@@ -164,23 +164,8 @@ impl Desk {
                         let _ = self.take(&mut state, index, &answer.value, &by, AnswerWay::File);
                     }
                 }
-                QuestionState::Open { since, overdue: false } => {
-                    let Question { step, .. } = &state.questions[index];
-                    if step.timeout.is_none_or(|timeout| since.elapsed() < timeout) {
-                        continue;
-                    }
-                    let (id, follows) = (step.id.clone(), step.on_timeout);
-                    self.keep(&mut state, OperatorAct::Overdue, |record| {
-                        record.step = Some(id.clone());
-                        record.after_s = Some(seconds(since));
-                    });
-                    state.questions[index].state = QuestionState::Open { since, overdue: true };
-                    if follows == OnTimeout::Abort {
-                        let reason = format!("nobody answered step {id:?} in time");
-                        self.end(&mut state, &reason, None, None);
-                    }
-                }
-                QuestionState::Open { .. } | QuestionState::Closed { .. } => {}
+                QuestionState::Open { .. } => self.overdue(&mut state, index),
+                QuestionState::Closed { .. } => {}
             }
             if state.aborted.is_some() {
                 return;
@@ -197,6 +182,24 @@ impl Desk {
             record.expected = Some(step.form.expected());
             (record.step, record.ask, record.sample) = (Some(step.id), Some(step.ask), sample);
         });
+    }
+
+    /// Notes that nobody answered a question in time, once, and ends the run where that follows.
+    fn overdue(&self, state: &mut DeskState, index: usize) {
+        let Question { step, state: is, .. } = &mut state.questions[index];
+        let QuestionState::Open { since, overdue: overdue @ false } = is else { return };
+        if step.timeout.is_none_or(|timeout| since.elapsed() < timeout) {
+            return;
+        }
+        *overdue = true;
+        let (id, follows, since) = (step.id.clone(), step.on_timeout, *since);
+        self.keep(state, OperatorAct::Overdue, |record| {
+            (record.step, record.after_s) = (Some(id.clone()), Some(seconds(since)));
+        });
+        if follows == OnTimeout::Abort {
+            let reason = format!("nobody answered step {id:?} in time");
+            self.end(state, &reason, None, None);
+        }
     }
 
     /// Takes an answer to a step, if it is the first one. An empty name is none.
@@ -231,6 +234,10 @@ impl Desk {
         by: &str,
         way: AnswerWay,
     ) -> Result<String, DeskRefusal> {
+        if way != AnswerWay::File {
+            // A process that stood still may see an answer before it sees that its time is over.
+            self.overdue(state, index);
+        }
         let Question { step, state: is, sample } = &state.questions[index];
         let (id, sample) = (step.id.clone(), *sample);
         let since = match is {

@@ -13,6 +13,8 @@ pub const FILE_NAME: &str = "operator.jsonl";
 pub struct Journal {
     path: PathBuf,
     file: Option<File>,
+    /// Set by a record that wasn't written whole: none may follow on its line.
+    broken: bool,
 }
 
 /// Reasons why a journal can't be used.
@@ -44,7 +46,7 @@ impl Journal {
     /// Makes the journal of a run in this folder.
     #[must_use]
     pub fn new(folder: &Path) -> Self {
-        Self { path: folder.join(FILE_NAME), file: None }
+        Self { path: folder.join(FILE_NAME), file: None, broken: false }
     }
 
     /// Adds a record, and returns its line when the disk has it.
@@ -62,8 +64,13 @@ impl Journal {
                 none.insert(opened.map_err(|source| refused("make", path, source))?)
             }
         };
+        if self.broken {
+            let source = io::Error::other("a record before it wasn't written");
+            return Err(refused("write", path, source));
+        }
         let written =
             file.write_all(format!("{line}\n").as_bytes()).and_then(|()| file.sync_data());
+        self.broken = written.is_err();
         written.map_err(|source| refused("write", path, source))?;
         Ok(line)
     }

@@ -10,6 +10,8 @@
 
 pub mod answer;
 pub mod desk;
+#[cfg(feature = "page")]
+mod http;
 pub mod journal;
 pub mod mailbox;
 #[cfg(feature = "page")]

@@ -6,29 +6,41 @@
 
 use crate::answer::AnswerForm;
 use crate::desk::{Desk, OpenQuestion};
+use crate::http::{self, NoRequest};
 use crate::mailbox::{DeskReply, DeskRequest};
 use crate::record::AnswerWay;
 use serde::Serialize;
-use std::io::Read;
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::JoinHandle;
-use tiny_http::{Header, Method, Request, Response, Server, StatusCode};
+use std::time::Duration;
 
 /// Address by default: this host alone, any free port.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:0";
 
-/// Most bytes of a request.
-const LARGEST: u64 = 1 << 16;
-
 /// Name of the header with the token.
 const TOKEN: &str = "X-Octant-Token";
 
-/// A page that is served until it is dropped.
-pub struct Page {
-    server: Arc<Server>,
-    thread: Option<JoinHandle<()>>,
+/// Most connections at a time; further ones are refused.
+const CONNECTIONS: usize = 16;
+
+/// Pause between two looks for a connection.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// A page whose address is taken, and that isn't served yet: a browser that comes early waits.
+#[derive(Debug)]
+pub struct BoundPage {
+    listener: TcpListener,
+    token: String,
     url: String,
+}
+
+/// A page that is served until it is dropped.
+#[derive(Debug)]
+pub struct Page {
+    over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
 /// Reasons why there is no page.
@@ -75,31 +87,24 @@ impl PageQuestion {
     }
 }
 
-impl Page {
-    /// Serves the page of a desk at an address, `HOST:PORT`.
+impl BoundPage {
+    /// Takes an address, `HOST:PORT`.
     ///
     /// # Errors
     /// If the address can't be listened at.
-    pub fn start(address: &str, title: &str, desk: Arc<Desk>) -> Result<Self, PageError> {
+    pub fn bind(address: &str) -> Result<Self, PageError> {
         let failed = |reason: String| PageError { address: address.to_owned(), reason };
         let parsed: SocketAddr = address.parse().map_err(|_| {
             failed("expected an address and a port, such as 127.0.0.1:8080".to_owned())
         })?;
-        let server = Arc::new(Server::http(parsed).map_err(|error| failed(error.to_string()))?);
+        let refused = |error: std::io::Error| failed(error.to_string());
+        let listener = TcpListener::bind(parsed).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| failed(error.to_string()))?;
         let token: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        let at = server.server_addr().to_ip().unwrap_or(parsed);
-        let url = format!("http://{at}/#{token}");
-        let (listener, title) = (Arc::clone(&server), title.to_owned());
-        let serve = move || {
-            for request in listener.incoming_requests() {
-                answer(request, &title, &token, &desk);
-            }
-        };
-        let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve);
-        let thread = Some(thread.map_err(|error| failed(error.to_string()))?);
-        Ok(Self { server, thread, url })
+        let url = format!("http://{}/#{token}", listener.local_addr().map_err(refused)?);
+        Ok(Self { listener, token, url })
     }
 
     /// Address for the browser, with the token behind `#`, which a browser doesn't send.
@@ -107,11 +112,27 @@ impl Page {
     pub fn url(&self) -> &str {
         &self.url
     }
+
+    /// Serves the page of a desk.
+    ///
+    /// # Errors
+    /// If there is no thread for it.
+    pub fn serve(self, title: &str, desk: Arc<Desk>) -> Result<Page, PageError> {
+        let Self { listener, token, url } = self;
+        let over = Arc::new(AtomicBool::new(false));
+        let (ends, shown) =
+            (Arc::clone(&over), Arc::new(Shown { title: title.to_owned(), token, desk }));
+        let thread = std::thread::Builder::new().name("page".to_owned());
+        let thread = thread.spawn(move || listen(&listener, &shown, &ends));
+        let thread =
+            thread.map_err(|error| PageError { address: url, reason: error.to_string() })?;
+        Ok(Page { over, thread: Some(thread) })
+    }
 }
 
 impl Drop for Page {
     fn drop(&mut self) {
-        self.server.unblock();
+        self.over.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
             // Only the page has failed, not the run.
             let _ = thread.join();
@@ -119,72 +140,89 @@ impl Drop for Page {
     }
 }
 
+/// What the connections of a page have in common.
+struct Shown {
+    title: String,
+    token: String,
+    desk: Arc<Desk>,
+}
+
+/// Takes connections until the page is over, each on a thread of its own: a slow one delays no other, and not the end.
+fn listen(listener: &TcpListener, shown: &Arc<Shown>, over: &AtomicBool) {
+    let count = Arc::new(AtomicUsize::new(0));
+    while !over.load(Ordering::Relaxed) {
+        let Ok((mut stream, _)) = listener.accept() else {
+            std::thread::sleep(LOOK);
+            continue;
+        };
+        // On some systems it has the mode of its listener.
+        if stream.set_nonblocking(false).is_err() {
+            continue;
+        }
+        if count.load(Ordering::Relaxed) >= CONNECTIONS {
+            let _ = http::reply(&mut stream, 503, TEXT, "too many connections\n");
+            continue;
+        }
+        count.fetch_add(1, Ordering::Relaxed);
+        let (shown, own) = (Arc::clone(shown), Arc::clone(&count));
+        let answer = move || {
+            answer(&mut stream, &shown);
+            own.fetch_sub(1, Ordering::Relaxed);
+        };
+        if std::thread::Builder::new().name("page request".to_owned()).spawn(answer).is_err() {
+            count.fetch_sub(1, Ordering::Relaxed);
+        }
+    }
+}
+
+const TEXT: &str = "text/plain";
+
 /// Answers a request. A browser that went away is no failure.
-fn answer(mut request: Request, title: &str, token: &str, desk: &Desk) {
-    let path = request.url().split(['?', '#']).next().unwrap_or_default().to_owned();
-    if (request.method(), path.as_str()) == (&Method::Get, "/") {
-        let _ = request.respond(reply(200, "text/html; charset=utf-8", include_str!("page.html")));
-        return;
+fn answer(stream: &mut TcpStream, shown: &Shown) {
+    let (status, kind, text) = match http::read(stream, TOKEN) {
+        Ok(request) => replied(&request, shown),
+        Err(NoRequest::Bad(status)) => (status, TEXT, "the request can't be read\n".to_owned()),
+        Err(NoRequest::Gone) => return,
+    };
+    let _ = http::reply(stream, status, kind, &text);
+}
+
+/// Status, kind and text of a reply.
+fn replied(request: &http::Request, shown: &Shown) -> (u16, &'static str, String) {
+    let Shown { title, token, desk } = shown;
+    let asked = (request.method.as_str(), request.path.as_str());
+    if asked == ("GET", "/") {
+        return (200, "text/html", include_str!("page.html").to_owned());
     }
-    let given = request.headers().iter().find(|header| header.field.equiv(TOKEN));
-    if !given.is_some_and(|header| is_same(header.value.as_str(), token)) {
-        let _ = request.respond(reply(
-            403,
-            "text/plain; charset=utf-8",
-            "the token is missing or wrong\n",
-        ));
-        return;
+    if !request.header.as_ref().is_some_and(|given| is_same(given, token)) {
+        return (403, TEXT, "the token is missing or wrong\n".to_owned());
     }
-    let known = match (request.method(), path.as_str()) {
-        (Method::Get, "/state") => {
+    let (status, text) = match asked {
+        ("GET", "/state") => {
             let log = desk.records_from(0);
             let state = PageState {
-                title: title.to_owned(),
+                title: title.clone(),
                 questions: desk.questions().into_iter().map(PageQuestion::of).collect(),
                 held: desk.is_held(),
                 aborted: desk.aborted(),
                 log: log.iter().map(|record| format!("{} {}", record.at, record.text())).collect(),
             };
-            Some((200, serde_json::to_string(&state)))
+            (200, serde_json::to_string(&state))
         }
-        (Method::Post, "/do") => {
-            let mut text = String::new();
-            let read = request.as_reader().take(LARGEST).read_to_string(&mut text);
-            let asked = read.ok().and_then(|_| serde_json::from_str::<DeskRequest>(&text).ok());
-            let told = match asked {
-                Some(asked) => asked.apply(desk, AnswerWay::Page),
-                None => DeskReply::Refused("the request can't be read".to_owned()),
+        ("POST", "/do") => {
+            let told = match serde_json::from_slice::<DeskRequest>(&request.body) {
+                Ok(asked) => asked.apply(desk, AnswerWay::Page),
+                Err(_) => DeskReply::Refused("the request can't be read".to_owned()),
             };
             let status = if matches!(told, DeskReply::Taken(_)) { 200 } else { 409 };
-            Some((status, serde_json::to_string(&told)))
+            (status, serde_json::to_string(&told))
         }
-        _ => None,
+        _ => return (404, TEXT, "there is no such page\n".to_owned()),
     };
-    let response = match known {
-        Some((status, Ok(text))) => reply(status, "application/json", &text),
-        Some((_, Err(error))) => reply(500, "text/plain; charset=utf-8", &error.to_string()),
-        None => reply(404, "text/plain; charset=utf-8", "there is no such page\n"),
-    };
-    let _ = request.respond(response);
-}
-
-fn reply(status: u16, kind: &str, text: &str) -> Response<std::io::Cursor<Vec<u8>>> {
-    let policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'";
-    let headers = [
-        ("Content-Type", kind),
-        ("Cache-Control", "no-store"),
-        ("Content-Security-Policy", policy),
-        ("X-Content-Type-Options", "nosniff"),
-        ("Referrer-Policy", "no-referrer"),
-    ];
-    let response = Response::from_string(text).with_status_code(StatusCode(status));
-    headers.into_iter().fold(response, |response, (name, value)| {
-        // All of them are ASCII.
-        match Header::from_bytes(name, value) {
-            Ok(header) => response.with_header(header),
-            Err(()) => response,
-        }
-    })
+    match text {
+        Ok(text) => (status, "application/json", text),
+        Err(error) => (500, TEXT, error.to_string()),
+    }
 }
 
 /// Compares in a time that doesn't tell how much of it is right.
