@@ -113,7 +113,8 @@ pub(crate) struct Attendant {
     terminal: bool,
     /// Served until the run is over.
     _page: Option<OperatorPage>,
-    folder: PathBuf,
+    /// The folder under the name that it keeps when the run ends.
+    folder: String,
 }
 
 impl Attendant {
@@ -129,7 +130,9 @@ impl Attendant {
             Mailbox::open(folder).map_err(|error| Failure::bench(format!("failed to {error}")))?;
         let page = page.map(|page| page.serve(&scenario.title, &desk));
         let _page = page.transpose()?;
-        Ok(Self { desk, mailbox, terminal, _page, folder: folder.to_owned() })
+        let name = folder.display().to_string();
+        let folder = name.strip_suffix(".partial").unwrap_or(&name).to_owned();
+        Ok(Self { desk, mailbox, terminal, _page, folder })
     }
 
     /// Returns the desk.
@@ -167,7 +170,7 @@ impl Attendant {
                 if let TypedLine::Ended = open.look(&self.desk, &questions) {
                     note!(
                         "octant: the terminal's input has ended; octant answer {} ID VALUE --by NAME still counts",
-                        self.folder.display()
+                        self.folder
                     );
                     terminal = None;
                 }
@@ -205,7 +208,7 @@ impl Attendant {
         if self.terminal {
             note!("octant: expected {expected}; /abort ends the run");
         } else {
-            let folder = self.folder.display();
+            let folder = &self.folder;
             note!("octant: expected {expected}: octant answer {folder} {step} VALUE --by NAME");
         }
     }

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::operator_terminal::operator_name;
 use crate::terminal::{note, print};
 use clap::{Args, Subcommand};
-use octant_operator::journal;
 use octant_operator::mailbox::{self, DeskReply, DeskRequest, MailboxError};
+use octant_operator::{OperatorAct, journal};
 use octant_requirements::Verdict;
 use octant_watch::place::RunPlace;
 use std::path::{Path, PathBuf};
@@ -91,14 +91,25 @@ pub(super) fn command(arguments: &OperatorArguments) -> Result<Verdict, Failure>
     }
 }
 
-/// Finds the present folder of a run.
-fn place(run: &Path) -> Result<RunPlace, Failure> {
-    RunPlace::of(run).map_err(|error| Failure::input(format!("failed to {error}")))
+/// Finds the present folder of a run, and whether the run goes on.
+fn place(run: &Path) -> Result<(PathBuf, bool), Failure> {
+    let error = match RunPlace::of(run) {
+        Ok(place) => return Ok((place.folder().to_owned(), place.is_written())),
+        Err(error) => error,
+    };
+    // A run that was killed before its start has a journal and no recording.
+    let mut partial = run.as_os_str().to_owned();
+    partial.push(".partial");
+    [run.to_owned(), partial.into()]
+        .into_iter()
+        .find(|folder| folder.join(journal::FILE_NAME).is_file())
+        .map(|folder| (folder, false))
+        .ok_or_else(|| Failure::input(format!("failed to {error}")))
 }
 
 fn send(run: &Path, request: &DeskRequest) -> Result<Verdict, Failure> {
-    let place = place(run)?;
-    match mailbox::request(place.folder(), request, PATIENCE) {
+    let (folder, _) = place(run)?;
+    match mailbox::request(&folder, request, PATIENCE) {
         Ok(DeskReply::Taken(words)) => {
             note!("octant: taken: {words}");
             Ok(Verdict::Pass)
@@ -110,9 +121,9 @@ fn send(run: &Path, request: &DeskRequest) -> Result<Verdict, Failure> {
 }
 
 fn status(run: &Path) -> Result<Verdict, Failure> {
-    let place = place(run)?;
-    let records = journal::read(place.folder())
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let (folder, goes_on) = place(run)?;
+    let records =
+        journal::read(&folder).map_err(|error| Failure::input(format!("failed to {error}")))?;
     let mut text = String::new();
     for record in &records {
         text += &format!("{} {}\n", record.at, record.text());
@@ -120,7 +131,13 @@ fn status(run: &Path) -> Result<Verdict, Failure> {
     for asked in journal::open(&records) {
         text += &format!("open: {}\n", asked.step.as_deref().unwrap_or_default());
     }
-    text += if place.is_written() { "the run goes on\n" } else { "the run doesn't go on\n" };
+    let of_hold = |act: &OperatorAct| matches!(act, OperatorAct::Held | OperatorAct::Resumed);
+    let is_held = records.iter().map(|record| record.act).rfind(of_hold) == Some(OperatorAct::Held);
+    text += match (goes_on, is_held) {
+        (false, _) => "the run doesn't go on\n",
+        (true, true) => "the run is held\n",
+        (true, false) => "the run goes on\n",
+    };
     print(&text)?;
     Ok(Verdict::Pass)
 }

@@ -17,7 +17,7 @@ pub(crate) struct BoundOperatorPage {
 /// The page, served until it is dropped.
 #[cfg(feature = "dashboard")]
 pub(crate) struct OperatorPage {
-    _page: octant_operator::page::Page,
+    _page: octant_operator::page::ServedPage,
 }
 
 #[cfg(feature = "dashboard")]

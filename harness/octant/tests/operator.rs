@@ -136,6 +136,16 @@ fn an_interrupt_while_a_question_is_open_ends_in_order_and_a_kill_leaves_it_open
     assert!(text.contains("open: level\nthe run doesn't go on\n"), "{text}");
     let (status, words) = bench.answer("level", "0", "Ada");
     assert!(status == Some(4) && words.contains("took no request"), "{words}");
+
+    // Nor is there a recording before the start.
+    let bench = Bench::new(DOOR);
+    let run = Going::start(&mut bench.with_device(&["--no-terminal"]));
+    run.hears("step door", 1);
+    run.signal("-KILL");
+    assert_eq!(run.end().0, None);
+    let output = bench.octant(&["operator", "status", "run"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("open: door\nthe run doesn't go on\n"), "{text}");
 }
 
 #[test]
@@ -220,6 +230,8 @@ fn a_run_in_lock_step_is_held_resumed_and_aborted_and_one_by_the_clock_aborted_a
     assert!(operator("resume").1.contains("isn't held"));
     assert_eq!(operator("hold").0, Some(0));
     assert!(operator("hold").1.contains("held already"));
+    let status = bench.octant(&["operator", "status", "run"]);
+    assert!(String::from_utf8_lossy(&status.stdout).ends_with("the run is held\n"));
     assert_eq!(bench.answer("level", "yes", "Ada").0, Some(0));
     std::thread::sleep(Duration::from_millis(500));
     assert!(bench.path("run.partial").exists(), "it goes on though it is held");
@@ -277,7 +289,7 @@ fn steps_that_contradict_themselves_are_refused() {
     refused(&level("").replace("1 s", "1 h"), "never asked");
     refused(&level("").replace("at = \"1 s\"", "every = \"1 s\""), "comes once");
     refused(
-        &level("").replace("at = \"1 s\"", "when = \"latitude_error above 1 arcmin\""),
+        &level("").replace("at = \"1 s\"", "when = \"latitude error above 1 arcmin\""),
         "truth",
     );
     refused(&level("").replace("at = \"1 s\"", "mode = \"calibrating\""), "never is calibrating");

@@ -38,7 +38,7 @@ pub struct BoundPage {
 
 /// A page that is served until it is dropped.
 #[derive(Debug)]
-pub struct Page {
+pub struct ServedPage {
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -117,7 +117,7 @@ impl BoundPage {
     ///
     /// # Errors
     /// If there is no thread for it.
-    pub fn serve(self, title: &str, desk: Arc<Desk>) -> Result<Page, PageError> {
+    pub fn serve(self, title: &str, desk: Arc<Desk>) -> Result<ServedPage, PageError> {
         let Self { listener, token, url } = self;
         let over = Arc::new(AtomicBool::new(false));
         let (ends, shown) =
@@ -126,11 +126,11 @@ impl BoundPage {
         let thread = thread.spawn(move || listen(&listener, &shown, &ends));
         let thread =
             thread.map_err(|error| PageError { address: url, reason: error.to_string() })?;
-        Ok(Page { over, thread: Some(thread) })
+        Ok(ServedPage { over, thread: Some(thread) })
     }
 }
 
-impl Drop for Page {
+impl Drop for ServedPage {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
