@@ -168,6 +168,8 @@ fn without_a_person_a_run_is_refused_before_anything_is_written() {
     std::fs::write(bench.path("c.toml"), campaign).unwrap();
     let (status, words) = said(&bench.octant(&["campaign", "plan", "c.toml", "--out", "cases"]));
     assert!(status == Some(2) && words.contains("nobody is at a case of a campaign"), "{words}");
+    let (status, words) = said(&bench.octant(&["rare", "s.toml", "--protection"]));
+    assert!(status == Some(2) && words.contains("found step \"door\""), "{words}");
 }
 
 #[test]
