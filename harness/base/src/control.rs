@@ -1,6 +1,8 @@
-//! Progress of a run as others see it, and their request to end it.
+//! Progress of a run as others see it, their request to end it, and the desk of a person who attends to it.
 
+use crate::attendance::Attendance;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Progress of a run, and the request to end it.
 #[derive(Debug, Default)]
@@ -9,6 +11,8 @@ pub struct Control {
     pub epochs: AtomicU64,
     /// Set to end the run at its next look.
     pub cancel: AtomicBool,
+    /// Desk of the person who attends to the run, if anybody does.
+    pub attendance: OnceLock<Arc<Attendance>>,
 }
 
 impl Control {

@@ -19,6 +19,7 @@
 //! | [`utc`] | times of the host as text |
 
 pub mod arrow;
+pub mod attendance;
 pub mod chained_lines;
 pub mod child;
 pub mod code;

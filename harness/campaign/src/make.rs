@@ -284,6 +284,12 @@ fn planned(
             piece.named()
         )));
     }
+    if let Some(step) = base.operator.first() {
+        return Err(contradiction(format!(
+            "scenario {:?} asks a person (step {:?}), and nobody is at a case of a campaign: expected no [[operator]]",
+            member.id, step.id
+        )));
+    }
     let named = member.verifies.iter().flatten();
     if let Some(unknown) = named.clone().find(|id| !of_file.iter().any(|p| p.check.id == **id)) {
         let known = of_file.iter().map(|planned| planned.check.id.as_str());

@@ -69,6 +69,10 @@ impl Endpoint for AnyEndpoint {
         each!(&mut self.0, endpoint => endpoint.answer(until, output))
     }
 
+    fn idle(&mut self) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.idle())
+    }
+
     fn remote_clock(&self) -> Option<RemoteClock> {
         each!(&self.0, endpoint => endpoint.remote_clock())
     }

@@ -74,6 +74,15 @@ pub trait Endpoint {
         Ok(None)
     }
 
+    /// Tells the core's side that the harness is alive, while the run stands between two steps: to be called many times
+    /// a second then.
+    ///
+    /// # Errors
+    /// If the endpoint is gone.
+    fn idle(&mut self) -> Result<(), EndpointError> {
+        Ok(())
+    }
+
     /// Returns the relation of the endpoint's own clock to the host's, where both are compared.
     fn remote_clock(&self) -> Option<RemoteClock> {
         None

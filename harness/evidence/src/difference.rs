@@ -1,6 +1,7 @@
 //! Differences between a folder and its manifest.
 
 use super::names::LOCK;
+use octant_operator::journal;
 
 /// A difference between a folder and its manifest.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub enum FolderDifference {
     NoFile(String, &'static str),
     /// The lock of a run in progress is there.
     Locked,
+    /// What a person answered isn't the same in the manifest and in the journal.
+    Answers,
 }
 
 impl std::fmt::Display for FolderDifference {
@@ -33,6 +36,13 @@ impl std::fmt::Display for FolderDifference {
             }
             Self::Locked => {
                 write!(f, "{LOCK} is there: the run goes on, or a kill left it")
+            }
+            Self::Answers => {
+                write!(
+                    f,
+                    "the manifest's answers of the operator aren't those of {}",
+                    journal::FILE_NAME
+                )
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::inputs::InputFacts;
 use super::signature::SigningKey;
+use octant_operator::OperatorRecord;
 use octant_realtime::schedule::Granted;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Equipment;
@@ -32,6 +33,8 @@ pub struct RunFacts {
     pub bench: Option<serde_json::Value>,
     /// Real-time settings that the host granted a run by the clock.
     pub realtime: Option<Granted>,
+    /// What a person was asked, answered and did.
+    pub answers: Vec<OperatorRecord>,
     /// Result of a campaign.
     pub campaign: Option<CampaignFacts>,
     /// The key that signs the manifest.
@@ -53,6 +56,7 @@ impl RunFacts {
             link: None,
             bench: None,
             realtime: None,
+            answers: Vec::new(),
             campaign: None,
             key: None,
         }

@@ -9,6 +9,7 @@ pub use super::names::MANIFEST as FILE_NAME;
 
 use super::files::{self, Entries, system};
 use super::inputs::InputFacts;
+use octant_operator::{OperatorRecord, journal};
 use octant_realtime::schedule::Granted;
 use octant_requirements::equipment::Equipment;
 use octant_score::numerics::NUMERICS;
@@ -63,6 +64,9 @@ pub struct Manifest {
     /// Real-time settings that the host granted a run by the clock; omitted in other runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub realtime: Option<Granted>,
+    /// What a person was asked, answered and did in the run, as in `operator.jsonl`; omitted where nobody was asked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub answers: Vec<OperatorRecord>,
     /// Result of a campaign; omitted in runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub campaign: Option<CampaignFacts>,
@@ -121,6 +125,7 @@ impl Manifest {
             link: facts.link.clone(),
             bench: facts.bench.clone(),
             realtime: facts.realtime.clone(),
+            answers: facts.answers.clone(),
             campaign: facts.campaign.clone(),
             files: Vec::new(),
             empty_folders: Vec::new(),
@@ -186,6 +191,10 @@ impl Manifest {
             ]
             .map(|(name, value)| (name.to_owned(), value))
         });
+        let answers = self
+            .answers
+            .iter()
+            .map(|record| (format!("operator's part, {}", record.at), record.text()));
         [
             ("octant", self.octant.clone()),
             ("numerics version", self.numerics.map_or("not known".to_owned(), |v| v.to_string())),
@@ -205,6 +214,7 @@ impl Manifest {
         .chain(link)
         .chain(bench)
         .chain(realtime)
+        .chain(answers)
         .collect()
     }
 
@@ -297,6 +307,10 @@ impl Manifest {
         differences.extend(others.map(|(path, what)| FolderDifference::NoFile(path, what)));
         if found.locked {
             differences.push(FolderDifference::Locked);
+        }
+        // A journal that can't be read was changed, which is reported already.
+        if journal::read(folder).is_ok_and(|records| records != self.answers) {
+            differences.push(FolderDifference::Answers);
         }
         Ok(differences)
     }

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, capture, characterise, compare, completions, design, diff, doctor, export, faults,
-    fmu, new, nightly, observe, power, progress, rare, rejudge, replay, report, requirements, run,
-    score, selftest, serve, smooth, turntable, verify, watch,
+    fmu, new, nightly, observe, operator, power, progress, rare, rejudge, replay, report,
+    requirements, run, score, selftest, serve, smooth, turntable, verify, watch,
 };
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
@@ -30,6 +30,10 @@ enum Command {
     New(new::NewArguments),
     /// Run a scenario or a system of FMUs: calibrate, navigate, score, and write a folder of evidence.
     Run(run::Arguments),
+    /// Answer a question that a run asks its operator.
+    Answer(operator::AnswerArguments),
+    /// Hold, resume or abort a run, or list what its operator was asked.
+    Operator(operator::OperatorArguments),
     /// Compare two methods over many seeds, on the same instruments with the same noise.
     Compare(compare::Arguments),
     /// Compare two runs or two campaigns: settings, samples, scores.
@@ -178,6 +182,8 @@ pub(crate) fn status() -> u8 {
     let outcome = match cli.command {
         Command::New(arguments) => new::command(&arguments),
         Command::Run(arguments) => run::command(&arguments),
+        Command::Answer(arguments) => operator::answer(&arguments),
+        Command::Operator(arguments) => operator::command(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Nightly(arguments) => nightly::command(&arguments),
         Command::Selftest(arguments) => selftest::command(&arguments),

@@ -2,10 +2,11 @@
 //!
 //! A run is the one of `octant run`, with the same folder of evidence; only the terminal is left out.
 
+pub use crate::attendant::OperatorWays;
 pub use crate::evidenced::{Evidence, RunRequest};
 pub use crate::failure::Failure;
 
-use crate::evidenced::{Asked, Begun, evidence};
+use crate::evidenced::{Answers, Asked, Begun, evidence};
 use crate::progress::Follower;
 use octant_base::control::Control;
 use octant_run::{Parts, SteppedRun, StreamKeeping};
@@ -82,6 +83,6 @@ impl Bench {
     /// If the bench failed in a way that leaves no result.
     pub fn finish(self) -> Result<Evidence, Failure> {
         let run = self.stepped.finish().map_err(|error| Failure::from(error).failed())?;
-        self.asked.conclude(&self.request, self.begun, vec![run])
+        self.asked.conclude(&self.request, self.begun, vec![run], Answers::default())
     }
 }

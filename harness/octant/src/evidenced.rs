@@ -1,6 +1,7 @@
 //! A run with its evidence: from a request to a folder with recording, summary, report and manifest.
 
 use crate::arguments::read_scenario;
+use crate::attendant::{Attendant, OperatorWays};
 use crate::failure::Failure;
 use crate::live::Live;
 use crate::progress::Follower;
@@ -9,6 +10,7 @@ use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
+use octant_operator::OperatorRecord;
 use octant_recorder::event::PowerRecord;
 use octant_report as report;
 use octant_requirements::Verdict;
@@ -64,6 +66,8 @@ pub struct RunRequest {
     pub json: bool,
     /// Call that made the run, in place of a command line that makes it again.
     pub call: Option<Vec<String>>,
+    /// Ways to the operator of the run.
+    pub operator: OperatorWays,
 }
 
 /// Evidence of a run that has ended.
@@ -114,13 +118,32 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
     let prepared = prepare(scenario, seed, twins)?;
+    let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
     let begun = asked.begin(request, prepared.tasks())?;
+    let folder = begun.folder.path();
+    let attendant = plan.map(|plan| Attendant::open(plan, scenario, folder)).transpose()?;
     if let Some(live) = &mut live {
         live.follow(begun.folder.path())?;
     }
-    let runs = execute(&prepared, scenario, begun.folder.path(), follower)?;
-    asked.conclude(request, begun, runs)
+    let run = || execute(&prepared, scenario, begun.folder.path(), follower);
+    let (runs, answers) = match attendant {
+        None => (run()?, Answers::default()),
+        Some(attendant) => {
+            prepared.attend(&attendant.desk().attendance());
+            let runs = attendant.during(prepared.controls(), run);
+            let reasons = attendant.desk().close();
+            (runs?, Answers { records: attendant.desk().records_from(0), reasons })
+        }
+    };
+    asked.conclude(request, begun, runs, answers)
+}
+
+/// What the operator of a run was asked, and why that makes it no evidence.
+#[derive(Debug, Default)]
+pub(crate) struct Answers {
+    records: Vec<OperatorRecord>,
+    reasons: Vec<String>,
 }
 
 /// Scenario of a request, with its changes.
@@ -213,6 +236,7 @@ impl Asked {
         request: &RunRequest,
         begun: Begun,
         runs: Vec<MethodRun>,
+        answers: Answers,
     ) -> Result<Evidence, Failure> {
         let Self { scenario, seed, left_out } = self;
         let Begun { folder, started, fmus, inputs, key } = begun;
@@ -247,7 +271,9 @@ impl Asked {
         let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
         // Certificates are compared with the day in the manifest.
         let ended = SystemTime::now();
-        let choice = Choice { require: request.require, left_out, day: Some(Day::of(ended)) };
+        let Answers { records: answers, reasons: operator } = answers;
+        let day = Some(Day::of(ended));
+        let choice = Choice { require: request.require, left_out, day, operator };
         let run = assemble_with(&scenario, seed, primary, baseline, &choice)
             .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
         for (name, table) in tables {
@@ -263,6 +289,7 @@ impl Asked {
             link,
             bench,
             realtime,
+            answers,
             key,
             inputs,
             equipment: scenario.equipment.clone(),
@@ -385,6 +412,9 @@ fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
     }
     if request.no_twin {
         line.push("--no-twin".to_owned());
+    }
+    if let Some(answers) = &request.operator.answers {
+        line.extend(["--answers".to_owned(), answers.display().to_string()]);
     }
     line.extend(["--seed".to_owned(), seed.to_string()]);
     line

@@ -89,7 +89,7 @@ impl From<octant_run::paired::PairedError> for Failure {
         use octant_run::paired::PairedError;
         let message = format!("failed to {error}");
         match error {
-            PairedError::Method(error) => Self::from(error),
+            PairedError::Method(error) => Self::from(error).failed(),
             PairedError::NoNavigation | PairedError::NotSimulated => Self::input(message),
             PairedError::Cancelled => Self { status: Verdict::Inconclusive.exit_code(), message },
         }

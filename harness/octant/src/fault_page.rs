@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::fault_picture::{Window, picture as draw};
 use crate::fault_words::{acts, lasts};
-use crate::side_by_side::side_by_side;
 use octant_faults::catalogue::{Acts, FaultKind};
+use octant_run::side_by_side::side_by_side;
 use octant_scenario::{Scenario, fault_example, fault_parameters};
 use std::path::Path;
 

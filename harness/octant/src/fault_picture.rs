@@ -1,11 +1,11 @@
 //! Draws the effect of a fault: the quantity that it changes most, with and without the fault, and
 //! the difference. One self-contained SVG that adapts to light and dark.
 
-use crate::side_by_side::{SideBySide, Step};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
 use octant_faults::catalogue::{Acts, Family, FaultKind};
 use octant_report::chart::{multiples_of, nice_ticks, round, span, thinned};
+use octant_run::side_by_side::{SideBySide, Step};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{Aiding, Epoch, Reference};
 

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod arguments;
+mod attendant;
 mod campaign;
 mod capture;
 pub mod case_progress;
@@ -30,6 +31,9 @@ mod minimise;
 pub mod new;
 mod nightly;
 mod observe;
+mod operator;
+mod operator_page;
+mod operator_terminal;
 mod place;
 mod power;
 mod progress;
@@ -50,7 +54,6 @@ mod screen;
 mod search;
 mod selftest;
 mod serve;
-mod side_by_side;
 mod signing;
 mod smooth;
 pub mod source_uri;

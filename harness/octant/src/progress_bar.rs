@@ -1,6 +1,6 @@
 //! A bar of progress on the last line of a terminal; nothing where stderr is none.
 
-use crate::terminal::{note, printable};
+use crate::terminal::{is_asking, note, printable};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -52,7 +52,8 @@ impl ProgressBar {
     pub(crate) fn update(&self, change: impl FnOnce(&mut Progress)) {
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         change(&mut progress);
-        if self.shown && progress.drawn.is_none_or(|at| at.elapsed() >= REDRAW) {
+        let is_due = progress.drawn.is_none_or(|at| at.elapsed() >= REDRAW);
+        if self.shown && is_due && !is_asking() {
             self.draw(&mut progress);
         }
     }

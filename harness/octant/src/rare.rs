@@ -193,6 +193,7 @@ fn of_error(error: RareError) -> Failure {
         | RareError::Several(..)
         | RareError::NotSimulated
         | RareError::ByClock
+        | RareError::Attended(_)
         | RareError::NoCalibration
         | RareError::NoParameter { .. }
         | RareError::OtherEstimate { .. } => Failure::input(message),

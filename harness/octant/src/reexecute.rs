@@ -111,6 +111,8 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     }
     // The clock has no effect on numbers.
     scenario.realtime.by_clock = false;
+    // Nor have the operator's answers.
+    scenario.operator.clear();
     let fmus = match octant_evidence::fmus(&scenario) {
         Ok(fmus) => fmus,
         Err(error) => return Ok(cannot(format!("not possible: failed to {error}"))),

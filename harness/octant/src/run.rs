@@ -3,6 +3,7 @@
 use super::evidenced::{self, RunRequest};
 use super::run_folder::{free_name, in_the_way};
 use crate::arguments::ScenarioArguments;
+use crate::attendant::OperatorWays;
 use crate::failure::Failure;
 use clap::Args;
 use octant_base::display::UnitChoice;
@@ -55,6 +56,22 @@ pub(super) struct Arguments {
         default_missing_value = super::live::DEFAULT_ADDRESS
     )]
     live: Option<String>,
+    /// Take the answers to the operator's steps from a file, in place of a person: TOML, or the operator.jsonl of
+    /// another run.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["page", "no_terminal"])]
+    answers: Option<PathBuf>,
+    /// Serve a page with the operator's questions; by default to this host only, at any free port.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = crate::operator_page::DEFAULT_ADDRESS
+    )]
+    page: Option<String>,
+    /// Read no answers from the terminal: they come from octant answer in another process, or from the page.
+    #[arg(long)]
+    no_terminal: bool,
     /// Units of errors in report and terminal: of position (arcmin, nmi, m, km), attitude (arcmin, deg,
     /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
     #[arg(long, value_name = "UNIT,UNIT")]
@@ -101,6 +118,12 @@ impl Arguments {
             live: self.live.clone(),
             json: self.json,
             call: None,
+            operator: OperatorWays {
+                attended: true,
+                elsewhere: self.no_terminal,
+                answers: self.answers.clone(),
+                page: self.page.clone(),
+            },
         }
     }
 }
@@ -116,6 +139,9 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--no-twin", arguments.no_twin),
         ("--only-faults", arguments.only_faults.is_some()),
         ("--live", arguments.live.is_some()),
+        ("--answers", arguments.answers.is_some()),
+        ("--page", arguments.page.is_some()),
+        ("--no-terminal", arguments.no_terminal),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
         return Err(Failure::input(format!(

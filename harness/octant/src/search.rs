@@ -277,7 +277,7 @@ fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
 fn failure(error: FaultSearchError) -> Failure {
     let message = format!("failed to search: {error}");
     match error {
-        FaultSearchError::Method(error) => Failure::from(error),
+        FaultSearchError::Method(error) => Failure::from(error).failed(),
         FaultSearchError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
         FaultSearchError::Cancelled => {
             Failure { status: Verdict::Inconclusive.exit_code(), message }

@@ -29,6 +29,19 @@ pub(crate) fn printable(text: &str) -> std::borrow::Cow<'_, str> {
     all.into()
 }
 
+/// Set while a person is asked on the terminal, which then has no bar of progress.
+static ASKING: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
+
+/// Tells whether a person is asked on the terminal.
+pub(crate) fn set_asking(asking: bool) {
+    ASKING.store(asking, std::sync::atomic::Ordering::Relaxed);
+}
+
+/// Returns whether a person is asked on the terminal.
+pub(crate) fn is_asking() -> bool {
+    ASKING.load(std::sync::atomic::Ordering::Relaxed)
+}
+
 /// Returns whether a stream shows styles: it is a terminal, and neither `NO_COLOR` nor `TERM=dumb` is set.
 /// Consoles of Windows get none, because some show the codes.
 pub(crate) fn shows_styles(stream: &impl std::io::IsTerminal) -> bool {

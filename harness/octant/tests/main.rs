@@ -79,6 +79,10 @@ mod messages;
 mod new_scenario;
 mod nightly;
 mod observe_protection;
+#[cfg(target_os = "linux")]
+mod operator;
+#[cfg(target_os = "linux")]
+mod operator_ways;
 mod own_sequences;
 #[cfg(unix)]
 mod power;

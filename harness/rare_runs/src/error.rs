@@ -28,6 +28,9 @@ pub enum RareError {
     /// Runs by the clock can't be repeated by the thousand.
     #[error("found a run by the clock, expected realtime.pace = \"free\"")]
     ByClock,
+    /// Nobody answers by the thousand.
+    #[error("found step {0:?} of [[operator]], expected a scenario that asks nobody")]
+    Attended(String),
     /// Without calibration nothing is published.
     #[error("found a scenario without calibration, expected [procedure.calibration]")]
     NoCalibration,

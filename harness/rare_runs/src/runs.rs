@@ -106,6 +106,9 @@ impl<'a> RareRuns<'a> {
         if scenario.realtime.by_clock {
             return Err(RareError::ByClock);
         }
+        if let Some(step) = scenario.operator.first() {
+            return Err(RareError::Attended(step.id.clone()));
+        }
         if subject == RareSubject::Calibration && scenario.calibration.is_none() {
             return Err(RareError::NoCalibration);
         }

@@ -13,7 +13,7 @@ use octant_scenario::Scenario;
 use octant_statistics::normal;
 use std::path::Path;
 
-/// Six minutes at 10 Hz. The g-dependent biases are not estimated: their errors are minus the drawn values.
+/// Two minutes at 10 Hz. The g-dependent biases are not estimated: their errors are minus the drawn values.
 pub(crate) const SHORT: &str = r#"
 schema = 1
 title = "known answer"
@@ -24,7 +24,7 @@ rate = "10 Hz"
 g_dependent = { normal = "0.0005 deg/h/g" }
 
 [procedure.calibration]
-duration = "6 min"
+duration = "2 min"
 g_states = false
 stops = [
     { azimuth = "0 deg", roll = "0 deg" },
@@ -131,7 +131,7 @@ fn plain_monte_carlo_agrees_where_failures_are_frequent() {
     assert!((p - share).abs() < 4.0 * scatter, "{p} {share}");
 }
 
-/// The filter's prior is the distribution that the errors are drawn from, and six minutes hardly add to it: errors are
+/// The filter's prior is the distribution that the errors are drawn from, and two minutes hardly add to it: errors are
 /// normal with the published σ.
 #[test]
 fn levels_of_an_honest_filter_are_its_sigma_times_the_quantile() {

@@ -75,6 +75,8 @@ pub enum Event {
         /// The new mode.
         to: String,
     },
+    /// Record of a person's part in the run: a line of `operator.jsonl`, at its end.
+    Operator(Value),
     /// Time keeping so far of a run by the clock, once a second.
     Pace(Pace),
     /// Time keeping of a run by the clock, at its end.

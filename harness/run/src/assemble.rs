@@ -47,6 +47,8 @@ pub struct Choice {
     /// Day on which the run ended, to which certificates are compared; not used if the scenario has
     /// no equipment.
     pub day: Option<Day>,
+    /// Reasons why the run is no evidence, of what a person did or didn't do in it.
+    pub operator: Vec<String>,
 }
 
 impl Choice {
@@ -58,6 +60,7 @@ impl Choice {
                 "the scenario requires nothing, and --require wants it to".to_owned(),
             ));
         }
+        findings.extend(self.operator.iter().cloned().map(Finding::of_run));
         if requires && !self.left_out.is_empty() {
             // Limits apply with the faults; a run without them is no evidence for the limits.
             findings.push(Finding::of_run(format!(

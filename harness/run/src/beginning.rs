@@ -48,6 +48,7 @@ pub(super) fn beginning(plan: &BranchPlan<'_>) -> Option<(Beginning, DrawnValues
     let divisible = scenario.source.is_plant_alone()
         && matches!(scenario.endpoint, EndpointSpec::InProcess)
         && !scenario.realtime.by_clock
+        && scenario.operator.is_empty()
         && !scenario.faults.iter().any(|fault| elsewhere(fault.spec.kind.acts));
     if !divisible {
         return None;

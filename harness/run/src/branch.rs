@@ -31,7 +31,8 @@ impl Branch {
         let Parts { mut source, mut endpoint, mut steps, mut watcher, revision, ended } = parts;
         let books = Books::new(&mut recorder, &mut watcher, faulted.as_ref());
         let look_every = CONTROL_EPOCHS;
-        let mut keeper = InTime { books, control: plan.control, look_every, revision };
+        let mut keeper =
+            InTime { books, control: plan.control, look_every, revision, attended: None };
         let driven = match (ended, &mut faulted) {
             (Some(ended), _) => Ok(ended),
             (None, Some(faulted)) => steps.go_on(&mut source, faulted, &mut endpoint, &mut keeper),

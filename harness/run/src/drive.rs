@@ -134,7 +134,7 @@ impl Steps {
         if number == total {
             return keeper.drain(endpoint, output).map(Some);
         }
-        if keeper.begin(*number) {
+        if keeper.begin(*number, output, endpoint)? {
             return Ok(Some(Ended::Cancelled));
         }
         *number += 1;
@@ -314,9 +314,9 @@ pub(super) trait Keeps<S: ?Sized, E: Endpoint + ?Sized> {
     /// True if steps begin at times of the host.
     const PACED: bool = false;
 
-    /// Begins a step after this number of them; true if the run is to end instead.
-    fn begin(&mut self, _done: u64) -> bool {
-        false
+    /// Begins a step after this number of them and this answer; true if the run is to end instead.
+    fn begin(&mut self, _done: u64, _output: &Output, _to: &mut E) -> Result<bool, RunError> {
+        Ok(false)
     }
 
     /// Sends an epoch of the step with this stamp to the endpoint.

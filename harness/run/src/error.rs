@@ -32,6 +32,14 @@ pub enum SetupError {
     /// The scenario has no second method.
     #[error("run the baseline: the scenario has no [baseline]")]
     NoBaseline,
+    /// The scenario has steps of a person, and nobody can be asked.
+    #[error(
+        "do step {id:?} of [[operator]]: nobody is asked here; expected `octant run`, or a scenario without [[operator]]"
+    )]
+    Unattended {
+        /// The first step.
+        id: String,
+    },
     /// The recorder could not be set up.
     #[error(transparent)]
     Recorder(#[from] RecorderError),

@@ -1,5 +1,6 @@
 //! Runs in simulated time: they wait for nothing, and keep every result at once.
 
+use super::attended::Attended;
 use super::drive::{Books, InStep, Keeps, Line, NoFaults, drive};
 use super::ended::{Ended, RunError, over};
 use super::measured::Measured;
@@ -26,11 +27,22 @@ pub(super) struct InTime<'a> {
     pub(super) look_every: u64,
     /// Revision of the last parameters.
     pub(super) revision: u32,
+    /// Person who attends to the run; then `look_every` is 1.
+    pub(super) attended: Option<Attended<'a>>,
 }
 
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
-    fn begin(&mut self, done: u64) -> bool {
-        done != 0 && done.is_multiple_of(self.look_every) && self.control.look(done)
+    fn begin(&mut self, done: u64, output: &Output, endpoint: &mut E) -> Result<bool, RunError> {
+        if !done.is_multiple_of(self.look_every) {
+            return Ok(false);
+        }
+        if done != 0 && self.control.look(done) {
+            return Ok(true);
+        }
+        match &mut self.attended {
+            None => Ok(false),
+            Some(attended) => attended.stand(done, output, endpoint),
+        }
     }
 
     #[inline(always)]
@@ -80,10 +92,26 @@ where
     S: Source + ?Sized,
     E: Endpoint + ?Sized,
 {
+    drive_attended(line, recorder, watcher, control, None)
+}
+
+/// Drives as [`drive_in_time`], with a person who attends to the run.
+pub(super) fn drive_attended<S, E>(
+    line: Line<'_, S, E>,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+    attended: Option<Attended<'_>>,
+) -> Result<Ended, RunError>
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
     let Line { source, faulted, endpoint } = line;
     let books = Books::new(recorder, watcher, faulted.as_deref());
-    let look_every = if source.is_live() { 1 } else { CONTROL_EPOCHS };
-    let mut keeper = InTime { books, control, look_every, revision: 0 };
+    let looks = source.is_live() || attended.is_some();
+    let look_every = if looks { 1 } else { CONTROL_EPOCHS };
+    let mut keeper = InTime { books, control, look_every, revision: 0, attended };
     let Some(faulted) = faulted else { return drive(source, &mut NoFaults, endpoint, &mut keeper) };
     let ended = drive(source, faulted, endpoint, &mut keeper);
     faulted.last_words().into_iter().for_each(|event| keeper.books.recorder.event(event));

@@ -4,8 +4,8 @@
 //! [`replayed`] on a recording, [`passes`] several times on the same samples. [`faulted`] has the
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work, [`at_rest`] keeps the noise of
-//! the sensors, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
-//! scores;
+//! the sensors, `attended` asks a person, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
+//! scores; [`mod@side_by_side`] runs the first steps with faults and without, for a picture;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
@@ -15,6 +15,7 @@
 mod aligned;
 pub mod assemble;
 pub mod at_rest;
+mod attended;
 mod beginning;
 mod branch;
 pub mod branches;
@@ -43,6 +44,7 @@ mod recording;
 pub mod replayed;
 pub mod rotation;
 pub mod scores_text;
+pub mod side_by_side;
 pub mod smoothed;
 mod solution;
 pub mod stem;
@@ -50,7 +52,7 @@ pub mod stepped;
 mod true_motion;
 mod trunk;
 pub mod twin;
-pub mod unit;
+mod unit;
 pub mod watch;
 mod with_twin;
 

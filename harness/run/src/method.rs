@@ -6,14 +6,15 @@ pub use super::recording::StreamKeeping;
 
 use super::aligned::{self, uncertainty_of};
 use super::at_rest::AtRest;
+use super::attended::{Attended, before_start};
 use super::done::PlannedWork;
 use super::drive::{Ended, Line, RunError};
 use super::faulted::Faulted;
 use super::filtered::FilteredSeries;
 use super::host::RunHost;
-use super::in_time::drive_in_time;
+use super::in_time::drive_attended;
 use super::planned::estimator_name;
-use super::realtime::{TimeKeeping, drive_by_clock};
+use super::realtime::{self, TimeKeeping};
 use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY, Watcher};
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
@@ -144,9 +145,13 @@ pub fn run_as_far_as_it_goes(
         // first sample.
         faulted.host = RunHost::new(scenario, &recording, &trouble)?;
     }
-    let opened = octant_source::open(scenario, &plant).map_err(SetupError::Source)?;
-    let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
-    let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
+    // Before a port is opened and a table turns.
+    let begins = before_start(scenario, control)?;
+    let open = || octant_source::open(scenario, &plant).map_err(SetupError::Source);
+    let opened = if begins { open()? } else { None };
+    let open = || octant_endpoint::open(scenario, &core).map_err(SetupError::from);
+    let elsewhere = if begins { open()? } else { None };
+    let true_parameters = opened.as_ref().map_or(begins, |source| source.has_true_parameters());
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let told = (true_parameters, tells);
     let options =
@@ -165,14 +170,21 @@ pub fn run_as_far_as_it_goes(
     let samples = scenario.samples().unwrap_or(u64::MAX);
     let realtime =
         scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
+    let attended = Attended::of(scenario, method, control);
     let closed = match (opened, elsewhere) {
+        _ if !begins => {
+            let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
+            let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+            let books = (&mut recorder, &mut watcher);
+            close((Ok(Ended::Cancelled), None), &mut source, &mut endpoint, books, control)?
+        }
         // Statically dispatched: this loop processes ten million samples a second.
         (None, None) => {
             let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
             let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
             let faulted = faulted.as_mut();
             let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
-            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
+            to_the_end(realtime, line, (&mut recorder, &mut watcher), control, attended)?
         }
         (opened, elsewhere) => {
             let mut source = match opened {
@@ -185,7 +197,7 @@ pub fn run_as_far_as_it_goes(
             };
             let faulted = faulted.as_mut();
             let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
-            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
+            to_the_end(realtime, line, (&mut recorder, &mut watcher), control, attended)?
         }
     };
     let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
@@ -227,17 +239,17 @@ pub(super) struct Closed {
 fn to_the_end<S: Source, E: Endpoint>(
     realtime: Option<(&Realtime, u64)>,
     line: Line<'_, S, E>,
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
+    (recorder, watcher): (&mut Recorder, &mut Watcher),
     control: &Control,
+    attended: Option<Attended<'_>>,
 ) -> Result<Closed, RunError> {
     let Line { source, faulted, endpoint } = line;
     let line = Line { source: &mut *source, faulted, endpoint: &mut *endpoint };
     let (driven, kept) = match realtime {
-        None => (drive_in_time(line, recorder, watcher, control), None),
-        Some((settings, period_ns)) => {
-            let (driven, kept) =
-                drive_by_clock(settings, period_ns, line, recorder, watcher, control);
+        None => (drive_attended(line, recorder, watcher, control, attended), None),
+        Some(settings) => {
+            let books = (&mut *recorder, &mut *watcher);
+            let (driven, kept) = realtime::drive_attended(settings, line, books, control, attended);
             (driven, Some(kept))
         }
     };
@@ -262,6 +274,12 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
     let cut_short = source.cut_short();
     if let Some(detail) = &bench {
         recorder.event(Event::Bench(detail.clone()));
+    }
+    let told = control.attendance.get().map_or_else(Vec::new, |attendance| attendance.told());
+    for record in
+        told.iter().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
+    {
+        recorder.event(Event::Operator(record));
     }
     let driven = driven.and_then(|ended| match ended {
         Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),

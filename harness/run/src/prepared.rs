@@ -3,6 +3,7 @@
 use super::beginning::BranchPlan;
 use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
 use super::with_twin::run_with_twin;
+use octant_base::attendance::Attendance;
 use octant_base::control::Control;
 use octant_base::pool::spawn;
 use octant_scenario::{Method, Scenario};
@@ -61,11 +62,22 @@ impl<'a> Prepared<'a> {
             // Results don't depend on the clock, so a twin needn't run in real time.
             let mut clean = scenario.without_faults();
             clean.realtime.by_clock = false;
+            // Nor on what a person answers.
+            clean.operator.clear();
             clean
         });
         let tasks = methods.len() * if clean.is_some() { 2 } else { 1 };
         let controls = (0..tasks).map(|_| Control::default()).collect();
         Ok(Self { scenario, clean, seed, methods, controls })
+    }
+
+    /// Lets a person attend to the methods. Twins are compared with them, and ask nobody.
+    pub fn attend(&self, attendance: &Arc<Attendance>) {
+        let each = self.controls.len() / self.methods.len().max(1);
+        for control in self.controls.iter().step_by(each.max(1)) {
+            // A second person at the same run has no part in it.
+            let _ = control.attendance.set(Arc::clone(attendance));
+        }
     }
 
     /// Progress of each method and twin, and the requests to end them.

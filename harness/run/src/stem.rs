@@ -38,7 +38,8 @@ impl Stem {
         watcher.trace = Some(RunTrace::new());
         let books = Books::new(&mut recorder, &mut watcher, Some(&faulted));
         let control = plan.control;
-        let mut keeper = InTime { books, control, look_every: CONTROL_EPOCHS, revision: 0 };
+        let mut keeper =
+            InTime { books, control, look_every: CONTROL_EPOCHS, revision: 0, attended: None };
         let mut steps = Steps::new(source.samples_total());
         let going = (&mut source, &mut endpoint, &mut keeper, &mut steps);
         let ended = until_due(going, &mut faulted, &Control::default())?;

@@ -105,6 +105,9 @@ impl SteppedRun {
         recording: StreamKeeping<'_>,
         parts: Parts,
     ) -> Result<Self, MethodError> {
+        if let Some(step) = scenario.operator.first() {
+            return Err(SetupError::Unattended { id: step.id.clone() }.into());
+        }
         let (plant, mut core, draws) =
             configurations(scenario, method, seed).map_err(SetupError::from)?;
         if scenario.source.is_recorded() && parts.source.is_none() {
@@ -186,7 +189,8 @@ impl SteppedRun {
         let names = std::mem::take(&mut self.names);
         let books = Books { recorder: &mut self.recorder, watcher: &mut self.watcher, names };
         let control = &self.control;
-        let mut keeper = InTime { books, control, look_every: 1, revision: self.revision };
+        let mut keeper =
+            InTime { books, control, look_every: 1, revision: self.revision, attended: None };
         let faulted = self.faulted.as_mut();
         let mut faults = Interfered { faulted, functions: &mut self.functions };
         let stepped = self.steps.step(&mut *self.source, &mut faults, endpoint, &mut keeper);

@@ -133,7 +133,13 @@ impl Trunk<'_, '_> {
         // The controls are looked at here: each has its own run.
         let control = Control::default();
         let books = Books::new(recorder, &mut watcher, None);
-        let mut keeper = InTime { books, control: &control, look_every: CONTROL_EPOCHS, revision };
+        let mut keeper = InTime {
+            books,
+            control: &control,
+            look_every: CONTROL_EPOCHS,
+            revision,
+            attended: None,
+        };
         while ended.is_none() && !waits.runs.is_empty() {
             let number = steps.number();
             if number.is_multiple_of(CONTROL_EPOCHS) && self.is_cancelled(waits, number) {

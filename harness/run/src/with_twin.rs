@@ -60,7 +60,8 @@ fn both(
     watcher.trace = Some(RunTrace::new());
     method::charts(&mut watcher, scenario, method, recording);
     let books = Books::new(&mut recorder, &mut watcher, Some(&faulted));
-    let mut keeper = InTime { books, control, look_every: CONTROL_EPOCHS, revision: 0 };
+    let mut keeper =
+        InTime { books, control, look_every: CONTROL_EPOCHS, revision: 0, attended: None };
     let mut steps = Steps::new(source.samples_total());
     let begun = until_due(
         (&mut source, &mut endpoint, &mut keeper, &mut steps),

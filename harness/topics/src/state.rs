@@ -325,6 +325,10 @@ fn words(event: &Event) -> String {
         Event::Receipts(_) => "receipts of the faults".to_owned(),
         Event::Pacing { .. } => "how time was kept".to_owned(),
         Event::Calibration { .. } => "calibration concluded by the end of the stream".to_owned(),
+        Event::Operator(record) => {
+            let words = ["act", "step", "value", "by"].map(|name| record[name].as_str());
+            format!("operator: {}", words.into_iter().flatten().collect::<Vec<_>>().join(" "))
+        }
         Event::Other { kind, detail } => format!("{kind}: {detail}"),
         Event::Bench(_)
         | Event::Host { .. }

@@ -34,13 +34,21 @@ pub fn lateness(us: f64) -> String {
 #[must_use]
 pub fn stage(follow: &Follow) -> String {
     match &follow.stage {
-        Stage::Starting => "starting".to_owned(),
-        Stage::Running => "running".to_owned(),
+        Stage::Starting => asks(follow).unwrap_or_else(|| "starting".to_owned()),
+        Stage::Running => asks(follow).unwrap_or_else(|| "running".to_owned()),
         Stage::Recorded => "recorded, and not judged yet".to_owned(),
         Stage::Ended(summary) => format!("ended: {}", summary.verdict.name()),
         Stage::BrokenOff => "broke off: nobody writes it any more".to_owned(),
         Stage::Unjudged => "recorded to its end, without a verdict".to_owned(),
     }
+}
+
+/// Describes the question to the operator that is open, if one is.
+fn asks(follow: &Follow) -> Option<String> {
+    let records = octant_operator::journal::read(follow.place.folder()).ok()?;
+    let asked = *octant_operator::journal::open(&records).first()?;
+    let (step, ask) = (asked.step.as_deref()?, asked.ask.as_deref()?);
+    Some(format!("asks its operator, step {step}: {ask}"))
 }
 
 /// Describes the core's place in its procedure.
@@ -103,13 +111,16 @@ pub fn fault(fault: &FaultState) -> String {
 pub fn line(follow: &Follow) -> String {
     let state = &follow.state;
     if matches!(follow.stage, Stage::Starting) {
-        return "starting".to_owned();
+        return stage(follow);
     }
     let mut text = format!("{:>11}", time(state.time_ns));
     if let Some(done) = state.done() {
         let _ = write!(text, " {:>5} %", fixed(done * 100.0, 1));
     }
     let _ = write!(text, "  {}", mode(state));
+    if let (Stage::Running, Some(asks)) = (&follow.stage, asks(follow)) {
+        let _ = write!(text, "  {asks}");
+    }
     if let Some(drift) = state.drift {
         let _ = write!(
             text,

@@ -30,6 +30,7 @@ pub mod connection;
 mod dimension;
 pub mod host;
 pub mod kinds;
+mod once;
 pub mod receipt;
 pub mod rule;
 mod setup;
@@ -39,6 +40,7 @@ pub mod values;
 pub mod wire;
 
 pub use catalogue::FaultKind;
+pub use once::TriggerOnce;
 pub use receipt::Receipt;
 pub use setup::{FaultBuildError, Setup};
 pub use station::{FaultSpec, Station};

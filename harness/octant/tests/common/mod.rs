@@ -1,6 +1,8 @@
 //! Parts that the tests share.
 
 pub mod allocations;
+#[cfg(target_os = "linux")]
+pub mod attended;
 pub mod epochs;
 pub mod foreign;
 pub mod program;

@@ -2685,6 +2685,9 @@ class Scenario(Section):
         """How the case of the instrument moves. Takes a table with kind, heading, pitch, roll, ship."""
     @motion.setter
     def motion(self, value: Motion | Mapping[str, Any]) -> None: ...
+    operator: Sequence[Mapping[str, Any]]
+    """What a person at the bench does in the run, and is asked. Takes an array of tables with id, ask, trigger,
+    answer, unit, least, most, choices, on_no, timeout, on_timeout, who, hold. Left out: nobody is asked."""
     @property
     def power(self) -> Power:
         """The supply or the relay that feeds the device of the endpoint, over SCPI. Takes a table with port,

@@ -1,6 +1,7 @@
 //! Frames of a run by the clock, on the real-time thread.
 
 use super::entry::{Answer, Broke, Entry};
+use crate::attended::Attended;
 use crate::drive::{InStep, Keeps, Owed};
 use crate::ended::{Ended, RunError, over};
 use crate::measured::Measured;
@@ -47,6 +48,8 @@ pub(super) struct Frames<'a> {
     outstanding: VecDeque<Owed>,
     silence_ns: u64,
     control: &'a Control,
+    /// Person who attends to the run.
+    attended: Option<Attended<'a>>,
     revision: u32,
     frame_end: MonotonicTime,
     /// Frames between messages about time keeping, and the largest lateness since the last one.
@@ -74,7 +77,7 @@ impl<'a> Frames<'a> {
         period_ns: u64,
         (silence_ns, overruns_max): (u64, u64),
         ring: rtrb::Producer<Entry>,
-        (stop, control): (&'a AtomicBool, &'a Control),
+        (stop, control, attended): (&'a AtomicBool, &'a Control, Option<Attended<'a>>),
     ) -> Self {
         Self {
             ring,
@@ -90,6 +93,7 @@ impl<'a> Frames<'a> {
             outstanding: VecDeque::with_capacity(OUTSTANDING),
             silence_ns,
             control,
+            attended,
             revision: 0,
             frame_end: MonotonicTime::default(),
             pace_every: (PACE_NS / period_ns.max(1)).max(1),
@@ -198,7 +202,7 @@ impl<'a> Frames<'a> {
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
     const PACED: bool = true;
 
-    fn begin(&mut self, done: u64) -> bool {
+    fn begin(&mut self, done: u64, output: &Output, _: &mut E) -> Result<bool, RunError> {
         if done == 0 {
             // The run starts with the first frame, not with the settings before it.
             self.found.clock.restart();
@@ -210,7 +214,10 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         }
         self.pace(late_ns);
         self.frame_end = self.found.clock.deadline();
-        self.control.look(done) || self.stop.load(Ordering::Relaxed)
+        if let Some(attended) = &mut self.attended {
+            attended.tell(done, output);
+        }
+        Ok(self.control.look(done) || self.stop.load(Ordering::Relaxed))
     }
 
     fn send(

@@ -15,6 +15,7 @@ mod kept;
 
 pub use kept::TimeKeeping;
 
+use super::attended::Attended;
 use super::drive::{Books, Line, NoFaults, drive};
 use super::ended::{Ended, RunError};
 use super::watch::Watcher;
@@ -48,6 +49,21 @@ where
     S: Source + ?Sized,
     E: Endpoint + ?Sized,
 {
+    drive_attended((settings, period_ns), line, (recorder, watcher), control, None)
+}
+
+/// Drives as [`drive_by_clock`], with a person who attends to the run.
+pub(super) fn drive_attended<S, E>(
+    (settings, period_ns): (&Realtime, u64),
+    line: Line<'_, S, E>,
+    (recorder, watcher): (&mut Recorder, &mut Watcher),
+    control: &Control,
+    attended: Option<Attended<'_>>,
+) -> (Result<Ended, RunError>, TimeKeeping)
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
     let (producer, consumer) = rtrb::RingBuffer::new(ENTRIES);
     let Line { source, mut faulted, endpoint } = line;
     let mut books = Books::new(recorder, watcher, faulted.as_deref());
@@ -66,7 +82,7 @@ where
         });
         let clock = clock(settings, period_ns, granted.is_realtime());
         let limits = (settings.silence_ns, settings.overruns);
-        let ends = (stop, control);
+        let ends = (stop, control, attended);
         let mut frames = frames::Frames::new(clock, period_ns, limits, producer, ends);
         let ended = match faulted.as_deref_mut() {
             None => drive(source, &mut NoFaults, endpoint, &mut frames),

@@ -1,12 +1,16 @@
-//! Keys of faults: common keys, and the keys of each kind, made from the catalogue.
+//! Keys of faults: common keys, and the keys of each kind, made from the catalogue. The steps of a person have their
+//! triggers.
 
 use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key};
-use super::table::{At, Forms, Keys, Of, Value, boolean, choice, form, forms, integer, keys, text};
+use super::table::{
+    At, Forms, Keys, Of, Value, boolean, choice, form, forms, integer, keys, number, si, text,
+};
 use crate::error::Problem;
 use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
 use octant_faults::catalogue::{self, FaultParameter, Lasts, Takes};
 use octant_faults::kinds;
+use octant_operator::{AnswerKind, OnNo, OnTimeout};
 use octant_sample::Mode;
 use std::sync::LazyLock;
 
@@ -371,5 +375,44 @@ keys! {
     pub(crate) struct TimesKeys {
         times: u32 = integer(2, u32::MAX as i64), required, "Onsets in all.";
         every: At<Quantity> = span(), required, "Distance of the onsets.";
+    }
+}
+
+keys! {
+    /// One of `[[operator]]`.
+    pub(crate) struct OperatorKeys {
+        id: String = text(), required, "Name of the step, unique in the scenario.";
+        ask: String = text(), required, "What the person is asked, or is to do.";
+        trigger: At<Option<TriggerKeys>> = form::<TriggerKeys>(),
+            absent("before the start, before a port is opened or a table turns"),
+            "When it is asked: at, sample, position, moving_to, mode or when.";
+        answer: AnswerKind = choice! {
+                "confirm" => AnswerKind::Confirm, "yes; a no ends the run";
+                "yes-no" => AnswerKind::YesNo, "yes or no";
+                "number" => AnswerKind::Number, "a number within its bounds";
+                "text" => AnswerKind::Text, "a text";
+                "choice" => AnswerKind::Choice, "one of its choices";
+            }, "confirm", "What counts as an answer.";
+        unit: Option<String> = text(), absent("none"), "Unit of a number, as the person reads it.";
+        least: Option<f64> = number(Bounds::Any), absent("no bound"), "Least number.";
+        most: Option<f64> = number(Bounds::Any), absent("no bound"), "Greatest number.";
+        choices: Option<Vec<String>> = Of::<Vec<String>>::kind(Kind::Names), absent("none"), "Texts of a choice.";
+        on_no: Option<OnNo> = choice! {
+                "abort" => OnNo::Abort, "the run ends and is inconclusive";
+                "ask-again" => OnNo::AskAgain, "the question stays open";
+                "go-on" => OnNo::GoOn, "with yes-no alone: it is an answer as another";
+            }, derived("confirm: abort; yes-no: go-on"), "What follows a no.";
+        timeout: Option<f64> = si(&[UnitDimension::TIME], Bounds::Positive),
+            absent("as long as it takes"), "How long the answer is waited for, in host time.";
+        on_timeout: OnTimeout = choice! {
+                "abort" => OnTimeout::Abort, "the run ends and is inconclusive";
+                "wait" => OnTimeout::Wait, "it is recorded, and the question stays open";
+            }, "abort", "What follows then. It never counts as a yes.";
+        who: bool = choice! {
+                "optional" => false, "a name may be given";
+                "required" => true, "an answer without a name doesn't count";
+            }, "optional", "Whether an answer needs the name of who gives it.";
+        hold: bool = boolean(), "true",
+            "Whether the run stands still while the question is open. Samples of an instrument, or by the clock, can't be stopped.";
     }
 }

@@ -37,7 +37,9 @@ pub use definition::SCHEMA;
 pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants};
 pub(crate) use drive::DriveKeys;
 pub use faults::dimension as fault_dimension;
-pub(crate) use faults::{Counted, FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, kind_section};
+pub(crate) use faults::{
+    Counted, FaultKeys, LastingKeys, OperatorKeys, RepeatKeys, TriggerKeys, kind_section,
+};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use further::{
     AccelUse, AngleUse, DrawnAccelerations, DrawnAngles, DrawnLengths, DrawnQuadratics,

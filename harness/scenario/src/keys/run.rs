@@ -2,7 +2,7 @@
 
 use super::calibration::{BASELINE, ProcedureKeys};
 use super::definition::{Bounds, Kind, SCHEMA};
-use super::faults::FAULT;
+use super::faults::{FAULT, OperatorKeys};
 use super::fmu::EndpointFmuKeys;
 use super::further::DrawnSiteKeys;
 use super::instrument::{ImuKeys, TurntableKeys};
@@ -11,7 +11,8 @@ use super::power::PowerKeys;
 use super::screening::{ScreeningKeys, on_off};
 use super::source::SourceKeys;
 use super::table::{
-    At, Of, Raw, boolean, choice, integer, keys, si, si_array, table, tables, text, time, within,
+    At, Keys, Of, Raw, boolean, choice, integer, keys, si, si_array, table, tables, text, time,
+    within,
 };
 use crate::model::MotionComponent;
 use crate::quantity::UnitDimension;
@@ -51,6 +52,9 @@ keys! {
             "Faults that are injected on the way from the instrument to the core, in the order in which \
          they act. Beside the keys that all have there are those of the kind: `octant faults list` \
          names all kinds, `octant faults describe KIND` tells what one does and takes.";
+        operator: At<Option<Vec<Raw>>>
+            = Of::<Vec<Raw>>::kind(Kind::Tables(OperatorKeys::SECTION, 0, 1000)), absent("nobody is asked"),
+            "What a person at the bench does in the run, and is asked.";
         record: RecordKeys = table(), section, "What is recorded, and how often.";
         source: SourceKeys = table(), section, "Where the samples come from.";
         endpoint: EndpointKeys = table(), section, "Where the core runs.";

@@ -61,6 +61,8 @@ pub struct Scenario {
     pub screening: core::Screening,
     /// Faults, in the order in which they act.
     pub faults: Vec<Fault>,
+    /// What a person does in the run, in the order of the scenario.
+    pub operator: Vec<octant_operator::OperatorStep>,
     /// Limits that the results have to keep.
     pub requirements: Vec<RequirementSpec>,
     /// Decision rule for values near a limit.

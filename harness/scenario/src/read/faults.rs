@@ -9,7 +9,7 @@ mod value;
 use super::power;
 use super::reader::Reader;
 use crate::error::Problem;
-use crate::keys::{At, FaultKeys, FromTable, Raw};
+use crate::keys::{At, FaultKeys, FromTable, OperatorKeys, Raw};
 use crate::model::{EndpointSpec, Fault, Scenario, SourceSpec};
 use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, FaultKind};
@@ -17,6 +17,8 @@ use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
 use octant_faults::station::FaultSpec;
 use octant_faults::{FaultBuildError, Setup, Station, Values, kinds};
+use octant_operator::step::runs_on;
+use octant_operator::{OperatorStep, StepParts};
 use schedule::Timing;
 use value::value;
 
@@ -65,6 +67,35 @@ pub(super) fn read(
                 .map_or_else(|| faults.problem(error.to_string()), |table| build(table, &error)))
         }
     }
+}
+
+/// Reads the steps of a person, whose triggers are those of faults.
+pub(super) fn steps(
+    tables: &At<Option<Vec<Raw>>>,
+    scenario: &Scenario,
+) -> Result<Vec<OperatorStep>, Problem> {
+    let runs_on = runs_on(scenario.source.instrument().is_some(), scenario.realtime.by_clock);
+    let (timing, mut all) = (Timing::of(scenario), Vec::<OperatorStep>::new());
+    for table in tables.iter().flatten().map(Raw::reader) {
+        let keys = OperatorKeys::of(&table)?;
+        let parts = StepParts {
+            trigger: keys.trigger.as_ref().map(|keys| timing.once(&table, keys)).transpose()?,
+            id: keys.id,
+            ask: keys.ask,
+            kind: keys.answer,
+            unit: keys.unit,
+            bounds: [keys.least, keys.most],
+            choices: keys.choices,
+            on_no: keys.on_no,
+            timeout_s: keys.timeout,
+            on_timeout: keys.on_timeout,
+            named: keys.who,
+            holds: keys.hold,
+        };
+        let step = OperatorStep::new(parts, &all, runs_on, scenario.samples());
+        all.push(step.map_err(|(key, message)| table.problem(key, message))?);
+    }
+    Ok(all)
 }
 
 /// Problem of a kind's refusal, at the parameter that it names.

@@ -80,6 +80,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         navigation: procedure.navigation,
         screening: procedure::screening(&keys.screening),
         faults: Vec::new(),
+        operator: Vec::new(),
         requirements: requirement::read(keys.requirements.as_deref().unwrap_or_default())?,
         decision: requirement::decision(&keys.decision)?,
         equipment: requirement::equipment(keys.equipment.as_deref().unwrap_or_default())?,
@@ -105,7 +106,8 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         drive::check_reach(keys, &scenario)?;
     }
     let faults = faults::read(&keys.faults, &scenario)?;
-    Ok(Scenario { document, faults, ..scenario })
+    let operator = faults::steps(&keys.operator, &scenario)?;
+    Ok(Scenario { document, faults, operator, ..scenario })
 }
 
 /// Refuses a repetition of samples that exist only once, and pacing of instruments and ports that have

@@ -52,15 +52,23 @@ impl<'a> Timing<'a> {
     ) -> Result<(Schedule, Vec<u64>), Problem> {
         let (read, fires) = match self.grid.trigger(trigger)? {
             Some(read) => read,
-            None => (self.trigger(trigger)?, Vec::new()),
+            None => (self.trigger(table, trigger)?, Vec::new()),
         };
         let schedule = self.grid.schedule(table, kind.lasts, trigger, (read, &fires))?;
         Ok((schedule, fires))
     }
 
-    fn trigger(&self, at: &At<TriggerKeys>) -> Result<Trigger, Problem> {
+    /// Trigger of a step that comes once, in a run that has its phase.
+    pub(super) fn once(&self, table: &Reader<'_>, keys: &TriggerKeys) -> Result<Trigger, Problem> {
+        let read = self.grid.trigger(keys)?.map(|(trigger, _)| Ok(trigger));
+        let trigger = read.unwrap_or_else(|| self.trigger(table, keys))?;
+        self.check_phase(&table.table("trigger")?, &trigger)?;
+        Ok(trigger)
+    }
+
+    fn trigger(&self, table: &Reader<'_>, keys: &TriggerKeys) -> Result<Trigger, Problem> {
         let delay = |after| self.grid.epochs(after);
-        Ok(match &**at {
+        Ok(match keys {
             TriggerKeys::Position(keys) => Trigger::Position {
                 stop: self.stop(&keys.position, keys.counted, keys.phase)?,
                 mode: keys.phase,
@@ -84,7 +92,7 @@ impl<'a> Timing<'a> {
                 }
                 Trigger::Condition { signal, comparison, value, delay: delay(keys.after) }
             }
-            _ => return Err(at.problem("missing")),
+            _ => return Err(table.problem("trigger", "missing")),
         })
     }
 

@@ -1,14 +1,15 @@
 //! Runs a short scenario with a fault and without it, epoch by epoch, as data for a picture of the
 //! fault.
 
+use super::done::PlannedWork;
+use super::drive::Line;
+use super::in_time::drive_in_time;
+use super::method::{MethodError, SetupError, faulted};
+use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
 use octant_recorder::Recorder;
-use octant_run::done::PlannedWork;
-use octant_run::method::{MethodError, SetupError, faulted};
-use octant_run::watch::Watcher;
-use octant_run::{Line, drive_in_time};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalCommand, Output, Parameters, Truth};
@@ -20,7 +21,7 @@ use std::rc::Rc;
 
 /// Events in one step of the source.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Step {
+pub struct Step {
     /// Set point of the turntable.
     pub command: GimbalCommand,
     /// Epochs that reached the core.
@@ -31,7 +32,7 @@ pub(crate) struct Step {
 
 /// Both runs, step by step from the start.
 #[derive(Clone, Debug)]
-pub(crate) struct SideBySide {
+pub struct SideBySide {
     /// Steps without the faults.
     pub clean: Vec<Step>,
     /// Steps with the faults.
@@ -44,11 +45,7 @@ pub(crate) struct SideBySide {
 ///
 /// # Errors
 /// If a run can't be set up, or breaks off.
-pub(crate) fn side_by_side(
-    scenario: &Scenario,
-    seed: u64,
-    steps: u64,
-) -> Result<SideBySide, MethodError> {
+pub fn side_by_side(scenario: &Scenario, seed: u64, steps: u64) -> Result<SideBySide, MethodError> {
     let (clean, _) = watched(&scenario.without_faults(), seed, steps)?;
     let (faulted, receipts) = watched(scenario, seed, steps)?;
     Ok(SideBySide { clean, faulted, receipts })
