@@ -177,7 +177,7 @@ fn run(mut core: Core, inputs: &[Input]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: draws(200, 100), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: draws(200, 50), failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn any_input_is_survived(
         inputs in inputs(),

@@ -242,7 +242,7 @@ fn try_all(points: &[Point]) -> Vec<String> {
 
 #[test]
 fn spikes_and_slips_at_random() {
-    let (spikes, slips) = draws((36, 24), (18, 12));
+    let (spikes, slips) = draws((36, 12), (18, 6));
     let spikes = (0..spikes).map(|n| draw(n, false, EIGHT));
     let points: Vec<Point> = spikes.chain((0..slips).map(|n| draw(n, true, EIGHT))).collect();
     let failures = try_all(&points);

@@ -257,7 +257,7 @@ impl PowerOutlet {
         if std::mem::replace(&mut self.ended, true) {
             return Ok(());
         }
-        let first = self.to_the_end();
+        let first = self.left_as_planned();
         let first = match first {
             // The line may be the problem, and not the instrument.
             Err(
@@ -267,7 +267,7 @@ impl PowerOutlet {
                 match ScpiDialogue::open(&plan.port, plan.reply, plan.remote) {
                     Ok(dialogue) => {
                         self.dialogue = dialogue;
-                        self.to_the_end()
+                        self.left_as_planned()
                     }
                     Err(_) => first,
                 }
@@ -283,7 +283,7 @@ impl PowerOutlet {
         first
     }
 
-    fn to_the_end(&mut self) -> Result<(), PowerError> {
+    fn left_as_planned(&mut self) -> Result<(), PowerError> {
         if self.plan.end_on {
             self.set()?;
         }

@@ -52,7 +52,7 @@ pub mod stepped;
 mod true_motion;
 mod trunk;
 pub mod twin;
-mod unit;
+pub mod unit;
 pub mod watch;
 mod with_twin;
 

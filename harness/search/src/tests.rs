@@ -44,22 +44,22 @@ fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<Fau
 
 #[test]
 fn threads_and_interruptions_change_nothing() {
-    let one = searched(&bench(1), 48, None);
-    assert!(one.iter().filter(|trial| is_run(trial)).count() >= 48);
-    assert_eq!(searched(&bench(2), 48, None), one);
+    let one = searched(&bench(1), 24, None);
+    assert!(one.iter().filter(|trial| is_run(trial)).count() >= 24);
+    assert_eq!(searched(&bench(2), 24, None), one);
     let folder = tempfile::tempdir().unwrap();
     let journal = folder.path().join("search.jsonl");
     let bench = bench(2);
-    assert_eq!(searched(&bench, 48, Some(&journal)), one);
+    assert_eq!(searched(&bench, 24, Some(&journal)), one);
     let whole = std::fs::read(&journal).unwrap();
     // Cut anywhere, as a kill does: in the middle of a line, of a proposal, of the first line.
     for kept in [whole.len() - 7, whole.len() / 2, 1000, 30, 0] {
         std::fs::write(&journal, &whole[..kept]).unwrap();
-        assert_eq!(searched(&bench, 48, Some(&journal)), one, "{kept}");
+        assert_eq!(searched(&bench, 24, Some(&journal)), one, "{kept}");
         assert_eq!(std::fs::read(&journal).unwrap(), whole, "{kept}");
     }
     // A longer search begins as the shorter one.
-    let longer = searched(&bench, 60, Some(&journal));
+    let longer = searched(&bench, 32, Some(&journal));
     assert_eq!(longer[..one.len()], one);
 }
 
@@ -238,7 +238,7 @@ fn a_scenario_that_gives_no_reference_is_refused() {
 
 #[test]
 fn counts_of_a_result_add_up() {
-    let trials = searched(&bench(2), 48, None);
+    let trials = searched(&bench(2), 24, None);
     let space = space(&["bias-step", "spike", "scale-step"]);
     let found = SearchFound::of(&trials, &space);
     let unnoticed = trials.iter().filter(|trial| trial.unnoticed_harm().is_some()).count();
