@@ -160,7 +160,8 @@ const WIRING_3: &str = "Vectors are arrays of fixed size.";
 
 const VALUES: &str = "Everything is in SI units and radians; display units are for reading. Discrete inputs \
      must not be interpolated. A value that isn't finite, or not legal, is refused with a reason, \
-     and the variable keeps the value that it had.";
+     and the variable keeps the value that it had. Parameters that are marked as tunable can change \
+     while the model runs, from the next step on.";
 
 const STATES: [&str; 2] = [
     "The state can be kept, restored, freed, and turned into bytes and back at any communication \

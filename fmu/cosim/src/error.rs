@@ -42,6 +42,18 @@ pub enum MasterError {
         /// Message that the FMU logged, after a colon; else empty.
         said: String,
     },
+    /// An FMU refused parameters that were to change.
+    #[error("{node} refused {values} at {time_s} s{said}")]
+    Tuned {
+        /// Name in the system.
+        node: String,
+        /// The parameters with their values.
+        values: String,
+        /// Time of the system, s.
+        time_s: f64,
+        /// Message that the FMU logged, after a colon; else empty.
+        said: String,
+    },
     /// Values depend on themselves, and no solution was found.
     #[error(
         "the initial values of {} depend on each other, and {reason}: start values nearer to the \
@@ -85,4 +97,13 @@ impl MasterError {
         };
         Self::Loop { variables, reason }
     }
+}
+
+/// Returns whether a set function discarded a value, the only error treated as a refusal.
+pub(super) fn is_refusal(error: &InstanceError) -> bool {
+    matches!(
+        error,
+        InstanceError::Failed { function, status, .. }
+            if status == "discard" && (function.starts_with("fmi2Set") || function.starts_with("fmi3Set"))
+    )
 }

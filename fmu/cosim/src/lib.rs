@@ -10,6 +10,7 @@
 //! | [`convert`] | conversion of a value on a wire: units, transformations, types |
 //! | [`values`] | values on their way between types |
 //! | `open` | the FMUs opened |
+//! | [`tuning`] | parameters that change while a system runs |
 //! | [`requirements`] | limits on signals of the system |
 //! | [`system`] | connectors found in the descriptions of the FMUs |
 
@@ -33,4 +34,5 @@ pub mod solve;
 pub mod ssp;
 pub mod summary;
 pub mod system;
+pub mod tuning;
 pub mod values;

@@ -199,7 +199,7 @@ fn variable<'a>(description: &'a Description, name: &str) -> Option<&'a Variable
 }
 
 /// Parses an argument `FMU.VARIABLE=VALUE`.
-fn from_argument<'a>(
+pub(super) fn from_argument<'a>(
     argument: &'a str,
     components: &[FlatComponent],
 ) -> Result<(usize, &'a str, Vec<Set>), String> {

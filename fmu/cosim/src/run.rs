@@ -17,6 +17,7 @@ use super::ssp::package::Package;
 use super::ssp::structure::SystemStructure;
 use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
+use super::tuning::{TunedResult, Tuning, tunings};
 use octant_base::control::Control;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, ProcessPlace};
@@ -55,6 +56,8 @@ pub struct Request {
     pub fires: Vec<String>,
     /// Arguments `FMU.VARIABLE=VALUE` that set parameters and start values.
     pub set: Vec<String>,
+    /// Arguments `FMU.VARIABLE=VALUE@TIME` that change tunable parameters.
+    pub tune: Vec<String>,
     /// Process in which the FMUs run.
     pub place: ProcessPlace,
     /// True to run FMUs that need the tools that made them.
@@ -102,6 +105,7 @@ pub struct PreparedSystem {
     descriptions: Vec<Description>,
     abilities: Vec<Abilities>,
     starts: Vec<Starts>,
+    tunings: Vec<Tuning>,
     faults: Option<TomlText>,
     faulting: Faulting,
     requirements: Option<TomlText>,
@@ -157,6 +161,7 @@ impl PreparedSystem {
         }
         let starts =
             parameters::starts(&structure, &flat, &described, &request.set, &mut warnings)?;
+        let tunings = tunings(&request.tune, &flat, &described, &experiment)?;
         let abilities = (described.iter().zip(&flat.components))
             .map(|(description, component)| {
                 let exchange = is_exchange(description, component.implementation);
@@ -188,6 +193,7 @@ impl PreparedSystem {
             descriptions,
             abilities,
             starts,
+            tunings,
             faults,
             faulting,
             requirements,
@@ -267,6 +273,7 @@ impl PreparedSystem {
         let every = self.request.every.unwrap_or(settings.steps.div_ceil(ROWS_MAX)).max(1);
         let mut simulation =
             Simulation::new(&system, &settings, instances, abilities, Some(faulting));
+        simulation.tune_at(self.tunings);
         for (node, starts) in starts.iter().enumerate() {
             starts.apply(simulation.instances()[node].as_mut()).map_err(|error| {
                 let node = system.nodes[node].name.clone();
@@ -326,7 +333,8 @@ impl PreparedSystem {
         let faults = results(&receipts);
         let is_whole = matches!(ended, SystemEnded::AtStop | SystemEnded::AskedByFmu { .. });
         let requirements = recorder.requiring().results(is_whole);
-        let (verdict, reasons) = judge(&ended, &faults, &requirements);
+        let tuned: Vec<TunedResult> = simulation.tunings().cloned().collect();
+        let (verdict, reasons) = judge(&ended, &faults, &tuned, &requirements);
         let written = recorder
             .event(simulation.time_s(simulation.steps()), &Event::Receipts(faults.clone()))
             .and_then(|()| recorder.finish());
@@ -353,6 +361,7 @@ impl PreparedSystem {
                 requirements,
                 faults,
                 fmus,
+                tuned,
                 connections: system.wires.len(),
                 recorded_every: every,
                 warnings: self.warnings,
@@ -448,6 +457,7 @@ fn given_or(
 fn judge(
     ended: &SystemEnded,
     faults: &[FaultResult],
+    tuned: &[TunedResult],
     requirements: &[RequirementResult],
 ) -> (Verdict, Vec<String>) {
     let mut reasons = Vec::new();
@@ -466,6 +476,10 @@ fn judge(
     for fault in faults.iter().filter(|fault| !fault.fired) {
         verdict = verdict.worst(Verdict::Inconclusive);
         reasons.push(fault.sentence());
+    }
+    for tuned in tuned.iter().filter(|tuned| !tuned.done) {
+        verdict = verdict.worst(Verdict::Inconclusive);
+        reasons.push(format!("{} never got {}", tuned.fmu, tuned.values.join(", ")));
     }
     let required = requirements.iter().fold(Verdict::None, |all, one| all.worst(one.verdict));
     // A requirement that failed before an FMU did stays failed.

@@ -15,10 +15,11 @@ mod settings;
 
 pub use settings::{Abilities, EventCounts, SteppingSettings};
 
-use super::error::MasterError;
+use super::error::{MasterError, is_refusal};
 use super::faults::Faulting;
 use super::initialize::{Initializer, Loop};
 use super::system::{ExchangeSide, System};
+use super::tuning::{TunedResult, Tuning};
 use octant_faults::connection::ConnectionStation;
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome, Stepped};
 
@@ -51,6 +52,9 @@ pub struct Simulation<'a> {
     step: u64,
     /// Number of faults that were triggered by hand so far.
     fired: usize,
+    /// Changes of parameters in the order of their times, and the number of those that were made.
+    tunings: Vec<Tuning>,
+    tuned: usize,
     counts: Vec<EventCounts>,
     /// Number of parts of steps that were repeated.
     rejected: u64,
@@ -99,6 +103,8 @@ impl<'a> Simulation<'a> {
             rolls_back: able(|one| one.state) && able(|one| one.variable_step),
             step: 0,
             fired: 0,
+            tunings: Vec::new(),
+            tuned: 0,
             counts: vec![EventCounts::default(); nodes.len()],
             rejected: 0,
             loops: Vec::new(),
@@ -163,6 +169,16 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub const fn rejected(&self) -> u64 {
         self.rejected
+    }
+
+    /// Gives the simulation its changes of parameters, in the order of their times.
+    pub fn tune_at(&mut self, tunings: Vec<Tuning>) {
+        self.tunings = tunings;
+    }
+
+    /// Returns the changes of parameters.
+    pub fn tunings(&self) -> impl Iterator<Item = &TunedResult> {
+        self.tunings.iter().map(|tuning| &tuning.told)
     }
 
     /// Returns the faults.
@@ -233,6 +249,7 @@ impl<'a> Simulation<'a> {
     /// If an FMU fails, or refuses the step in whole and in parts.
     pub fn advance(&mut self) -> Result<Option<usize>, MasterError> {
         let (start_s, end_s) = (self.time_s(self.step), self.time_s(self.step + 1));
+        self.tune(start_s)?;
         self.step += 1;
         self.begin_faults();
         let mut ended_by = None;
@@ -266,6 +283,17 @@ impl<'a> Simulation<'a> {
             }
         }
         Ok(ended_by)
+    }
+
+    /// Changes the parameters that change at the beginning of the step.
+    fn tune(&mut self, time_s: f64) -> Result<(), MasterError> {
+        while let Some(tuning) =
+            self.tunings.get_mut(self.tuned).filter(|tuning| tuning.point == self.step)
+        {
+            tuning.apply(self.instances[tuning.node].as_mut(), time_s)?;
+            self.tuned += 1;
+        }
+        Ok(())
     }
 
     /// Evaluates triggers with the outputs at the beginning of the step.
@@ -467,13 +495,4 @@ impl<'a> Simulation<'a> {
         }
         first
     }
-}
-
-/// Returns whether a set function discarded a value, the only error treated as a refusal.
-fn is_refusal(error: &InstanceError) -> bool {
-    matches!(
-        error,
-        InstanceError::Failed { function, status, .. }
-            if status == "discard" && (function.starts_with("fmi2Set") || function.starts_with("fmi3Set"))
-    )
 }

@@ -3,6 +3,7 @@
 //! It contains nothing of host or clock: the same system and settings give the same bytes.
 
 use super::initialize::Loop;
+use super::tuning::TunedResult;
 use octant_requirements::Verdict;
 use octant_score::summary::FaultResult;
 use octant_score::verdict::RequirementResult;
@@ -46,6 +47,9 @@ pub struct SystemSummary {
     pub requirements: Vec<RequirementResult>,
     /// Faults that were injected; samples are steps.
     pub faults: Vec<FaultResult>,
+    /// Parameters that were to change during the run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tuned: Vec<TunedResult>,
     /// The FMUs.
     pub fmus: Vec<FmuResult>,
     /// Number of connected numbers.
@@ -179,6 +183,10 @@ impl SystemSummary {
         }
         for fault in &self.faults {
             text += &format!("  {}\n", fault.sentence());
+        }
+        for tuned in self.tuned.iter().filter(|tuned| tuned.done) {
+            let TunedResult { at_s, fmu, values, done: _ } = tuned;
+            text += &format!("  at {at_s} s {fmu} got {}\n", values.join(", "));
         }
         for fmu in self.fmus.iter().filter(|fmu| fmu.refused > 0) {
             text +=

@@ -9,4 +9,5 @@ mod single;
 mod solve;
 mod ssp;
 mod ssp_package;
+mod tuned;
 mod values;

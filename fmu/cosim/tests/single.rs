@@ -4,7 +4,7 @@ use octant_base::control::Control;
 use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink, TOPIC};
 use octant_cosim::single::{Finished, Span, simulate};
-use octant_fmu_host::description::{Causality, Description, Variability, VariableType};
+use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
 use octant_fmu_host::instance::Instance;
 use octant_mapping::settings::{Starts, ValueSettings};
 use octant_mapping::testing::{Scripted, With, description, variable};
@@ -29,15 +29,21 @@ fn model() -> Description {
             variable("m", 10, VariableType::Float64, Output).array(2),
             variable("words", 12, VariableType::String, Output),
             variable("k", 13, VariableType::Float64, Parameter),
+            tunable(variable("t", 14, VariableType::Float64, Parameter).array(2)),
         ],
     )
+}
+
+fn tunable(mut variable: Variable) -> Variable {
+    variable.variability = Variability::Tunable;
+    variable
 }
 
 fn gain() -> Box<dyn Instance> {
     let mut steps = 0.0;
     Scripted::boxed(model(), move |cells, _| {
         steps += 1.0;
-        cells[6] = 2.0 * cells[1] + cells[5] + cells[13];
+        cells[6] = 2.0 * cells[1] + cells[5] + cells[13] + cells[15];
         cells[7] = cells[2];
         cells[8] = steps;
         cells[9] = cells[3];
@@ -226,4 +232,19 @@ fn an_fmu_that_ends_or_fails_leaves_its_rows() {
         let rows = std::fs::read_to_string(&path).unwrap().lines().count() - 1;
         assert!(rows >= 3, "{rows}");
     }
+}
+
+/// A tunable parameter is a column as an input is; the others of its array aren't known.
+#[test]
+fn tunable_parameters_are_held_from_their_row_on() {
+    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.25, tolerance: None };
+    let (_, csv) = run("time,t[1],t[2]\n0,9,1\n0.5,9,2\n", &["y"], span, "out.csv");
+    let text = String::from_utf8(csv).unwrap();
+    let rows: Vec<&str> = text.lines().skip(2).collect();
+    assert_eq!(rows, ["0.25,1.5", "0.5,1.5", "0.75,2.5", "1.0,2.5"]);
+    let error = inputs("time,t[2]\n0,1\n").unwrap_err().to_string();
+    let expected = "found columns for 1 of 2 elements of the parameter t, expected all of them";
+    assert!(error.ends_with(expected), "{error}");
+    let error = inputs("time,k\n0,1\n").unwrap_err().to_string();
+    assert!(error.contains("k is a parameter of the FMU"), "{error}");
 }

@@ -28,6 +28,9 @@ pub(super) struct SystemArguments {
     /// Requirements on signals of the system, a TOML file, instead of those in the system.
     #[arg(long, value_name = "FILE")]
     requirements: Option<PathBuf>,
+    /// Change a tunable parameter at a time, repeatable: "plant.imu.angle_random_walk=1e-6@30 s".
+    #[arg(long, value_name = "FMU.VARIABLE=VALUE@TIME")]
+    tune: Vec<String>,
     /// Order of the FMUs: jacobi, or gauss-seidel=plant,calibrator.
     #[arg(long, value_name = "ORDER")]
     order: Option<SteppingOrder>,
@@ -60,6 +63,7 @@ impl SystemArguments {
         let given = [
             ("--faults", self.faults.is_some()),
             ("--requirements", self.requirements.is_some()),
+            ("--tune", !self.tune.is_empty()),
             ("--order", self.order.is_some()),
             ("--step", self.step.is_some()),
             ("--start", self.start.is_some()),
@@ -125,6 +129,7 @@ pub(super) fn command(
         requirements: arguments.requirements.clone(),
         fires: shared.fire.to_vec(),
         set: shared.set.to_vec(),
+        tune: arguments.tune.clone(),
         place,
         allow_tool: arguments.allow_tool,
         every: arguments.every,
@@ -227,6 +232,9 @@ fn rerun(shared: &Shared<'_>, arguments: &SystemArguments, seed: u64) -> Vec<Str
     };
     for set in shared.set {
         add("--set", Some(set.clone()));
+    }
+    for tune in &arguments.tune {
+        add("--tune", Some(tune.clone()));
     }
     for fire in shared.fire {
         add("--fire", Some(fire.clone()));

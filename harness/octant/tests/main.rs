@@ -115,6 +115,7 @@ mod solution;
 mod source_uri;
 mod system;
 mod system_foreign;
+mod system_tuned;
 mod terminal;
 mod text_source;
 mod trace_verdicts;

@@ -27,7 +27,7 @@ fn scenario() -> Scenario {
 }
 
 /// Builds our FMUs and system once, with the parameters of the scenario.
-fn built() -> &'static Path {
+pub(super) fn built() -> &'static Path {
     static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
     let make = || {
         let folder = tempfile::tempdir().unwrap();
@@ -42,7 +42,7 @@ fn built() -> &'static Path {
     FOLDER.get_or_init(make).path()
 }
 
-fn request(path: PathBuf) -> Request {
+pub(super) fn request(path: PathBuf) -> Request {
     Request { path, place: ProcessPlace::ThisProcess, ..Request::default() }
 }
 
@@ -211,7 +211,7 @@ fn our_system_gives_the_bits_of_the_core_in_process() {
 }
 
 /// Makes a structure of the FMI 3.0 FMUs, connected by arrays, in a folder.
-fn with_arrays(folder: &Path) {
+pub(super) fn with_arrays(folder: &Path) {
     let resources = folder.join("resources");
     std::fs::create_dir(&resources).unwrap();
     let mut elements = String::new();

@@ -15,7 +15,8 @@ use super::host::RunHost;
 use super::in_time::drive_attended;
 use super::planned::estimator_name;
 use super::realtime::{self, TimeKeeping};
-use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY, Watcher};
+use super::recording::recorder_options;
+use super::watch::Watcher;
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
 use octant_base::interrupt;
@@ -25,8 +26,7 @@ use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
 use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_recorder::{
-    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble,
-    Samples, concluded,
+    Event, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble, concluded,
 };
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Mode, Output, Parameters};
@@ -39,8 +39,6 @@ use octant_score::summary::{
 use octant_score::trace::RunTrace;
 use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source, SourceError};
-use octant_topics::about::About;
-use octant_topics::publishing;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -370,44 +368,6 @@ pub(super) fn settle(
         core.initial_parameters = *passes.core.parameters();
     }
     Ok(())
-}
-
-/// Returns the recorder's options of a method, from the scenario, and from what source and endpoint tell:
-/// whether the true parameters are known, and the parts of an output.
-pub(super) fn recorder_options(
-    scenario: &Scenario,
-    seed: u64,
-    draws: &DrawnValues,
-    method: Method,
-    (true_parameters, tells): (bool, Tells),
-) -> RecorderOptions {
-    let record = &scenario.record;
-    let method_name = match method {
-        Method::Primary => "primary",
-        Method::Baseline => "baseline",
-    };
-    RecorderOptions {
-        policy: Policy {
-            samples: if record.full_samples { Samples::Full } else { Samples::Decimated },
-            period_ns: record.every_samples * scenario.sample_period_ns,
-            parameters_period_ns: record.parameters_period_ns,
-        },
-        scenario: scenario.to_resolved_toml(seed, draws),
-        metadata: [
-            ("method", method_name.to_owned()),
-            ("seed", seed.to_string()),
-            ("true_parameters", true_parameters.to_string()),
-            (TELLS_VELOCITY, tells.velocity.to_string()),
-            (TELLS_ATTITUDE, tells.attitude.to_string()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value))
-        .into(),
-        publishing: record.topics_period_ns.map(|period_ns| {
-            let truth = true_parameters.then_some(draws.parameters);
-            publishing(About::of_run(scenario, method, seed, truth), period_ns)
-        }),
-        ..RecorderOptions::default()
-    }
 }
 
 /// Scores the observations and closes the recording.

@@ -1,6 +1,12 @@
 //! Parts of a run's stream that are kept.
 
-use octant_recorder::{Recorder, RecorderError, RecorderOptions};
+use super::watch::{TELLS_ATTITUDE, TELLS_VELOCITY};
+use octant_endpoint::Tells;
+use octant_recorder::{Policy, Recorder, RecorderError, RecorderOptions, Samples};
+use octant_scenario::resolve::DrawnValues;
+use octant_scenario::{Method, Scenario};
+use octant_topics::about::About;
+use octant_topics::publishing;
 use std::path::Path;
 
 /// Parts of a method's stream that are kept.
@@ -26,5 +32,43 @@ impl StreamKeeping<'_> {
             Self::HashAlone => Recorder::stream_hash_only(options),
             Self::None => Recorder::none(),
         })
+    }
+}
+
+/// Returns the recorder's options of a method, from the scenario, and from what source and endpoint tell:
+/// whether the true parameters are known, and the parts of an output.
+pub(super) fn recorder_options(
+    scenario: &Scenario,
+    seed: u64,
+    draws: &DrawnValues,
+    method: Method,
+    (true_parameters, tells): (bool, Tells),
+) -> RecorderOptions {
+    let record = &scenario.record;
+    let method_name = match method {
+        Method::Primary => "primary",
+        Method::Baseline => "baseline",
+    };
+    RecorderOptions {
+        policy: Policy {
+            samples: if record.full_samples { Samples::Full } else { Samples::Decimated },
+            period_ns: record.every_samples * scenario.sample_period_ns,
+            parameters_period_ns: record.parameters_period_ns,
+        },
+        scenario: scenario.to_resolved_toml(seed, draws),
+        metadata: [
+            ("method", method_name.to_owned()),
+            ("seed", seed.to_string()),
+            ("true_parameters", true_parameters.to_string()),
+            (TELLS_VELOCITY, tells.velocity.to_string()),
+            (TELLS_ATTITUDE, tells.attitude.to_string()),
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .into(),
+        publishing: record.topics_period_ns.map(|period_ns| {
+            let truth = true_parameters.then_some(draws.parameters);
+            publishing(About::of_run(scenario, method, seed, truth), period_ns)
+        }),
+        ..RecorderOptions::default()
     }
 }

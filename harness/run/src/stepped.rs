@@ -18,6 +18,7 @@ use super::in_time::InTime;
 use super::interfere::{Functions, Interfered, Interferes};
 use super::method::{self, MethodRun};
 use super::recording::StreamKeeping;
+use super::recording::recorder_options;
 use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
@@ -138,10 +139,8 @@ impl SteppedRun {
         };
         let tells = if unit.is_some() { Tells::ALL } else { endpoint.tells() };
         let told = (source.has_true_parameters(), tells);
-        let options = RecorderOptions {
-            trouble,
-            ..method::recorder_options(scenario, seed, &draws, method, told)
-        };
+        let options =
+            RecorderOptions { trouble, ..recorder_options(scenario, seed, &draws, method, told) };
         let recorder = recording.start(&options).map_err(SetupError::Recorder)?;
         let recorded = source
             .samples_planned()

@@ -121,6 +121,20 @@ impl Inputs {
             }
             seen.extend(&one.elements);
         }
+        // The other elements of a parameter have values that this file doesn't know.
+        for (variable, _) in seen.iter().filter(|(v, _)| v.causality == Causality::Parameter) {
+            let (found, expected) = (
+                seen.iter().filter(|(other, _)| std::ptr::eq(*other, *variable)).count(),
+                count(description, variable),
+            );
+            if found != expected {
+                let name = &variable.name;
+                let reason = format!(
+                    "found columns for {found} of {expected} elements of the parameter {name}, expected all of them"
+                );
+                return Err(content(line, 1, reason));
+            }
+        }
 
         let mut variables: Vec<&Variable> = Vec::new();
         for (variable, _) in &seen {
