@@ -202,7 +202,8 @@ fn estimated_errors_of_the_gimbals_leave_what_angles_gain() {
     };
     let reference = run(&all, Way::NoAngles);
     println!("size of all errors in σ without angles; in brackets the normalized square");
-    for groups in [&all[..1], &all[1..2], &all[2..], &all[..]] {
+    let each = [&all[..1], &all[1..2], &all[2..], &all[..]];
+    for &groups in draws(&each[..], &each[3..]) {
         let name = if groups.len() == 1 { groups[0].name() } else { "all" };
         let mut line = format!("{name:26}");
         for way in [Way::Ignored, Way::Considered, Way::Estimated] {
