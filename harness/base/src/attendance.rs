@@ -1,4 +1,4 @@
-//! What the thread of the samples and the desk of a person at the bench tell each other.
+//! State shared by the thread of the samples and the desk of a person at the bench.
 //!
 //! Steps are numbers from 0. The thread of the samples reads and writes atomics alone, except for the lines at its end.
 

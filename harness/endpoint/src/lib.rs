@@ -332,6 +332,15 @@ pub enum EndpointError {
         /// URI of the endpoint.
         uri: String,
     },
+    /// The power of the device is cut, and it answers.
+    #[error(
+        "cut the power of {uri}: it answers without: the supply or relay feeds something else, a contact is welded, or the \
+         device has another supply"
+    )]
+    Fed {
+        /// URI of the endpoint.
+        uri: String,
+    },
     /// The core's answer broke the rules.
     #[error(transparent)]
     Misbehaved(#[from] answer::Misbehaviour),

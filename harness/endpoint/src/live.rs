@@ -36,7 +36,7 @@ pub struct LiveEndpoint {
     estimate: ParameterEstimate,
     begun: Instant,
     underway: Underway,
-    /// What feeds the device. Dropped last: the device hears its bye before.
+    /// Supply or relay of the device. Dropped last: the device hears its bye before.
     power: Option<Powered>,
     /// Failure to bring the power to its end state.
     power_error: Option<PowerError>,

@@ -2,7 +2,7 @@
 
 use super::EndpointError;
 use octant_link::Uri;
-use octant_link::harness::{Harness, SessionError};
+use octant_link::harness::{Harness, SessionError, SignOfLife};
 use octant_link::port::{self, Port, PortError};
 use octant_power::{Outlet, PowerError, PowerOutlet, PowerPlan, PowerReading, Switching};
 use octant_recorder::event::{PowerReadingRecord, PowerRecord, SwitchingRecord};
@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 
 /// Pause between two attempts to open the port of a device that starts.
 const OPEN_EVERY: Duration = Duration::from_millis(50);
+/// Time in which a device that has power would answer while it is cut.
+const DEAD_FOR: Duration = Duration::from_secs(1);
 /// Interval in which a device is told that the harness is there, while it idles.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 
@@ -58,10 +60,13 @@ impl Powered {
     }
 
     /// Gives the power back before the sample of this number, when the host has waited as long as the cut lasts in
-    /// samples, and begins a new session.
+    /// samples, and begins a new session. A device that answers before has never lost its power.
     pub(super) fn back(&mut self, sample: u64, harness: &mut Harness) -> Result<(), EndpointError> {
         let samples = sample.saturating_sub(self.cut.unwrap_or(sample));
         self.outlet.hold(Duration::from_nanos(samples.saturating_mul(self.period_ns)))?;
+        if harness.sign_of_life(DEAD_FOR)? != SignOfLife::Silence {
+            return Err(EndpointError::Fed { uri: harness.name().to_owned() });
+        }
         self.outlet.switch(true, Some(sample))?;
         harness.begin_again()?;
         self.cut = None;

@@ -18,7 +18,7 @@ pub enum FolderDifference {
     NoFile(String, &'static str),
     /// The lock of a run in progress is there.
     Locked,
-    /// What a person answered isn't the same in the manifest and in the journal.
+    /// Manifest and journal differ in the answers of a person.
     Answers,
 }
 

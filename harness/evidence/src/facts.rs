@@ -33,7 +33,7 @@ pub struct RunFacts {
     pub bench: Option<serde_json::Value>,
     /// Real-time settings that the host granted a run by the clock.
     pub realtime: Option<Granted>,
-    /// What a person was asked, answered and did.
+    /// Questions to a person, answers and requests.
     pub answers: Vec<OperatorRecord>,
     /// Result of a campaign.
     pub campaign: Option<CampaignFacts>,

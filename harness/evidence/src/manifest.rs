@@ -64,7 +64,7 @@ pub struct Manifest {
     /// Real-time settings that the host granted a run by the clock; omitted in other runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub realtime: Option<Granted>,
-    /// What a person was asked, answered and did in the run, as in `operator.jsonl`; omitted where nobody was asked.
+    /// Questions to a person, answers and requests, as in `operator.jsonl`; omitted where nobody was asked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub answers: Vec<OperatorRecord>,
     /// Result of a campaign; omitted in runs.

@@ -32,7 +32,7 @@ pub struct OperatorWays {
     pub page: Option<String>,
 }
 
-/// What is known of the operator before anything is written.
+/// Operator's ways of a run, checked before anything is written.
 #[derive(Debug)]
 pub(crate) struct OperatorPlan {
     script: Option<Vec<ScriptAnswer>>,

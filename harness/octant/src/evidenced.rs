@@ -139,7 +139,7 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
     asked.conclude(request, begun, runs, answers)
 }
 
-/// What the operator of a run was asked, and why that makes it no evidence.
+/// Records of the operator of a run, and the reasons why they make it no evidence.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
     records: Vec<OperatorRecord>,

@@ -140,7 +140,7 @@ fn told(outlet: &mut PowerOutlet, as_json: bool) -> Result<(), Failure> {
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let (plan, has_settings) = plan(arguments)?;
     let bench = |error: PowerError| failure(&error);
-    // What can't be done is refused before the port is opened.
+    // Impossible requests are refused before the port is opened.
     let set = match &arguments.action {
         Action::Set { voltage, current_limit } => {
             if matches!(plan.outlet, Outlet::Relay(_)) {

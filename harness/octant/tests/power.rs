@@ -311,6 +311,21 @@ fn a_supply_that_fails_in_the_middle_ends_the_run_and_is_named() {
 }
 
 #[test]
+fn a_device_that_answers_while_its_power_is_cut_was_never_cut() {
+    let bench = Bench::that_takes("10 min", &CUT.replace("4 s", "9 min"), RELAY, 20.0);
+    let (instrument, device) = (bench.instrument.clone(), Arc::clone(&bench.device));
+    let mut run = bench.command(&["--no-twin"]);
+    let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    assert!(within(LONG, || device.lock().unwrap().starts == 1));
+    // From here on the relay switches nothing.
+    instrument.on_change(|_, _, _| {});
+    let output = child.wait_with_output().unwrap();
+    let words = said(&output);
+    assert_eq!(output.status.code(), Some(4), "{words}");
+    assert!(words.contains("failed to cut the power of tcp:127.0.0.1"), "{words}");
+}
+
+#[test]
 fn what_a_supply_or_a_relay_cannot_do_is_refused_when_the_scenario_is_read() {
     let device = "[endpoint]\nuri = \"serial:/dev/ttyUSB0\"\n";
     let dip = "[[faults]]\nid = \"d\"\nkind = \"voltage-dip\"\nvoltage = \"9 V\"\ntrigger = { at = \"4 s\" }\n";
@@ -329,8 +344,8 @@ fn what_a_supply_or_a_relay_cannot_do_is_refused_when_the_scenario_is_read() {
         (format!("{dip}{device}"), "acts on the supply of a device, and there is none"),
         (format!("{dip}{device}{}", power(RELAY)), "power.relay can only switch"),
         (
-            format!("{}{device}{}", dip.replace("9 V", "24 V"), power(SUPPLY)),
-            "less than power.voltage, 24 V",
+            format!("{}{device}{}", dip.replace("9 V", "22 V"), power(SUPPLY)),
+            "expected less than 21.6 V: power.voltage, 24 V, less twice power.tolerance",
         ),
         (
             format!("{CUT}{device}[realtime]\npace = \"clock\"\n{}", power(SUPPLY)),

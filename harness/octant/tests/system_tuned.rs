@@ -8,7 +8,7 @@ use octant_requirements::Verdict;
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use std::path::Path;
 
-/// What the calibrator got at each step, as bits, and the summary.
+/// Inputs of the calibrator at each step, as bits, and the summary.
 fn run(request: Request) -> (Vec<Vec<u64>>, SystemSummary) {
     let prepared = PreparedSystem::new(request).unwrap_or_else(|error| panic!("{error}"));
     let mut rows = Vec::new();

@@ -42,6 +42,11 @@ pub enum AnswerForm {
 /// Most characters of an answer.
 pub const LONGEST: usize = 1000;
 
+/// Error of an answer: what was found, and what is expected.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct UnfitAnswer(pub String);
+
 impl AnswerForm {
     /// Name of the kind.
     #[must_use]
@@ -78,12 +83,12 @@ impl AnswerForm {
     /// Reads an answer as it is stored: `yes` or `no`, a number, a text, the choice.
     ///
     /// # Errors
-    /// If it is none; the text says what was found and what is expected.
-    pub fn read(&self, text: &str) -> Result<String, String> {
+    /// If it is none.
+    pub fn read(&self, text: &str) -> Result<String, UnfitAnswer> {
         let text = text.trim();
-        let expected = || Err(format!("found {text:?}, expected {}", self.expected()));
+        let expected = || Err(UnfitAnswer(format!("found {text:?}, expected {}", self.expected())));
         if text.chars().count() > LONGEST {
-            return Err(format!("found more than {LONGEST} characters"));
+            return Err(UnfitAnswer(format!("found more than {LONGEST} characters")));
         }
         if text.is_empty() || text.chars().any(char::is_control) {
             return expected();
@@ -109,7 +114,7 @@ impl AnswerForm {
                 Some(choice) => Ok(choice.clone()),
                 None => {
                     let known = suggestion(text, choices.iter().map(String::as_str), "possible");
-                    Err(format!("found {text:?}, {known}"))
+                    Err(UnfitAnswer(format!("found {text:?}, {known}")))
                 }
             },
         }

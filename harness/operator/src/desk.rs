@@ -253,7 +253,7 @@ impl Desk {
         if step.named && by.is_none() {
             return Err(unfit("expected a name with it: it doesn't count without".to_owned()));
         }
-        let value = step.form.read(value).map_err(unfit)?;
+        let value = step.form.read(value).map_err(|error| unfit(error.to_string()))?;
         let unit = match &step.form {
             AnswerForm::Number { unit, .. } => unit.clone(),
             _ => None,

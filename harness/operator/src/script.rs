@@ -7,6 +7,16 @@ use octant_base::names::suggestion;
 use serde::Deserialize;
 use std::path::Path;
 
+/// Error of a file of answers.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("read {file}: {problem}")]
+pub struct ScriptError {
+    /// The file.
+    pub file: String,
+    /// What was found and expected.
+    pub problem: String,
+}
+
 /// An answer of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,18 +42,33 @@ struct AnswerFile {
 ///
 /// # Errors
 /// If the file can't be read, a step has no answer or two, or an answer doesn't fit its step.
-pub fn read(path: &Path, steps: &[OperatorStep]) -> Result<Vec<ScriptAnswer>, String> {
-    let file = path.display();
-    let text = std::fs::read_to_string(path).map_err(|error| format!("read {file}: {error}"))?;
+pub fn read(path: &Path, steps: &[OperatorStep]) -> Result<Vec<ScriptAnswer>, ScriptError> {
+    let wrong = |problem: String| ScriptError { file: path.display().to_string(), problem };
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     let answers = if path.extension().is_some_and(|extension| extension == "jsonl") {
         let records = journal::parse(&text)
-            .map_err(|(line, problem)| format!("read {file}: line {line}: {problem}"))?;
+            .map_err(|(line, problem)| wrong(format!("line {line}: {problem}")))?;
+        same_questions(&records, steps).map_err(wrong)?;
         records.into_iter().filter_map(answer_of).collect()
     } else {
         let read: Result<AnswerFile, _> = toml::from_str(&text);
-        read.map_err(|error| format!("read {file}: {error}"))?.answer
+        read.map_err(|error| wrong(error.to_string()))?.answer
     };
-    in_order(answers, steps).map_err(|problem| format!("read {file}: {problem}"))
+    in_order(answers, steps).map_err(wrong)
+}
+
+/// Checks that a journal has the questions of these steps: an answer to another one is none.
+fn same_questions(records: &[OperatorRecord], steps: &[OperatorStep]) -> Result<(), String> {
+    for record in records {
+        let OperatorRecord { act: OperatorAct::Asked, step: Some(id), ask: Some(ask), .. } = record
+        else {
+            continue;
+        };
+        if let Some(step) = steps.iter().find(|step| step.id == *id && step.ask != *ask) {
+            return Err(format!("answer to {id:?}: it was asked {ask:?}, expected {:?}", step.ask));
+        }
+    }
+    Ok(())
 }
 
 fn answer_of(record: OperatorRecord) -> Option<ScriptAnswer> {
@@ -76,10 +101,8 @@ fn in_order(
         let Some(answer) = answers.iter().find(|answer| answer.id == *id) else {
             return Err(format!("no answer to {id:?}: expected one to each step of the scenario"));
         };
-        let value = step
-            .form
-            .read(&answer.value)
-            .map_err(|problem| format!("answer to {id:?}: {problem}"))?;
+        let value =
+            step.form.read(&answer.value).map_err(|unfit| format!("answer to {id:?}: {unfit}"))?;
         if value == "no" && step.on_no == OnNo::AskAgain {
             return Err(format!("answer to {id:?}: found \"no\", after which it is asked again"));
         }

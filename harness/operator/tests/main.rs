@@ -57,7 +57,7 @@ fn an_answer_is_what_its_form_takes_and_nothing_else() {
         "", " ", "NaN", "nan", "inf", "-inf mm", "-1.0001", "1000.1", "1 m", "mm", "0x1", "1,5",
         "1\u{7}",
     ] {
-        let problem = number.read(text).unwrap_err();
+        let problem = number.read(text).unwrap_err().to_string();
         assert!(problem.contains("expected a number from -1 to 1000 mm"), "{text:?}: {problem}");
     }
     for (text, read) in [("yes", "yes"), ("Y", "yes"), (" NO ", "no"), ("n", "no")] {
@@ -69,7 +69,7 @@ fn an_answer_is_what_its_form_takes_and_nothing_else() {
     }
     let choice = AnswerForm::Choice(vec!["cable A".into(), "cable B".into()]);
     assert_eq!(choice.read("cable B").unwrap(), "cable B");
-    assert!(choice.read("cable b").unwrap_err().contains("did you mean"));
+    assert!(choice.read("cable b").unwrap_err().to_string().contains("did you mean"));
     assert_eq!(AnswerForm::Text.read(" as found ").unwrap(), "as found");
     assert!(AnswerForm::Text.read("a\u{1b}[2J").is_err() && AnswerForm::Text.read("a\nb").is_err());
     assert!(AnswerForm::Text.read(&"a".repeat(1001)).is_err());
@@ -284,9 +284,9 @@ fn a_file_of_answers_is_checked_against_the_steps() {
     let path = folder.path().join("a.toml");
     let steps = [step(StepParts { on_no: Some(OnNo::AskAgain), ..parts("door") })];
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"no\"\n").unwrap();
-    assert!(script::read(&path, &steps).unwrap_err().contains("asked again"));
+    assert!(script::read(&path, &steps).unwrap_err().to_string().contains("asked again"));
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"Yes\"\nbye = \"Ada\"\n").unwrap();
-    assert!(script::read(&path, &steps).unwrap_err().contains("bye"));
+    assert!(script::read(&path, &steps).unwrap_err().to_string().contains("bye"));
     std::fs::write(&path, "[[answer]]\nid = \"door\"\nvalue = \"Yes\"\n").unwrap();
     let answers = script::read(&path, &steps).unwrap();
     assert_eq!((answers[0].value.as_str(), &answers[0].by), ("yes", &None));
@@ -295,4 +295,11 @@ fn a_file_of_answers_is_checked_against_the_steps() {
     desk.look();
     assert!(desk.attendance().is_closed(0));
     assert_eq!(desk.records_from(1)[0].way, Some(AnswerWay::File));
+
+    // The journal of this run answers the same questions, and no others.
+    let journal = folder.path().join("operator.jsonl");
+    assert_eq!(script::read(&journal, &steps).unwrap()[0].value, "yes");
+    let other = StepParts { ask: "Is the window shut?".to_owned(), ..parts("door") };
+    let error = script::read(&journal, &[step(other)]).unwrap_err().to_string();
+    assert!(error.contains("it was asked") && error.contains("Is the window shut?"), "{error}");
 }

@@ -14,6 +14,7 @@ mod power;
 pub use error::{HeardTraffic, SessionError};
 pub use event::{Effort, LinkEvent, Sending};
 pub use options::{Patience, SessionOptions};
+pub use power::SignOfLife;
 
 use crate::asking::Taken;
 use crate::port::PortError;

@@ -10,6 +10,17 @@ use std::time::{Duration, Instant};
 /// Interval between two attempts to open a port that isn't back.
 const REOPEN_EVERY: Duration = Duration::from_millis(50);
 
+/// Sign of life of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignOfLife {
+    /// Reply in its session.
+    InSession,
+    /// Hellos of a device that has no session.
+    Anew,
+    /// Silence, or a port that is gone.
+    Silence,
+}
+
 fn named(hello: &Hello) -> String {
     format!("{} {}", hello.name.as_str(), hello.firmware.as_str())
 }
@@ -63,27 +74,35 @@ impl Harness {
     /// # Errors
     /// If the port fails in another way.
     pub fn is_in_session(&mut self) -> Result<bool, SessionError> {
+        Ok(self.sign_of_life(self.options.patience.answer)? == SignOfLife::InSession)
+    }
+
+    /// Asks the device for its time until it gives a sign of life, for so long.
+    ///
+    /// # Errors
+    /// If the port fails in another way than by being gone.
+    pub fn sign_of_life(&mut self, within: Duration) -> Result<SignOfLife, SessionError> {
         let begun = Instant::now();
-        let patience = self.options.patience;
+        let repeat = self.options.patience.repeat.min(within);
         let mut anew = 0;
-        while begun.elapsed() < patience.answer {
-            match self.ask_for_time(patience.repeat) {
-                Ok(Some(LinkEvent::Time(_))) => return Ok(true),
+        while begun.elapsed() < within {
+            match self.ask_for_time(repeat) {
+                Ok(Some(LinkEvent::Time(_))) => return Ok(SignOfLife::InSession),
                 // One alone may be an old frame.
                 Ok(Some(LinkEvent::Anew)) => {
                     anew += 1;
                     if anew >= ANEW {
-                        return Ok(false);
+                        return Ok(SignOfLife::Anew);
                     }
                 }
                 Ok(_) => {}
                 Err(SessionError::Port(PortError::Gone { .. }) | SessionError::Bye { .. }) => {
-                    return Ok(false);
+                    return Ok(SignOfLife::Silence);
                 }
                 Err(error) => return Err(error),
             }
         }
-        Ok(false)
+        Ok(SignOfLife::Silence)
     }
 
     /// Asks for the time, and returns the first event that tells of a session, or `None` after a time.

@@ -128,7 +128,7 @@ impl Going {
             std::thread::sleep(Duration::from_millis(10));
         }
         let status = self.child.wait().unwrap().code();
-        // What it said last is on its way.
+        // Its last words are on their way.
         std::thread::sleep(Duration::from_millis(100));
         let said = self.said.lock().unwrap().clone();
         (status, said)

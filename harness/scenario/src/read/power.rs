@@ -89,9 +89,13 @@ pub(super) fn without_power(
         return Some(("kind", why.to_owned()));
     };
     let dip_v = table.optional_si("voltage")?;
-    (dip_v >= supply.voltage_v).then(|| {
-        let why =
-            format!("found {dip_v} V, expected less than power.voltage, {} V", supply.voltage_v);
+    // What is measured has to tell the two voltages apart.
+    let below_v = (supply.voltage_v * (1.0 - 2.0 * supply.tolerance) * 1e6).round() / 1e6;
+    (dip_v >= below_v).then(|| {
+        let why = format!(
+            "found {dip_v} V, expected less than {below_v} V: power.voltage, {} V, less twice power.tolerance",
+            supply.voltage_v
+        );
         ("voltage", why)
     })
 }
