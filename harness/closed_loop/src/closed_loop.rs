@@ -47,6 +47,7 @@ impl ClosedLoop {
     ) -> Option<Output> {
         let step = self.plant.step(&self.command);
         let (sample, aiding) = alter(step.sample, step.aiding)?;
+        self.core.feel(self.plant.temperature_c());
         let output = self.core.step(&sample, aiding.as_ref());
         self.command = output.gimbal_command;
         for bit in output.health.iter() {

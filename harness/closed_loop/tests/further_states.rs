@@ -10,7 +10,7 @@ use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::draw::{Draw, ParameterDraws, parameters};
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
-use octant_sample::{Health, Mode};
+use octant_sample::{DeviceTime, Health, Mode};
 
 /// 50 Hz: a move's second of acceleration is fifty samples.
 const PERIOD_NS: u64 = 20_000_000;
@@ -29,16 +29,32 @@ fn sigma(group: FurtherGroup) -> f64 {
         FurtherGroup::Deflection => 10.0 * ARCSEC,
         // 50 mGal.
         FurtherGroup::GravityAnomaly => 50e-5,
+        // Times the change of [`warm_up`] they are those of the biases and scale factors themselves.
+        FurtherGroup::GyroBiasTemperature => 0.001 * DEG_PER_HOUR,
+        FurtherGroup::AccelBiasTemperature => 10.0 * MICRO_G,
+        FurtherGroup::GyroScaleTemperature | FurtherGroup::AccelScaleTemperature => 5.0 * PPM,
         FurtherGroup::GimbalMounting
         | FurtherGroup::GimbalNonOrthogonality
         | FurtherGroup::EncoderEccentricity => unreachable!("see gimbal_angles"),
     }
 }
 
-/// Normal numbers of a seed: the parameters of another instrument, of which each is drawn with σ 1.
-fn normals(seed: u64) -> [f64; PARAMETER_COUNT] {
-    let sigma = 1.0;
-    parameters(seed ^ 0xf117, &normal([sigma; 7])).to_array()
+/// Normal numbers of a seed: the parameters of two other instruments, of which each is drawn with σ 1.
+fn normals(seed: u64) -> impl Iterator<Item = f64> {
+    let of = |other: u64| parameters(seed ^ other, &normal([1.0; 7])).to_array();
+    of(0xf117).into_iter().chain(of(0xf118))
+}
+
+/// An instrument that is switched on cold: 5 K in half of the calibration, and no more.
+fn warm_up() -> plant::Temperature {
+    plant::Temperature {
+        ramp_kps: 10.0 / 3600.0,
+        plateau_k: 5.0,
+        gyro_bias_per_k: [0.0; 3],
+        accel_bias_per_k: [0.0; 3],
+        gyro_scale_per_k: [0.0; 3],
+        accel_scale_per_k: [0.0; 3],
+    }
 }
 
 fn normal(sigmas: [f64; 7]) -> ParameterDraws {
@@ -56,7 +72,7 @@ fn normal(sigmas: [f64; 7]) -> ParameterDraws {
 
 /// True further states of an instrument with errors of these groups.
 fn truth(seed: u64, groups: &[FurtherGroup]) -> [f64; FURTHER_COUNT] {
-    let numbers = normals(seed);
+    let numbers: Vec<f64> = normals(seed).take(FURTHER_COUNT).collect();
     let mut all = [0.0; FURTHER_COUNT];
     for group in groups {
         for k in group.range() {
@@ -92,6 +108,15 @@ fn configured(
     extensions.gyro_asymmetry = three(FurtherGroup::GyroAsymmetry);
     extensions.accel_asymmetry = three(FurtherGroup::AccelAsymmetry);
     extensions.accel_quadratic = three(FurtherGroup::AccelQuadratic);
+    if FurtherGroup::OF_TEMPERATURE.iter().any(|group| groups.contains(group)) {
+        extensions.temperature = Some(plant::Temperature {
+            gyro_bias_per_k: three(FurtherGroup::GyroBiasTemperature),
+            accel_bias_per_k: three(FurtherGroup::AccelBiasTemperature),
+            gyro_scale_per_k: three(FurtherGroup::GyroScaleTemperature),
+            accel_scale_per_k: three(FurtherGroup::AccelScaleTemperature),
+            ..warm_up()
+        });
+    }
     let process = |group| {
         let sigma = sigma(group);
         groups
@@ -117,7 +142,7 @@ fn kalman(core: &mut CoreConfig) -> &mut Kalman {
 }
 
 /// Groups that drive attitude and velocity; those of the gimbals are in `gimbal_angles`.
-fn driving() -> [FurtherGroup; 8] {
+fn driving() -> [FurtherGroup; 12] {
     std::array::from_fn(|index| FurtherGroup::ALL[index])
 }
 
@@ -125,6 +150,7 @@ fn off() -> Further {
     Further {
         gyro_correlation_time_s: CORRELATION_S,
         accel_correlation_time_s: CORRELATION_S,
+        temperature: Some(TemperatureErrors { groups: [FurtherUse::Off; 4], reference_c: None }),
         ..Further::default()
     }
 }
@@ -300,6 +326,50 @@ fn estimated_lever_arms_leave_less_than_a_tenth_of_the_size_effect() {
     assert!(left < 0.1 * ignored, "{left} {ignored}");
     for (k, value) in arms.value_of(lever).iter().enumerate() {
         assert!((value.abs() - 0.05).abs() < 5.0 * arms.sigma_of(lever)[k] + 1e-4, "{k}");
+    }
+}
+
+/// A clock that is fast by κ: each period is too short by κ, and stamps say it isn't. Turns are measured whole, over more
+/// periods; gravity and Earth's rate are smaller by κ per second of the clock. So it shifts the parameters as a gravity
+/// anomaly of −κ g does, and no group of its own could be told from that: but for Earth's rate, 0.0015 deg/h of 1e-4.
+#[test]
+fn the_rate_of_the_clock_is_a_gravity_anomaly() {
+    const KAPPA: f64 = 1e-4;
+    let run = |kappa: f64, anomaly_mps2: f64| {
+        let (mut plant, core) = configured(4, &[], off());
+        (plant.imu.angle_random_walk, plant.imu.velocity_random_walk) = (0.0, 0.0);
+        plant.sample_period_ns = (PERIOD_NS as f64 * (1.0 - kappa)) as u64;
+        plant.aiding.period_ns = plant.sample_period_ns * (plant.aiding.period_ns / PERIOD_NS);
+        plant.site.gravity.anomaly_mps2 = anomaly_mps2;
+        let mut run = ClosedLoop::new(&plant, &core);
+        while matches!(run.output.mode, Mode::Aligning | Mode::Calibrating) {
+            run.step_altered(|mut sample, mut aiding| {
+                sample.device_time = DeviceTime::from_ns(sample.sequence * PERIOD_NS);
+                if let Some(aiding) = &mut aiding {
+                    aiding.device_time = sample.device_time;
+                }
+                Some((sample, aiding))
+            });
+        }
+        assert_eq!(run.output.mode, Mode::Done, "{:?}", run.core.refusal());
+        (run.core.parameters().to_array(), *run.core.sigma())
+    };
+    let (without, sigma) = run(0.0, 0.0);
+    let shift = |found: [f64; PARAMETER_COUNT]| -> [f64; PARAMETER_COUNT] {
+        std::array::from_fn(|i| (found[i] - without[i]) / sigma[i])
+    };
+    let gravity = octant_earth::ellipsoid::Ellipsoid::at(30.5 * DEG, 0.0).gravity_mps2;
+    let fast = shift(run(KAPPA, 0.0).0);
+    let heavy = shift(run(0.0, -KAPPA * gravity).0);
+    for i in 0..PARAMETER_COUNT {
+        println!("{:24} {:9.3} {:9.3} σ", octant_sample::parameters::NAMES[i], fast[i], heavy[i]);
+    }
+    // Common to the three accelerometers, −κ.
+    for i in ParameterGroup::AccelScale.range() {
+        assert!((fast[i] * sigma[i] + KAPPA).abs() < 0.02 * KAPPA, "{}", fast[i] * sigma[i]);
+    }
+    for i in 0..PARAMETER_COUNT {
+        assert!((fast[i] - heavy[i]).abs() < 1.5, "{i}: {} {}", fast[i], heavy[i]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gimbal angles as measurements: what they gain, what errors of the gimbals cost, and what a slip does.
 
 use octant_calibration::config::*;
-use octant_calibration::further::{FURTHER_COUNT, FurtherGroup};
+use octant_calibration::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
 use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
@@ -243,7 +243,7 @@ fn estimated_errors_of_the_gimbals_leave_what_angles_gain() {
                 }
                 let nis = mean(runs.iter().map(|run| run.nis));
                 println!("NIS of the velocity {nis:.3}, of the angles {of_nis:.3}");
-                for k in 27..FURTHER_COUNT {
+                for k in DRIVING_COUNT..FURTHER_COUNT {
                     let name = octant_calibration::further::FURTHER_NAMES[k];
                     println!("  {name:26} σ {:.3} ″", runs[0].further_sigma[k] / ARCSEC);
                 }
@@ -385,6 +385,6 @@ fn a_stored_core_with_angles_goes_on_as_it_was() {
         bytes
     });
     assert!(states[0] == states[1]);
-    assert!(run.core.further().unwrap().value[27..].iter().all(|value| *value != 0.0));
+    assert!(run.core.further().unwrap().value[DRIVING_COUNT..].iter().all(|value| *value != 0.0));
     assert!(run.core.filter().unwrap().angle_tally().unwrap().used > 900);
 }

@@ -259,12 +259,12 @@ fn check(truth: &EnsembleTruth) -> Result<(), DesignError> {
         let found = "biases that wander (Gauss-Markov, bias instability or rate random walk)";
         return not_built("imu", found, "constant biases");
     }
+    if truth.temperature.is_some() {
+        return not_built("imu.temperature", "a temperature effect", "none");
+    }
     if truth.further.has_errors() {
         let found = "errors beside the parameters (imu.extensions, site)";
         return not_built("imu", found, "none: a dwell is one exact step of the 39 errors alone");
-    }
-    if truth.temperature.is_some() {
-        return not_built("imu.temperature", "a temperature effect", "none");
     }
     Ok(())
 }

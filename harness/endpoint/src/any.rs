@@ -49,6 +49,14 @@ impl Endpoint for AnyEndpoint {
         each!(&mut self.0, endpoint => endpoint.step(epoch, output))
     }
 
+    fn feels(&self) -> bool {
+        each!(&self.0, endpoint => endpoint.feels())
+    }
+
+    fn feel(&mut self, temperature_c: f64) {
+        each!(&mut self.0, endpoint => endpoint.feel(temperature_c))
+    }
+
     fn tells(&self) -> Tells {
         each!(&self.0, endpoint => endpoint.tells())
     }

@@ -1,9 +1,10 @@
 //! The core in this process.
 
 use super::{Conclusion, Endpoint, EndpointError};
-use octant_calibration::config::{Estimator, FurtherUse, NavigationPlan};
+use octant_calibration::config::{Estimator, Further, FurtherUse, NavigationPlan};
 use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::{Core, CoreConfig};
+use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, Innovation, NavigationCovariance};
 use octant_sample::{Output, Parameters};
@@ -13,6 +14,8 @@ use octant_sample::{Output, Parameters};
 pub struct InProcess {
     core: Core,
     revision: u32,
+    /// True where errors follow the temperature.
+    feels: bool,
     /// Configuration with which the core starts after each restart.
     config: Box<CoreConfig>,
 }
@@ -23,7 +26,12 @@ impl InProcess {
     /// # Errors
     /// If the configuration contradicts itself.
     pub fn new(config: &CoreConfig) -> Result<Self, CoreConfigError> {
-        Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
+        Ok(Self {
+            core: Core::new(config)?,
+            revision: 0,
+            feels: further_of(config).is_some_and(Further::follows_temperature),
+            config: Box::new(config.clone()),
+        })
     }
 
     /// Returns the core behind the endpoint, for data that no wire carries: diagnostics and table.
@@ -47,9 +55,11 @@ impl InProcess {
 
     /// Returns whether the core estimates further states.
     fn has_further_estimates(&self) -> bool {
-        let estimator = self.config.calibration.as_ref().map(|calibration| &calibration.estimator);
-        let Some(Estimator::Kalman(kalman)) = estimator else { return false };
-        kalman.further.groups.iter().any(|group| matches!(group, FurtherUse::Estimated { .. }))
+        let Some(further) = further_of(&self.config) else { return false };
+        let of_sensors = FurtherGroup::ALL.into_iter().filter(|group| !group.is_of_gimbals());
+        of_sensors
+            .into_iter()
+            .any(|group| matches!(further.of(group), FurtherUse::Estimated { .. }))
     }
 
     /// Returns the core itself, after its last step.
@@ -59,7 +69,24 @@ impl InProcess {
     }
 }
 
+/// Further states of a configuration.
+fn further_of(config: &CoreConfig) -> Option<&Further> {
+    match &config.calibration.as_ref()?.estimator {
+        Estimator::Kalman(kalman) => Some(&kalman.further),
+        _ => None,
+    }
+}
+
 impl Endpoint for InProcess {
+    #[inline]
+    fn feels(&self) -> bool {
+        self.feels
+    }
+
+    fn feel(&mut self, temperature_c: f64) {
+        self.core.feel(temperature_c);
+    }
+
     #[inline]
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         self.core.step_into(&epoch.sample, epoch.aiding.as_ref(), output);

@@ -48,6 +48,15 @@ pub trait Endpoint {
         Tells::ALL
     }
 
+    /// Returns whether the core has to be told the temperature of its instrument before each epoch: errors follow it.
+    fn feels(&self) -> bool {
+        false
+    }
+
+    /// Tells the core the temperature of its instrument over the next epoch, °C. It has a meaning where
+    /// [`Self::feels`].
+    fn feel(&mut self, _temperature_c: f64) {}
+
     /// Name of the endpoint in messages: its URI.
     fn uri(&self) -> String;
 

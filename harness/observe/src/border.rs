@@ -31,9 +31,8 @@ pub(super) struct FurtherModel {
 impl FurtherModel {
     /// Makes the model of a filter. All states have their effect, whether the filter knows of them or not.
     pub(super) fn new(further: &Further) -> Self {
-        let all = [FurtherUse::Considered { sigma: 1.0 }; 8];
         let mut model = Self {
-            effects: FurtherEffects::new(&Further { groups: all, ..*further }),
+            effects: FurtherEffects::all(),
             correlation_time_s: [f64::INFINITY; DRIVING_COUNT],
             prior: [0.0; DRIVING_COUNT],
             estimated: [false; DRIVING_COUNT],
@@ -225,8 +224,12 @@ impl Border {
     }
 }
 
-/// Integrals of an interval over which the rate changes by `change`, rad/s in b.
-pub(super) fn integrals(interval: &MotionInterval, change: &Vector3<f64>) -> FurtherIntegrals {
+/// Integrals of an interval over which the rate changes by `change`, rad/s in b, at T − T₀.
+pub(super) fn integrals(
+    interval: &MotionInterval,
+    change: &Vector3<f64>,
+    warmth_k: f64,
+) -> FurtherIntegrals {
     let (turned, gained) = (&interval.delta_theta, &interval.delta_velocity);
     let square = turned * turned.transpose() / interval.interval_s;
     let size = octant_earth::rotation::skew(change) + square
@@ -236,6 +239,9 @@ pub(super) fn integrals(interval: &MotionInterval, change: &Vector3<f64>) -> Fur
         turned: turned.abs(),
         pushed: gained.abs(),
         squared: gained.component_mul(gained) / interval.interval_s,
+        warmth: warmth_k * interval.interval_s,
+        warm_turn: turned * warmth_k,
+        warm_push: gained * warmth_k,
     }
 }
 

@@ -233,7 +233,8 @@ pub fn reach(
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
     let home = GimbalAngles::default();
     let cursor = Cursor::new(calibration.sequence.clone(), home, rates, dwell, SAMPLE_S, false);
-    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, home, cursor);
+    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, home, cursor)
+        .warmed(truth.temperature, 0.0);
     let mut errors = TrueErrors::new(truth, bordered);
     let (start_s, end_s) = (truth.start_s, calibration.duration_s);
     let filter = (kalman, further.as_ref());
@@ -250,7 +251,8 @@ pub fn reach(
     {
         let at = platform.target();
         let cursor = Cursor::new(plan.rotation.clone(), at, rates, plan.dwell_s, SAMPLE_S, true);
-        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, at, cursor);
+        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, at, cursor)
+            .warmed(truth.temperature, end_s);
         // A step must be shorter than the correlation times, because a wander counts as constant
         // within it.
         let step_s = (truth.wanders.iter())
@@ -291,7 +293,7 @@ fn calibrate(
             }
             _ => platform.step(t, end - t, kalman.error_model, further),
         };
-        if whole && standing {
+        if whole && standing && !platform.is_warmed() {
             dwelling = Some((platform.cursor.stop(), step.clone()));
         }
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
@@ -304,7 +306,7 @@ fn calibrate(
             add_bias_walk(&mut believed, walk * walk * (end - t), &step.transition);
         }
         add_process_noise(&mut believed, noise, end - t, &force);
-        errors.propagate(&step, t, end - t, &force);
+        errors.propagate(&step, end - t, &force);
         t = end;
         if (t - measured_at).abs() < 1e-6 {
             for axis in 0..3 {
@@ -351,11 +353,11 @@ fn navigate(
                 step
             }
         };
-        if whole && standing {
+        if whole && standing && !platform.is_warmed() {
             dwelling = Some((platform.cursor.stop(), step.clone()));
         }
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
-        errors.propagate(&step, start_s + t, end - t, &force);
+        errors.propagate(&step, end - t, &force);
         errors.hold_vertical();
         t = end;
         if (t - mark_s).abs() < 1e-3 || t >= duration_s - 1e-6 {

@@ -372,7 +372,7 @@ fn driving(given: &[Option<f64>; FURTHER_COUNT]) -> [f64; DRIVING_COUNT] {
 }
 
 /// Returns the standard deviations of draws of the errors beside the parameters that drive attitude and velocity.
-fn further_sigmas(draws: &[Option<ParameterDistribution>; 11]) -> [f64; DRIVING_COUNT] {
+fn further_sigmas(draws: &[Option<ParameterDistribution>; 15]) -> [f64; DRIVING_COUNT] {
     let mut sigmas = [0.0; DRIVING_COUNT];
     let all = FurtherGroup::ALL.into_iter().zip(draws);
     for (group, draw) in all.filter(|(group, _)| !group.is_of_gimbals()) {

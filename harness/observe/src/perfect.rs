@@ -8,7 +8,7 @@ use octant_calibration::Core;
 use octant_calibration::config::{Alignment, CoreConfig, Estimator, Screening};
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_plant::Plant;
-use octant_plant::config::{AidingKind, Extensions, Imu, Motion};
+use octant_plant::config::{AidingKind, Extensions, Imu, Motion, Temperature};
 use octant_sample::further::FurtherEstimates;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{GimbalCommand, Mode, Parameters};
@@ -54,6 +54,7 @@ pub fn run(scenario: &Scenario, method: Method) -> Result<FilterSigmas, PerfectE
     let mut command = GimbalCommand::default();
     loop {
         let step = plant.step(&command);
+        core.feel(plant.temperature_c());
         let output = core.step(&step.sample, step.aiding.as_ref());
         command = output.gimbal_command;
         if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
@@ -78,11 +79,19 @@ pub(crate) fn perfect_instrument(
         MotionSpec::Static(mean) => *mean,
         MotionSpec::Dockside(ship) => ship.mean,
     });
+    // A filter that knows of it is told the temperature: its course is no error.
+    let temperature = plant.imu.extensions.temperature.map(|temperature| Temperature {
+        gyro_bias_per_k: [0.0; 3],
+        accel_bias_per_k: [0.0; 3],
+        gyro_scale_per_k: [0.0; 3],
+        accel_scale_per_k: [0.0; 3],
+        ..temperature
+    });
     plant.imu = Imu {
         parameters: Parameters::default(),
         angle_random_walk: 0.0,
         velocity_random_walk: 0.0,
-        extensions: Extensions::default(),
+        extensions: Extensions { temperature, ..Extensions::default() },
     };
     plant.turntable.encoder_sigma_rad = 0.0;
     plant.turntable.errors = Default::default();

@@ -9,6 +9,7 @@ use octant_calibration::filter::FURTHER_ROW;
 use octant_calibration::schedule::{Cursor, turned_rad};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_cb;
+use octant_plant::config::Temperature;
 use octant_sample::GimbalAngles;
 
 /// Sub-step of the transition while a gimbal turns, s.
@@ -27,6 +28,8 @@ pub(super) struct Platform<'a> {
     from: [f64; 2],
     to: [f64; 2],
     departed_s: f64,
+    /// Course of the temperature, and its age at time 0, s.
+    warming: Option<(Temperature, f64)>,
 }
 
 impl<'a> Platform<'a> {
@@ -46,7 +49,25 @@ impl<'a> Platform<'a> {
         // A cursor planned with the gimbals already there has no move.
         let from = if cursor.arrival_s() > 0.0 { angles(home) } else { to };
         let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
-        Self { config, c_nc, non_orthogonality_rad, earth, cursor, from, to, departed_s: 0.0 }
+        let (departed_s, warming) = (0.0, None);
+        Self { config, c_nc, non_orthogonality_rad, earth, cursor, from, to, departed_s, warming }
+    }
+
+    /// The same with a temperature that began to change `age_s` before time 0.
+    pub(super) fn warmed(self, temperature: Option<Temperature>, age_s: f64) -> Self {
+        Self { warming: temperature.map(|temperature| (temperature, age_s)), ..self }
+    }
+
+    /// Returns whether a step is another one at another time, though the platform stands.
+    pub(super) fn is_warmed(&self) -> bool {
+        self.warming.is_some()
+    }
+
+    /// Change of the temperature at a time, K.
+    fn warmth_k(&self, t_s: f64) -> f64 {
+        let Some((temperature, age_s)) = &self.warming else { return 0.0 };
+        let (risen, plateau) = (temperature.ramp_kps * (age_s + t_s), temperature.plateau_k);
+        if risen.abs() < plateau.abs() { risen } else { plateau }
     }
 
     /// Returns the commanded gimbal angles.
@@ -138,8 +159,8 @@ impl<'a> Platform<'a> {
             transition.advance(model, &interval, &self.earth);
             if let (Some(further), Some(columns)) = (further, &mut columns) {
                 let change = self.rate(t_s + since_s + h) - self.rate(t_s + since_s);
-                let integrals = integrals(&interval, &change);
                 let middle_s = since_s + 0.5 * h;
+                let integrals = integrals(&interval, &change, self.warmth_k(t_s + middle_s));
                 further.advance(columns, model, &interval, &integrals, &self.earth, middle_s);
             }
         }

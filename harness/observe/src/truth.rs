@@ -33,7 +33,7 @@ pub struct EnsembleTruth {
     pub reference_sigma: Option<f64>,
     /// Wandering biases.
     pub wanders: Vec<Wander>,
-    /// Temperature and its effect.
+    /// Course of the temperature; its coefficients are among the further errors.
     pub temperature: Option<Temperature>,
     /// Displacements of the instrument from the position that its reference gives: the same in
     /// every run.
@@ -53,7 +53,7 @@ pub struct EnsembleTruth {
 /// Errors beside the parameters over an ensemble, SI, in the order of
 /// [`FURTHER_NAMES`](octant_calibration::further::FURTHER_NAMES), without those of the gimbals: they do nothing to a
 /// filter that doesn't use their angles. Gauss-Markov biases are among the [`Wander`]s.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FurtherTruth {
     /// σ of what is drawn, each independent.
     pub sigma: [f64; DRIVING_COUNT],
@@ -61,6 +61,13 @@ pub struct FurtherTruth {
     pub mean: [f64; DRIVING_COUNT],
     /// Effect on φ of an alignment before the start, rad.
     pub tilt: [[f64; DRIVING_COUNT]; 3],
+}
+
+impl Default for FurtherTruth {
+    fn default() -> Self {
+        let none = [0.0; DRIVING_COUNT];
+        Self { sigma: none, mean: none, tilt: [none; 3] }
+    }
 }
 
 impl FurtherTruth {
@@ -155,7 +162,6 @@ struct Answer {
     /// Further states; zero without them.
     further: FurtherRow,
     swings: Vec<Swing>,
-    temperature: Option<Temperature>,
 }
 
 impl Answer {
@@ -168,23 +174,8 @@ impl Answer {
         self
     }
 
-    fn propagate(&mut self, step: &Step, t_s: f64, h: f64) {
-        let mut driven = self.errors;
-        if let Some(temperature) = &self.temperature {
-            let risen = temperature.ramp_kps * (t_s + 0.5 * h);
-            let plateau = temperature.plateau_k;
-            let change = if risen.abs() < plateau.abs() { risen } else { plateau };
-            for (group, per_k) in [
-                (ParameterGroup::GyroBias, temperature.gyro_bias_per_k),
-                (ParameterGroup::GyroScale, temperature.gyro_scale_per_k),
-                (ParameterGroup::AccelBias, temperature.accel_bias_per_k),
-                (ParameterGroup::AccelScale, temperature.accel_scale_per_k),
-            ] {
-                for (axis, per_k) in per_k.into_iter().enumerate() {
-                    driven[first_of(group) + axis] += change * per_k;
-                }
-            }
-        }
+    fn propagate(&mut self, step: &Step) {
+        let driven = self.errors;
         for (i, row) in step.transition.rows.iter().enumerate() {
             self.errors[i] = row.iter().zip(&driven).map(|(a, b)| a * b).sum();
         }
@@ -281,15 +272,14 @@ impl TrueErrors {
         };
         let quarter = 0.5 * core::f64::consts::PI;
         let further = [0.0; FURTHER_ROW];
-        let answer = |errors, swings| Answer { errors, further, swings, temperature: None };
+        let answer = |errors, swings| Answer { errors, further, swings };
         let both = |swing: &Swing| {
             let swing = *swing;
             [0.0, quarter].map(|phase_rad| {
                 answer([0.0; STATE_COUNT], vec![Swing { phase_rad, ..swing }]).begun(truth.start_s)
             })
         };
-        let mut mean =
-            Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
+        let mut mean = answer(truth.mean, truth.mooring.clone());
         mean.further[..DRIVING_COUNT].copy_from_slice(&truth.further.mean);
         Self {
             noise: truth.noise,
@@ -303,8 +293,8 @@ impl TrueErrors {
         }
     }
 
-    /// Carries everything from `t_s` on over `h`; `force` is the specific force in n times `h`.
-    pub(super) fn propagate(&mut self, step: &Step, t_s: f64, h: f64, force: &Vector3<f64>) {
+    /// Carries everything over `h`; `force` is the specific force in n times `h`.
+    pub(super) fn propagate(&mut self, step: &Step, h: f64, force: &Vector3<f64>) {
         self.covariance.propagate(&step.transition);
         if let (Some(border), Some(further)) = (&mut self.border, &step.further) {
             border.propagate(&step.transition, further, &mut self.covariance);
@@ -314,7 +304,7 @@ impl TrueErrors {
         }
         add_process_noise(&mut self.covariance, self.noise, h, force);
         for answer in self.answers() {
-            answer.propagate(step, t_s, h);
+            answer.propagate(step);
         }
     }
 

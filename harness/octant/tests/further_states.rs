@@ -290,3 +290,113 @@ fn what_has_no_place_for_further_states_refuses_them() {
     assert!(output.status.success(), "{message}");
     assert!(folder.path().join("f/calibrator_s.csv").is_file());
 }
+
+/// An instrument that warms up by 5 K in half an hour.
+const WARM: &str = r#"schema = 1
+seed = 3
+
+[imu]
+rate = "50 Hz"
+
+[imu.extensions.temperature]
+ramp = "10 K/h"
+plateau = "5 K"
+
+[imu.extensions.drawn]
+gyro_bias_temperature = { normal = "0.001 deg/h/K" }
+gyro_scale_temperature = { normal = "5 ppm/K" }
+accel_bias_temperature = { normal = "10 ug/K" }
+accel_scale_temperature = { normal = "5 ppm/K" }
+
+[screening]
+gate = "off"
+drift = "off"
+
+[procedure.calibration]
+duration = "1 h"
+
+[procedure.calibration.further]
+gyro_bias_temperature = { estimated = "0.001 deg/h/K" }
+gyro_scale_temperature = { estimated = "5 ppm/K" }
+accel_bias_temperature = { estimated = "10 ug/K" }
+accel_scale_temperature = { estimated = "5 ppm/K" }
+
+[baseline]
+further = {}
+"#;
+
+#[test]
+fn temperature_coefficients_are_found_as_well_as_was_predicted() {
+    let run = summary(WARM);
+    let further = run["calibration"]["further"].as_object().unwrap();
+    assert_eq!(further.len(), 12);
+    for (name, score) in further {
+        assert!(score["normalized"].as_f64().unwrap().abs() < 4.0, "{name}: {score}");
+    }
+    let worst = |of: &Value| of["worst_normalized_error"].as_f64().unwrap();
+    let (estimated, ignored) = (&run["calibration"], &run["baseline"]["calibration"]);
+    assert!(worst(estimated) < 4.5 && worst(ignored) > 10.0, "{estimated} {ignored}");
+    // A table has no place for them.
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), WARM).unwrap();
+    let done = program(&["run", "s.toml", "--out", "out"]).current_dir(folder.path()).output();
+    assert_eq!(done.unwrap().status.code(), Some(0));
+    assert!(!folder.path().join("out/calibration.octcal").exists());
+    // What is drawn and what the run resolved it to are the same instrument.
+    let mut again = program(&["run", "out/scenario.toml", "--out", "again", "--json"]);
+    let again = again.current_dir(folder.path()).output().unwrap();
+    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(again["stream_hash"], run["stream_hash"]);
+
+    let scenario = Scenario::parse(WARM, "s.toml", Path::new("."), &[]).unwrap();
+    let before = perfect::run(&scenario, Method::Primary).unwrap().further.unwrap();
+    let predicted = json(folder.path(), &["observe", "s.toml", "--ensemble", "--json"]);
+    for (index, name) in FURTHER_NAMES.iter().enumerate().filter(|(_, n)| further.contains_key(**n))
+    {
+        let unit = octant_sample::further::FurtherGroup::of(index).unwrap().si_per_unit();
+        let sigma = further[*name]["sigma"].as_f64().unwrap();
+        assert!((before.sigma[index] / unit / sigma - 1.0).abs() < 0.01, "{name}");
+        let states = predicted[0]["states"].as_array().unwrap();
+        let state = states.iter().find(|state| state["name"] == *name).unwrap();
+        let [believed, achieved] = ["believed", "sigma"].map(|key| state[key].as_f64().unwrap());
+        assert!((believed / sigma - 1.0).abs() < 0.01, "{name}: {believed} {sigma}");
+        // Scale factors are drawn from less than the filter's prior, and each knows the other better for it.
+        assert!((0.8..1.001).contains(&(achieved / believed)), "{name}: {achieved} {believed}");
+    }
+}
+
+#[test]
+fn temperature_that_nobody_tells_is_refused() {
+    let on =
+        "[procedure.calibration.further]\naccel_bias_temperature = { considered = \"1 ug/K\" }\n";
+    let of =
+        |text: &str| format!("schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n{text}");
+    let reference = of(&format!("{on}temperature_reference_c = 25.0\n"));
+    let said = refused(&reference);
+    assert!(said.contains("expected 20, its temperature at the start"), "{said}");
+    assert!(Scenario::parse(&reference.replace("25.0", "20.0"), "s", Path::new(""), &[]).is_ok());
+    let drawn = of("[imu.extensions.drawn]\ngyro_scale_temperature = { normal = \"1 ppm/K\" }\n");
+    let said = refused(&drawn);
+    assert!(said.contains("imu.extensions.drawn.gyro_scale_temperature"), "{said}");
+    assert!(said.contains("expected [imu.extensions.temperature]"), "{said}");
+    let both = of(&format!("{on}gimbal_angles = {{}}\n"));
+    assert!(refused(&both).contains("expected one of the two"));
+
+    // A recording of a run has samples alone.
+    let folder = tempfile::tempdir().unwrap();
+    let text = "schema = 1\n[imu]\nrate = \"50 Hz\"\n[record]\nsamples = \"full\"\n[procedure.calibration]\nduration = \"60 s\"\nstops = [{}]\n";
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    std::fs::write(folder.path().join("replay.toml"), format!("{text}{on}")).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = program(arguments).current_dir(folder.path()).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (_, said) = run(&["run", "s.toml", "--out", "out"]);
+    let source = "replay:out/recording.mcap";
+    let (status, refused) = run(&["run", "replay.toml", "--source", source, "--out", "again"]);
+    assert_eq!(status, Some(4), "{refused} {said}");
+    assert!(
+        refused.contains("failed to tell the filter the temperature: the source has none"),
+        "{refused}"
+    );
+}

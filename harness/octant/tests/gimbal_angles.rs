@@ -2,7 +2,7 @@
 
 use crate::common::program::program;
 use octant_observe::perfect;
-use octant_sample::further::FURTHER_NAMES;
+use octant_sample::further::{DRIVING_COUNT, FURTHER_NAMES};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
@@ -67,13 +67,13 @@ fn errors_of_the_gimbals_are_in_the_summary_and_as_observed() {
     let summary = summary(GIMBALS);
     let further = summary["calibration"]["further"].as_object().unwrap();
     let names: Vec<&str> = further.keys().map(String::as_str).collect();
-    let mut expected = FURTHER_NAMES[27..].to_vec();
+    let mut expected = FURTHER_NAMES[DRIVING_COUNT..].to_vec();
     expected.sort_unstable();
     assert_eq!(names, expected);
     let scenario = parsed(GIMBALS);
     let truth = scenario.true_further(&DrawnValues::of(&scenario, &Seeded(3)));
     let found = perfect::run(&scenario, Method::Primary).unwrap();
-    for (index, name) in FURTHER_NAMES.iter().enumerate().skip(27) {
+    for (index, name) in FURTHER_NAMES.iter().enumerate().skip(DRIVING_COUNT) {
         let score = &further[*name];
         let arcsec = octant_earth::units::ARCSEC;
         let of_truth = score["true"].as_f64().unwrap() * arcsec;

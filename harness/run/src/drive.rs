@@ -144,6 +144,10 @@ impl Steps {
         if !source.next(&command, epoch)? {
             return Ok(Some(Ended::SourceEnded));
         }
+        if endpoint.feels() {
+            let temperature_c = source.temperature_c()?.ok_or(RunError::Untold)?;
+            endpoint.feel(temperature_c);
+        }
         let epoch = &*epoch;
         for event in faults.unit_events(source)? {
             let happened = unit::happen(event, *number, endpoint)?;

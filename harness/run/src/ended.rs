@@ -45,6 +45,13 @@ pub enum RunError {
     /// The recorder failed.
     #[error(transparent)]
     Recorder(#[from] RecorderError),
+    /// The source has no temperature, and errors follow it.
+    #[error(
+        "tell the filter the temperature: the source has none, and procedure.calibration.further has errors that follow it; \
+         the plant has one, and so have text files and messages with a column or field of it, and logs whose instrument sends \
+         one from the first sample on"
+    )]
+    Untold,
     /// A navigation can't be scored.
     #[error(transparent)]
     Drift(#[from] octant_score::drift::DriftError),

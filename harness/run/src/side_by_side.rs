@@ -94,6 +94,10 @@ impl Source for WatchedSource {
         self.source.truth()
     }
 
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        self.source.temperature_c()
+    }
+
     fn samples_total(&self) -> Option<u64> {
         self.source.samples_total()
     }
@@ -117,6 +121,14 @@ impl Endpoint for WatchedEndpoint {
             step.output = Some(*output);
         }
         Ok(())
+    }
+
+    fn feels(&self) -> bool {
+        self.endpoint.feels()
+    }
+
+    fn feel(&mut self, temperature_c: f64) {
+        self.endpoint.feel(temperature_c);
     }
 
     fn uri(&self) -> String {

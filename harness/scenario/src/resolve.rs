@@ -24,7 +24,7 @@ pub trait Drawing {
     fn parameters(&self, distributions: &[ParameterDistribution; 7]) -> Parameters;
     /// Draws errors beside the parameters, in the order of [`FURTHER_NAMES`], from the distribution of each group, in the
     /// order of [`FurtherGroup::ALL`]; zero where there is none.
-    fn further(&self, distributions: &[Option<ParameterDistribution>; 11]) -> [f64; FURTHER_COUNT];
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 15]) -> [f64; FURTHER_COUNT];
     /// Draws attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad)
     /// and velocity (m/s).
     fn alignment_error(
@@ -59,7 +59,7 @@ impl Drawing for Seeded {
         draw::parameters(self.0, &draws)
     }
 
-    fn further(&self, distributions: &[Option<ParameterDistribution>; 11]) -> [f64; FURTHER_COUNT] {
+    fn further(&self, distributions: &[Option<ParameterDistribution>; 15]) -> [f64; FURTHER_COUNT] {
         let none = draw::Draw::Constant([0.0; 9]);
         let draws = distributions.each_ref().map(|of| of.as_ref().map_or(none, of_group));
         draw::further(self.0, &draws)

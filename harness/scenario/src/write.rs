@@ -108,6 +108,22 @@ impl Scenario {
                     let values = extension(UnitDimension::ACCEL_QUADRATIC);
                     set("imu.extensions.accel_quadratic", values);
                 }
+                FurtherGroup::GyroBiasTemperature => {
+                    let values = extension(UnitDimension::GYRO_BIAS_PER_K);
+                    set("imu.extensions.temperature.gyro_bias", values);
+                }
+                FurtherGroup::GyroScaleTemperature => {
+                    let values = extension(UnitDimension::SCALE_PER_K);
+                    set("imu.extensions.temperature.gyro_scale", values);
+                }
+                FurtherGroup::AccelBiasTemperature => {
+                    let values = extension(UnitDimension::ACCEL_BIAS_PER_K);
+                    set("imu.extensions.temperature.accel_bias", values);
+                }
+                FurtherGroup::AccelScaleTemperature => {
+                    let values = extension(UnitDimension::SCALE_PER_K);
+                    set("imu.extensions.temperature.accel_scale", values);
+                }
                 FurtherGroup::Deflection => {
                     set("site.deflection_north", one(UnitDimension::SMALL_ANGLE, 0));
                     set("site.deflection_east", one(UnitDimension::SMALL_ANGLE, 1));

@@ -2,7 +2,8 @@
 //!
 //! - `navigation`: free inertial, rotating by the sixteen moves.
 //! - `calibration`: eight positions, 39 states, one measurement a second.
-//! - `calibration, further`: the same with all further states estimated, 66 in all.
+//! - `calibration, further`: the same with all further states estimated but those that follow the temperature, 66 in all.
+//! - `calibration, further and temperature`: with those too, 78 in all.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
@@ -25,8 +26,16 @@ fn all_further() -> Further {
         gyro_correlation_time_s: 300.0,
         accel_correlation_time_s: 300.0,
         gyro_rate_random_walk: 1e-12,
+        temperature: None,
         angles: None,
     }
+}
+
+/// The same with those that follow the temperature.
+fn and_temperature() -> Further {
+    let groups = [FurtherUse::Estimated { sigma: 1e-6 }; 4];
+    let temperature = TemperatureErrors { groups, reference_c: Some(20.0) };
+    Further { temperature: Some(temperature), ..all_further() }
 }
 
 fn config(calibration: bool, further: Further) -> CoreConfig {
@@ -118,6 +127,7 @@ fn bench(criterion: &mut Criterion) {
         ("navigation", false, Further::default()),
         ("calibration", true, Further::default()),
         ("calibration, further", true, all_further()),
+        ("calibration, further and temperature", true, and_temperature()),
     ] {
         let core = Core::new(&config(calibration, further)).unwrap();
         group.bench_function(name, |bencher| {
@@ -129,6 +139,7 @@ fn bench(criterion: &mut Criterion) {
                             let mut sample = *sample;
                             sample.sequence += minute * SECOND as u64;
                             sample.device_time.ns += minute * 1_000_000_000;
+                            core.feel(20.0 + 0.1 * minute as f64);
                             std::hint::black_box(core.step(&sample, aiding.as_ref()));
                         }
                     }

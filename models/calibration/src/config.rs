@@ -4,7 +4,7 @@ mod further;
 #[cfg(feature = "state")]
 mod stored;
 
-pub use further::{AngleMeasurements, Further, FurtherUse};
+pub use further::{AngleMeasurements, Further, FurtherUse, TemperatureErrors};
 pub use octant_positions::rates::TurntableRates;
 
 use crate::sequence::Sequence;

@@ -209,6 +209,15 @@ impl CalibrationFilter {
         }
     }
 
+    /// Takes T − T₀, K: the departure of the temperature from the one at which the parameters are as they are
+    /// estimated. It holds until the next call.
+    #[inline]
+    pub fn feel(&mut self, warmth_k: f64) {
+        if let Some(further) = &mut self.further {
+            further.feel(warmth_k);
+        }
+    }
+
     /// Takes an interval that the strapdown has just integrated.
     #[inline]
     pub fn accumulate(

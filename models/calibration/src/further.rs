@@ -13,9 +13,16 @@
 //! | [`AccelGaussMarkov`](FurtherGroup::AccelGaussMarkov) | ∇_i = x_i, first-order Gauss-Markov | m/s² |
 //! | [`Deflection`](FurtherGroup::Deflection) | gravity in n is (−ξ g, −η g, g) | rad |
 //! | [`GravityAnomaly`](FurtherGroup::GravityAnomaly) | gravity in n is (0, 0, g + Δg), g normal gravity | m/s² |
+//! | [`GyroBiasTemperature`](FurtherGroup::GyroBiasTemperature) | ε_i = c_i (T − T₀) | (rad/s)/K |
+//! | [`GyroScaleTemperature`](FurtherGroup::GyroScaleTemperature) | ε_i = c_i (T − T₀) ω_i | 1/K |
+//! | [`AccelBiasTemperature`](FurtherGroup::AccelBiasTemperature) | ∇_i = c_i (T − T₀) | (m/s²)/K |
+//! | [`AccelScaleTemperature`](FurtherGroup::AccelScaleTemperature) | ∇_i = c_i (T − T₀) f_i | 1/K |
 //! | [`GimbalMounting`](FurtherGroup::GimbalMounting) | `c_cb = Rx(roll) · Ry(η) · Rz(azimuth) · exp([μ×])` | rad |
 //! | [`GimbalNonOrthogonality`](FurtherGroup::GimbalNonOrthogonality) | η in the same | rad |
 //! | [`EncoderEccentricity`](FurtherGroup::EncoderEccentricity) | measured − true angle is c cos(angle) + s sin(angle), for azimuth and for roll | rad |
+//!
+//! T is the temperature that the core is told ([`Core::feel`](crate::Core::feel)), T₀ the one at which the
+//! parameters are as they are estimated.
 //!
 //! The last three are there where the gimbal angles are measurements: see [`crate::filter`]'s angles.
 //!
@@ -33,6 +40,8 @@
 //!   accelerometers, r_x = 0. Then, or where the axes don't cross, three combinations are the place of
 //!   that point. The nine remain states: a combination that the motion doesn't show keeps its prior.
 //! - Asymmetry: on positions with both signs of an axis it is separated from the scale factor.
+//! - Temperature: as well as the temperature changes, and as the parameter is seen whose change it is.
+//!   At T₀ nothing shows it, and it does nothing.
 //! - Deflection: at rest it is inseparable from a tilt of the whole attitude, and the anomaly from a
 //!   common scale factor of the accelerometers. Both are there to be considered.
 
@@ -41,5 +50,5 @@ pub(crate) mod size_effect;
 
 pub use compensation::FurtherIntegrals;
 pub use octant_sample::further::{
-    DRIVING_COUNT, FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup,
+    DRIVING_COUNT, FURTHER_COUNT, FURTHER_NAMES, FurtherEstimates, FurtherGroup, TEMPERATURE_START,
 };

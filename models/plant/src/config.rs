@@ -238,6 +238,9 @@ pub struct GaussMarkov {
     pub correlation_time_s: f64,
 }
 
+/// Temperature of an instrument at the start, °C: the one for which its parameters are given.
+pub const START_TEMPERATURE_C: f64 = 20.0;
+
 /// Linear temperature ramp that ends at a plateau, and first-order sensitivities.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Temperature {

@@ -105,7 +105,7 @@ pub fn parameters(seed: u64, draws: &ParameterDraws) -> Parameters {
 /// Draws the errors beside the parameters, in the order of [`octant_sample::further::FURTHER_NAMES`], from the
 /// distribution of each group. The stream of a group is `draw.NAME`, and its errors are the first numbers of it.
 #[must_use]
-pub fn further(seed: u64, draws: &[Draw<9>; 11]) -> [f64; FURTHER_COUNT] {
+pub fn further(seed: u64, draws: &[Draw<9>; 15]) -> [f64; FURTHER_COUNT] {
     let mut all = [0.0; FURTHER_COUNT];
     for (of, draw) in FurtherGroup::ALL.iter().zip(draws) {
         let drawn = group(seed, &format!("draw.{}", of.name()), draw);
@@ -171,10 +171,10 @@ mod tests {
     #[test]
     fn further_errors_are_drawn_apart() {
         let none = Draw::Constant([0.0; 9]);
-        let all = further(3, &[Draw::Normal { sigma: 1.0 }; 11]);
+        let all = further(3, &[Draw::Normal { sigma: 1.0 }; 15]);
         let parameters = parameters(3, &ParameterDraws::table_1()).to_array();
         for (place, of) in FurtherGroup::ALL.into_iter().enumerate() {
-            let mut draws = [none; 11];
+            let mut draws = [none; 15];
             draws[place] = Draw::Normal { sigma: 2.0 };
             for (index, value) in further(3, &draws).into_iter().enumerate() {
                 let expected = if of.range().contains(&index) { 2.0 * all[index] } else { 0.0 };
@@ -186,7 +186,7 @@ mod tests {
         sorted.sort_by(f64::total_cmp);
         sorted.dedup();
         assert_eq!(sorted.len(), count + parameters.len());
-        let mut uniform = [none; 11];
+        let mut uniform = [none; 15];
         uniform[0] = Draw::Uniform { half_width: 0.5 };
         assert!(further(3, &uniform)[..9].iter().all(|value| value.abs() < 0.5 && *value != 0.0));
     }

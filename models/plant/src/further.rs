@@ -23,6 +23,12 @@ pub fn truth(
     put(FurtherGroup::GyroAsymmetry, &extensions.gyro_asymmetry);
     put(FurtherGroup::AccelAsymmetry, &extensions.accel_asymmetry);
     put(FurtherGroup::AccelQuadratic, &extensions.accel_quadratic);
+    if let Some(temperature) = &extensions.temperature {
+        put(FurtherGroup::GyroBiasTemperature, &temperature.gyro_bias_per_k);
+        put(FurtherGroup::GyroScaleTemperature, &temperature.gyro_scale_per_k);
+        put(FurtherGroup::AccelBiasTemperature, &temperature.accel_bias_per_k);
+        put(FurtherGroup::AccelScaleTemperature, &temperature.accel_scale_per_k);
+    }
     let deflection = [gravity.deflection_north_rad, gravity.deflection_east_rad];
     put(FurtherGroup::Deflection, &deflection);
     put(FurtherGroup::GravityAnomaly, &[gravity.anomaly_mps2]);
@@ -47,7 +53,8 @@ pub fn truth(
 
 /// Adds errors, in the order of [`octant_sample::further::FURTHER_NAMES`], to those that an instrument, its
 /// site and its turntable have.
-/// Gauss-Markov biases are processes, to which no constant is added.
+/// Gauss-Markov biases are processes, to which no constant is added; coefficients of a temperature are added where there
+/// is one.
 pub fn add(
     errors: &[f64; FURTHER_COUNT],
     extensions: &mut Extensions,
@@ -63,6 +70,12 @@ pub fn add(
     to(FurtherGroup::GyroAsymmetry, &mut extensions.gyro_asymmetry);
     to(FurtherGroup::AccelAsymmetry, &mut extensions.accel_asymmetry);
     to(FurtherGroup::AccelQuadratic, &mut extensions.accel_quadratic);
+    if let Some(temperature) = &mut extensions.temperature {
+        to(FurtherGroup::GyroBiasTemperature, &mut temperature.gyro_bias_per_k);
+        to(FurtherGroup::GyroScaleTemperature, &mut temperature.gyro_scale_per_k);
+        to(FurtherGroup::AccelBiasTemperature, &mut temperature.accel_bias_per_k);
+        to(FurtherGroup::AccelScaleTemperature, &mut temperature.accel_scale_per_k);
+    }
     let mut deflection = [gravity.deflection_north_rad, gravity.deflection_east_rad];
     to(FurtherGroup::Deflection, &mut deflection);
     [gravity.deflection_north_rad, gravity.deflection_east_rad] = deflection;
@@ -81,7 +94,16 @@ mod tests {
     /// What is added is the truth afterwards, group by group; processes stay what they are.
     #[test]
     fn the_truth_is_what_was_added() {
-        let (mut extensions, mut gravity) = (Extensions::default(), Default::default());
+        let temperature = crate::config::Temperature {
+            ramp_kps: 0.001,
+            plateau_k: 5.0,
+            gyro_bias_per_k: [0.0; 3],
+            accel_bias_per_k: [0.0; 3],
+            gyro_scale_per_k: [0.0; 3],
+            accel_scale_per_k: [0.0; 3],
+        };
+        let mut extensions = Extensions { temperature: Some(temperature), ..Extensions::default() };
+        let mut gravity = Default::default();
         let mut turntable = TurntableConfig {
             rate_radps: 0.1,
             acceleration_radps2: 0.1,
@@ -106,8 +128,8 @@ mod tests {
         let other = truth(&extensions, &gravity, &turntable);
         for index in 0..FURTHER_COUNT {
             let expected = match index {
-                29 => found[index].map(|z| z - 1.0),
-                31.. => None,
+                41 => found[index].map(|z| z - 1.0),
+                43.. => None,
                 _ => found[index],
             };
             assert_eq!(other[index], expected, "{index}");

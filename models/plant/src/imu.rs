@@ -321,6 +321,11 @@ impl Sensors {
         sum
     }
 
+    /// Change of the temperature since the start, mean over the sample that began then, K: all changes together.
+    pub(crate) fn warmth_k(&self, start_ns: u64) -> f64 {
+        self.temperatures.iter().map(|warmth| warmth.mean_change_k(start_ns, self.dt)).sum()
+    }
+
     /// Begins a temperature change by a fault.
     pub(crate) fn heat(&mut self, handle: u32, temperature: Temperature, now_ns: u64) {
         if temperature.ramp_kps * temperature.plateau_k > 0.0 {

@@ -3,7 +3,7 @@
 mod state;
 mod tune;
 
-use crate::config::{PlantConfig, Temperature};
+use crate::config::{PlantConfig, START_TEMPERATURE_C, Temperature};
 use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::encoder::ErrorCurve;
@@ -330,6 +330,15 @@ fn displaced(truth: Truth, motion: &Motion, rate: &Vector3<f64>) -> Truth {
         velocity_mps: velocity.into(),
         q_nb: [q.w, q.i, q.j, q.k],
         ..truth
+    }
+}
+
+impl Plant {
+    /// Temperature of the instrument, °C: mean over the last sample. Its thermometer has no error.
+    #[must_use]
+    pub fn temperature_c(&self) -> f64 {
+        let start_ns = self.time_ns.saturating_sub(self.body.period_ns());
+        START_TEMPERATURE_C + self.sensors.warmth_k(start_ns)
     }
 }
 

@@ -5,11 +5,14 @@ use crate::parameters::{ParameterGroup, STANDARD_GRAVITY};
 use core::ops::Range;
 
 /// Number of further states.
-pub const FURTHER_COUNT: usize = 35;
+pub const FURTHER_COUNT: usize = 47;
 
 /// Number of those that drive attitude and velocity, the first ones: errors of sensors and of gravity. The
 /// others are errors of the gimbals and their encoders, which drive nothing.
-pub const DRIVING_COUNT: usize = 27;
+pub const DRIVING_COUNT: usize = 39;
+
+/// First of those that follow the temperature: the last that drive attitude and velocity.
+pub const TEMPERATURE_START: usize = 27;
 
 /// Names of the further states, in the order in which they are stored.
 pub const FURTHER_NAMES: [&str; FURTHER_COUNT] = [
@@ -40,6 +43,18 @@ pub const FURTHER_NAMES: [&str; FURTHER_COUNT] = [
     "deflection_north",
     "deflection_east",
     "gravity_anomaly",
+    "gyro_bias_temperature_x",
+    "gyro_bias_temperature_y",
+    "gyro_bias_temperature_z",
+    "gyro_scale_temperature_x",
+    "gyro_scale_temperature_y",
+    "gyro_scale_temperature_z",
+    "accel_bias_temperature_x",
+    "accel_bias_temperature_y",
+    "accel_bias_temperature_z",
+    "accel_scale_temperature_x",
+    "accel_scale_temperature_y",
+    "accel_scale_temperature_z",
     "gimbal_mounting_x",
     "gimbal_mounting_y",
     "gimbal_mounting_z",
@@ -69,6 +84,14 @@ pub enum FurtherGroup {
     Deflection,
     /// Gravity anomaly, m/s²: true minus normal gravity.
     GravityAnomaly,
+    /// Temperature coefficients of the gyro biases, (rad/s)/K.
+    GyroBiasTemperature,
+    /// Temperature coefficients of the gyros' scale factors, 1/K.
+    GyroScaleTemperature,
+    /// Temperature coefficients of the accelerometer biases, (m/s²)/K.
+    AccelBiasTemperature,
+    /// Temperature coefficients of the accelerometers' scale factors, 1/K.
+    AccelScaleTemperature,
     /// Mounting of the body on the inner gimbal, rad: the body is turned by this vector in its own
     /// axes. The zero error of the azimuth encoder counts as minus z.
     GimbalMounting,
@@ -81,7 +104,7 @@ pub enum FurtherGroup {
 
 impl FurtherGroup {
     /// All groups, in the order in which they are stored.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         Self::AccelLever,
         Self::GyroAsymmetry,
         Self::AccelAsymmetry,
@@ -90,6 +113,10 @@ impl FurtherGroup {
         Self::AccelGaussMarkov,
         Self::Deflection,
         Self::GravityAnomaly,
+        Self::GyroBiasTemperature,
+        Self::GyroScaleTemperature,
+        Self::AccelBiasTemperature,
+        Self::AccelScaleTemperature,
         Self::GimbalMounting,
         Self::GimbalNonOrthogonality,
         Self::EncoderEccentricity,
@@ -98,6 +125,14 @@ impl FurtherGroup {
     /// Groups of errors of the gimbals, which only angles as measurements show.
     pub const OF_GIMBALS: [Self; 3] =
         [Self::GimbalMounting, Self::GimbalNonOrthogonality, Self::EncoderEccentricity];
+
+    /// Groups of errors that follow the temperature, which only a thermometer shows.
+    pub const OF_TEMPERATURE: [Self; 4] = [
+        Self::GyroBiasTemperature,
+        Self::GyroScaleTemperature,
+        Self::AccelBiasTemperature,
+        Self::AccelScaleTemperature,
+    ];
 
     /// Returns whether the errors are those of the gimbals.
     #[must_use]
@@ -117,9 +152,13 @@ impl FurtherGroup {
             Self::AccelGaussMarkov => 21..24,
             Self::Deflection => 24..26,
             Self::GravityAnomaly => 26..27,
-            Self::GimbalMounting => 27..30,
-            Self::GimbalNonOrthogonality => 30..31,
-            Self::EncoderEccentricity => 31..35,
+            Self::GyroBiasTemperature => 27..30,
+            Self::GyroScaleTemperature => 30..33,
+            Self::AccelBiasTemperature => 33..36,
+            Self::AccelScaleTemperature => 36..39,
+            Self::GimbalMounting => 39..42,
+            Self::GimbalNonOrthogonality => 42..43,
+            Self::EncoderEccentricity => 43..47,
         }
     }
 
@@ -144,6 +183,9 @@ impl FurtherGroup {
             Self::AccelQuadratic => "ug/g^2",
             Self::GyroGaussMarkov => "deg/h",
             Self::AccelGaussMarkov | Self::GravityAnomaly => "ug",
+            Self::GyroBiasTemperature => "deg/h/K",
+            Self::GyroScaleTemperature | Self::AccelScaleTemperature => "ppm/K",
+            Self::AccelBiasTemperature => "ug/K",
             Self::Deflection
             | Self::GimbalMounting
             | Self::GimbalNonOrthogonality
@@ -156,10 +198,15 @@ impl FurtherGroup {
     pub const fn si_per_unit(self) -> f64 {
         match self {
             Self::AccelLever => 1e-3,
-            Self::GyroAsymmetry | Self::AccelAsymmetry => 1e-6,
+            Self::GyroAsymmetry
+            | Self::AccelAsymmetry
+            | Self::GyroScaleTemperature
+            | Self::AccelScaleTemperature => 1e-6,
             Self::AccelQuadratic => 1e-6 / STANDARD_GRAVITY,
-            Self::GyroGaussMarkov => ParameterGroup::GyroBias.si_per_unit(),
-            Self::AccelGaussMarkov | Self::GravityAnomaly => {
+            Self::GyroGaussMarkov | Self::GyroBiasTemperature => {
+                ParameterGroup::GyroBias.si_per_unit()
+            }
+            Self::AccelGaussMarkov | Self::GravityAnomaly | Self::AccelBiasTemperature => {
                 ParameterGroup::AccelBias.si_per_unit()
             }
             Self::Deflection
@@ -181,6 +228,10 @@ impl FurtherGroup {
             Self::AccelGaussMarkov => "accel_gauss_markov",
             Self::Deflection => "deflection",
             Self::GravityAnomaly => "gravity_anomaly",
+            Self::GyroBiasTemperature => "gyro_bias_temperature",
+            Self::GyroScaleTemperature => "gyro_scale_temperature",
+            Self::AccelBiasTemperature => "accel_bias_temperature",
+            Self::AccelScaleTemperature => "accel_scale_temperature",
             Self::GimbalMounting => "gimbal_mounting",
             Self::GimbalNonOrthogonality => "gimbal_non_orthogonality",
             Self::EncoderEccentricity => "encoder_eccentricity",

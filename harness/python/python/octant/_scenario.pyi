@@ -30,6 +30,17 @@ class BaselineFurtherAccelAsymmetry(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
     Left out: another is given."""
 
+class BaselineFurtherAccelBiasTemperature(Section):
+    """Temperature coefficients of the accelerometer biases, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    accelerometer bias sensitivity such as "2 ug/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an accelerometer bias
+    sensitivity such as "2 ug/K". Left out: another is given."""
+
 class BaselineFurtherAccelGaussMarkov(Section):
     """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
     considered. Left out: off."""
@@ -62,6 +73,17 @@ class BaselineFurtherAccelQuadratic(Section):
     estimated: str
     """The filter estimates and compensates them, from this standard deviation. Takes a second-order coefficient
     such as "10 ug/g^2". Left out: another is given."""
+
+class BaselineFurtherAccelScaleTemperature(Section):
+    """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a scale
+    factor sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
 
 class BaselineFurtherDeflection(Section):
     """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
@@ -159,6 +181,17 @@ class BaselineFurtherGyroAsymmetry(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
     Left out: another is given."""
 
+class BaselineFurtherGyroBiasTemperature(Section):
+    """Temperature coefficients of the gyro biases, three. Takes a table with one of estimated, considered. Left
+    out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a gyro bias
+    sensitivity such as "0.0002 deg/h/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a gyro bias sensitivity
+    such as "0.0002 deg/h/K". Left out: another is given."""
+
 class BaselineFurtherGyroGaussMarkov(Section):
     """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered. Left
     out: off."""
@@ -170,17 +203,35 @@ class BaselineFurtherGyroGaussMarkov(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes an angular rate such as
     "0.005 deg/h". Left out: another is given."""
 
+class BaselineFurtherGyroScaleTemperature(Section):
+    """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a scale
+    factor sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
+
 class BaselineFurther(Section):
     """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a table
     with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
     gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-    gravity_anomaly, gimbal_angles. Left out: as in procedure.calibration."""
+    gravity_anomaly, gyro_bias_temperature, gyro_scale_temperature, accel_bias_temperature,
+    accel_scale_temperature, temperature_reference_c, gimbal_angles. Left out: as in procedure.calibration."""
 
     @property
     def accel_asymmetry(self) -> BaselineFurtherAccelAsymmetry:
         """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
     @accel_asymmetry.setter
     def accel_asymmetry(self, value: BaselineFurtherAccelAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_bias_temperature(self) -> BaselineFurtherAccelBiasTemperature:
+        """Temperature coefficients of the accelerometer biases, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_bias_temperature.setter
+    def accel_bias_temperature(self, value: BaselineFurtherAccelBiasTemperature | Mapping[str, Any]) -> None: ...
     accel_correlation_time: str
     """Correlation time of accel_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
     @property
@@ -201,6 +252,12 @@ class BaselineFurther(Section):
         considered. Left out: off."""
     @accel_quadratic.setter
     def accel_quadratic(self, value: BaselineFurtherAccelQuadratic | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_scale_temperature(self) -> BaselineFurtherAccelScaleTemperature:
+        """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of
+        estimated, considered. Left out: off."""
+    @accel_scale_temperature.setter
+    def accel_scale_temperature(self, value: BaselineFurtherAccelScaleTemperature | Mapping[str, Any]) -> None: ...
     @property
     def deflection(self) -> BaselineFurtherDeflection:
         """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
@@ -226,6 +283,12 @@ class BaselineFurther(Section):
         table with one of estimated, considered. Left out: off."""
     @gyro_asymmetry.setter
     def gyro_asymmetry(self, value: BaselineFurtherGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_bias_temperature(self) -> BaselineFurtherGyroBiasTemperature:
+        """Temperature coefficients of the gyro biases, three. Takes a table with one of estimated, considered.
+        Left out: off."""
+    @gyro_bias_temperature.setter
+    def gyro_bias_temperature(self, value: BaselineFurtherGyroBiasTemperature | Mapping[str, Any]) -> None: ...
     gyro_correlation_time: str
     """Correlation time of gyro_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
     @property
@@ -237,6 +300,15 @@ class BaselineFurther(Section):
     gyro_rate_random_walk: str
     """Rate random walk of the gyros: process noise of their biases. With it the biases are no constants, and the
     drift test is off. Takes a rate random walk such as "0.0001 deg/h/sqrt(h)". Default: "0 deg/h/sqrt(h)"."""
+    @property
+    def gyro_scale_temperature(self) -> BaselineFurtherGyroScaleTemperature:
+        """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @gyro_scale_temperature.setter
+    def gyro_scale_temperature(self, value: BaselineFurtherGyroScaleTemperature | Mapping[str, Any]) -> None: ...
+    temperature_reference_c: float
+    """Temperature of the instrument at which its parameters are as they are estimated, degC. Takes a number that
+    is finite. Left out: the first temperature."""
 
 class Baseline(Section):
     """A second method, run on the same seed and noise and compared: what it does differently. Takes a table with
@@ -253,7 +325,9 @@ class Baseline(Section):
         """Errors beside the thirty parameters that this filter considers or estimates; {} for none. Takes a
         table with accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
         gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-        gravity_anomaly, gimbal_angles. Left out: as in procedure.calibration."""
+        gravity_anomaly, gyro_bias_temperature, gyro_scale_temperature, accel_bias_temperature,
+        accel_scale_temperature, temperature_reference_c, gimbal_angles. Left out: as in
+        procedure.calibration."""
     @further.setter
     def further(self, value: BaselineFurther | Mapping[str, Any]) -> None: ...
     g_states: bool
@@ -760,6 +834,17 @@ class ImuExtensionsDrawnAccelAsymmetry(Section):
     """Drawn evenly within plus and minus this half width, each entry alone. Takes a ratio such as "30 ppm". Left
     out: another is given."""
 
+class ImuExtensionsDrawnAccelBiasTemperature(Section):
+    """Temperature coefficients of the accelerometer biases, three. Takes a table with one of normal, uniform.
+    Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes an accelerometer bias
+    sensitivity such as "2 ug/K". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes an accelerometer bias
+    sensitivity such as "2 ug/K". Left out: another is given."""
+
 class ImuExtensionsDrawnAccelQuadratic(Section):
     """Second-order coefficients of the accelerometers, three. Takes a table with one of normal, uniform. Left
     out: as given."""
@@ -771,6 +856,17 @@ class ImuExtensionsDrawnAccelQuadratic(Section):
     """Drawn evenly within plus and minus this half width, each entry alone. Takes a second-order coefficient
     such as "10 ug/g^2". Left out: another is given."""
 
+class ImuExtensionsDrawnAccelScaleTemperature(Section):
+    """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of normal,
+    uniform. Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a scale factor
+    sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
+
 class ImuExtensionsDrawnGyroAsymmetry(Section):
     """Asymmetry of the gyros' scale factors, three. Takes a table with one of normal, uniform. Left out: as
     given."""
@@ -781,6 +877,28 @@ class ImuExtensionsDrawnGyroAsymmetry(Section):
     uniform: str
     """Drawn evenly within plus and minus this half width, each entry alone. Takes a ratio such as "30 ppm". Left
     out: another is given."""
+
+class ImuExtensionsDrawnGyroBiasTemperature(Section):
+    """Temperature coefficients of the gyro biases, three. Takes a table with one of normal, uniform. Left out:
+    as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a gyro bias
+    sensitivity such as "0.0002 deg/h/K". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a gyro bias sensitivity such
+    as "0.0002 deg/h/K". Left out: another is given."""
+
+class ImuExtensionsDrawnGyroScaleTemperature(Section):
+    """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of normal, uniform.
+    Left out: as given."""
+
+    normal: str
+    """Drawn from a normal distribution of this standard deviation, each entry alone. Takes a scale factor
+    sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    uniform: str
+    """Drawn evenly within plus and minus this half width, each entry alone. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
 
 class ImuExtensionsDrawnLeverArm(Section):
     """Positions of the accelerometers, nine. Takes a table with one of normal, uniform. Left out: as given."""
@@ -794,7 +912,8 @@ class ImuExtensionsDrawnLeverArm(Section):
 
 class ImuExtensionsDrawn(Section):
     """Errors that the seed draws, each group from its own stream; they add to the values given above. Takes a
-    table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic. Left out: nothing is drawn."""
+    table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_bias_temperature,
+    gyro_scale_temperature, accel_bias_temperature, accel_scale_temperature. Left out: nothing is drawn."""
 
     @property
     def accel_asymmetry(self) -> ImuExtensionsDrawnAccelAsymmetry:
@@ -803,17 +922,41 @@ class ImuExtensionsDrawn(Section):
     @accel_asymmetry.setter
     def accel_asymmetry(self, value: ImuExtensionsDrawnAccelAsymmetry | Mapping[str, Any]) -> None: ...
     @property
+    def accel_bias_temperature(self) -> ImuExtensionsDrawnAccelBiasTemperature:
+        """Temperature coefficients of the accelerometer biases, three. Takes a table with one of normal,
+        uniform. Left out: as given."""
+    @accel_bias_temperature.setter
+    def accel_bias_temperature(self, value: ImuExtensionsDrawnAccelBiasTemperature | Mapping[str, Any]) -> None: ...
+    @property
     def accel_quadratic(self) -> ImuExtensionsDrawnAccelQuadratic:
         """Second-order coefficients of the accelerometers, three. Takes a table with one of normal, uniform.
         Left out: as given."""
     @accel_quadratic.setter
     def accel_quadratic(self, value: ImuExtensionsDrawnAccelQuadratic | Mapping[str, Any]) -> None: ...
     @property
+    def accel_scale_temperature(self) -> ImuExtensionsDrawnAccelScaleTemperature:
+        """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of
+        normal, uniform. Left out: as given."""
+    @accel_scale_temperature.setter
+    def accel_scale_temperature(self, value: ImuExtensionsDrawnAccelScaleTemperature | Mapping[str, Any]) -> None: ...
+    @property
     def gyro_asymmetry(self) -> ImuExtensionsDrawnGyroAsymmetry:
         """Asymmetry of the gyros' scale factors, three. Takes a table with one of normal, uniform. Left out: as
         given."""
     @gyro_asymmetry.setter
     def gyro_asymmetry(self, value: ImuExtensionsDrawnGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_bias_temperature(self) -> ImuExtensionsDrawnGyroBiasTemperature:
+        """Temperature coefficients of the gyro biases, three. Takes a table with one of normal, uniform. Left
+        out: as given."""
+    @gyro_bias_temperature.setter
+    def gyro_bias_temperature(self, value: ImuExtensionsDrawnGyroBiasTemperature | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_scale_temperature(self) -> ImuExtensionsDrawnGyroScaleTemperature:
+        """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of normal,
+        uniform. Left out: as given."""
+    @gyro_scale_temperature.setter
+    def gyro_scale_temperature(self, value: ImuExtensionsDrawnGyroScaleTemperature | Mapping[str, Any]) -> None: ...
     @property
     def lever_arm(self) -> ImuExtensionsDrawnLeverArm:
         """Positions of the accelerometers, nine. Takes a table with one of normal, uniform. Left out: as given."""
@@ -907,7 +1050,8 @@ class ImuExtensions(Section):
     @property
     def drawn(self) -> ImuExtensionsDrawn:
         """Errors that the seed draws, each group from its own stream; they add to the values given above. Takes
-        a table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic. Left out: nothing is drawn."""
+        a table with lever_arm, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_bias_temperature,
+        gyro_scale_temperature, accel_bias_temperature, accel_scale_temperature. Left out: nothing is drawn."""
     @drawn.setter
     def drawn(self, value: ImuExtensionsDrawn | Mapping[str, Any]) -> None: ...
     gyro_asymmetry: Sequence[str]
@@ -1241,6 +1385,17 @@ class ProcedureCalibrationFurtherAccelAsymmetry(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
     Left out: another is given."""
 
+class ProcedureCalibrationFurtherAccelBiasTemperature(Section):
+    """Temperature coefficients of the accelerometer biases, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes an
+    accelerometer bias sensitivity such as "2 ug/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes an accelerometer bias
+    sensitivity such as "2 ug/K". Left out: another is given."""
+
 class ProcedureCalibrationFurtherAccelGaussMarkov(Section):
     """First-order Gauss-Markov biases of the accelerometers, three. Takes a table with one of estimated,
     considered. Left out: off."""
@@ -1273,6 +1428,17 @@ class ProcedureCalibrationFurtherAccelQuadratic(Section):
     estimated: str
     """The filter estimates and compensates them, from this standard deviation. Takes a second-order coefficient
     such as "10 ug/g^2". Left out: another is given."""
+
+class ProcedureCalibrationFurtherAccelScaleTemperature(Section):
+    """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a scale
+    factor sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
 
 class ProcedureCalibrationFurtherDeflection(Section):
     """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
@@ -1370,6 +1536,17 @@ class ProcedureCalibrationFurtherGyroAsymmetry(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes a ratio such as "30 ppm".
     Left out: another is given."""
 
+class ProcedureCalibrationFurtherGyroBiasTemperature(Section):
+    """Temperature coefficients of the gyro biases, three. Takes a table with one of estimated, considered. Left
+    out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a gyro bias
+    sensitivity such as "0.0002 deg/h/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a gyro bias sensitivity
+    such as "0.0002 deg/h/K". Left out: another is given."""
+
 class ProcedureCalibrationFurtherGyroGaussMarkov(Section):
     """First-order Gauss-Markov biases of the gyros, three. Takes a table with one of estimated, considered. Left
     out: off."""
@@ -1381,17 +1558,35 @@ class ProcedureCalibrationFurtherGyroGaussMarkov(Section):
     """The filter estimates and compensates them, from this standard deviation. Takes an angular rate such as
     "0.005 deg/h". Left out: another is given."""
 
+class ProcedureCalibrationFurtherGyroScaleTemperature(Section):
+    """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of estimated,
+    considered. Left out: off."""
+
+    considered: str
+    """Their uncertainty of this standard deviation counts, and they are never moved (Schmidt). Takes a scale
+    factor sensitivity such as "0.5 ppm/K". Left out: another is given."""
+    estimated: str
+    """The filter estimates and compensates them, from this standard deviation. Takes a scale factor sensitivity
+    such as "0.5 ppm/K". Left out: another is given."""
+
 class ProcedureCalibrationFurther(Section):
     """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
     accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov, gyro_correlation_time,
     accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection, gravity_anomaly,
-    gimbal_angles. Left out: none."""
+    gyro_bias_temperature, gyro_scale_temperature, accel_bias_temperature, accel_scale_temperature,
+    temperature_reference_c, gimbal_angles. Left out: none."""
 
     @property
     def accel_asymmetry(self) -> ProcedureCalibrationFurtherAccelAsymmetry:
         """The same of the accelerometers, three. Takes a table with one of estimated, considered. Left out: off."""
     @accel_asymmetry.setter
     def accel_asymmetry(self, value: ProcedureCalibrationFurtherAccelAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_bias_temperature(self) -> ProcedureCalibrationFurtherAccelBiasTemperature:
+        """Temperature coefficients of the accelerometer biases, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @accel_bias_temperature.setter
+    def accel_bias_temperature(self, value: ProcedureCalibrationFurtherAccelBiasTemperature | Mapping[str, Any]) -> None: ...
     accel_correlation_time: str
     """Correlation time of accel_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
     @property
@@ -1412,6 +1607,12 @@ class ProcedureCalibrationFurther(Section):
         considered. Left out: off."""
     @accel_quadratic.setter
     def accel_quadratic(self, value: ProcedureCalibrationFurtherAccelQuadratic | Mapping[str, Any]) -> None: ...
+    @property
+    def accel_scale_temperature(self) -> ProcedureCalibrationFurtherAccelScaleTemperature:
+        """Temperature coefficients of the accelerometers' scale factors, three. Takes a table with one of
+        estimated, considered. Left out: off."""
+    @accel_scale_temperature.setter
+    def accel_scale_temperature(self, value: ProcedureCalibrationFurtherAccelScaleTemperature | Mapping[str, Any]) -> None: ...
     @property
     def deflection(self) -> ProcedureCalibrationFurtherDeflection:
         """Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be
@@ -1437,6 +1638,12 @@ class ProcedureCalibrationFurther(Section):
         table with one of estimated, considered. Left out: off."""
     @gyro_asymmetry.setter
     def gyro_asymmetry(self, value: ProcedureCalibrationFurtherGyroAsymmetry | Mapping[str, Any]) -> None: ...
+    @property
+    def gyro_bias_temperature(self) -> ProcedureCalibrationFurtherGyroBiasTemperature:
+        """Temperature coefficients of the gyro biases, three. Takes a table with one of estimated, considered.
+        Left out: off."""
+    @gyro_bias_temperature.setter
+    def gyro_bias_temperature(self, value: ProcedureCalibrationFurtherGyroBiasTemperature | Mapping[str, Any]) -> None: ...
     gyro_correlation_time: str
     """Correlation time of gyro_gauss_markov. Takes a time such as "12 h". Default: "1 h"."""
     @property
@@ -1448,6 +1655,15 @@ class ProcedureCalibrationFurther(Section):
     gyro_rate_random_walk: str
     """Rate random walk of the gyros: process noise of their biases. With it the biases are no constants, and the
     drift test is off. Takes a rate random walk such as "0.0001 deg/h/sqrt(h)". Default: "0 deg/h/sqrt(h)"."""
+    @property
+    def gyro_scale_temperature(self) -> ProcedureCalibrationFurtherGyroScaleTemperature:
+        """Temperature coefficients of the gyros' scale factors, three. Takes a table with one of estimated,
+        considered. Left out: off."""
+    @gyro_scale_temperature.setter
+    def gyro_scale_temperature(self, value: ProcedureCalibrationFurtherGyroScaleTemperature | Mapping[str, Any]) -> None: ...
+    temperature_reference_c: float
+    """Temperature of the instrument at which its parameters are as they are estimated, degC. Takes a number that
+    is finite. Left out: the first temperature."""
 
 class ProcedureCalibrationLeastSquares(Section):
     """Settings of the least-squares estimator. Takes a table with gravity, gyro, intervals, initial, window,
@@ -1518,7 +1734,8 @@ class ProcedureCalibration(Section):
         """Errors beside the thirty parameters that the filter considers or estimates. Takes a table with
         accel_lever, gyro_asymmetry, accel_asymmetry, accel_quadratic, gyro_gauss_markov,
         gyro_correlation_time, accel_gauss_markov, accel_correlation_time, gyro_rate_random_walk, deflection,
-        gravity_anomaly, gimbal_angles. Left out: none."""
+        gravity_anomaly, gyro_bias_temperature, gyro_scale_temperature, accel_bias_temperature,
+        accel_scale_temperature, temperature_reference_c, gimbal_angles. Left out: none."""
     @further.setter
     def further(self, value: ProcedureCalibrationFurther | Mapping[str, Any]) -> None: ...
     g_states: bool

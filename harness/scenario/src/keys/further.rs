@@ -1,7 +1,7 @@
 //! Keys of the errors that a filter can take into account beside the thirty parameters, and of their draws.
 
 use super::definition::Bounds;
-use super::table::{keys, si, table};
+use super::table::{At, keys, number, si, table};
 use crate::model::ParameterDistribution;
 use crate::quantity::UnitDimension;
 use octant_calibration::config::FurtherUse;
@@ -35,6 +35,9 @@ group!(QuadraticUse, UnitDimension::ACCEL_QUADRATIC);
 group!(GyroUse, UnitDimension::GYRO_BIAS);
 group!(AccelUse, UnitDimension::ACCEL_BIAS);
 group!(AngleUse, UnitDimension::SMALL_ANGLE);
+group!(GyroPerKelvinUse, UnitDimension::GYRO_BIAS_PER_K);
+group!(AccelPerKelvinUse, UnitDimension::ACCEL_BIAS_PER_K);
+group!(ScalePerKelvinUse, UnitDimension::SCALE_PER_K);
 
 keys! {
     /// `[procedure.calibration.further.gimbal_angles]`.
@@ -78,6 +81,16 @@ keys! {
             "Deflection of the vertical, north and east. On a base at rest it can't be told from a tilt: to be considered.";
         gravity_anomaly: Option<AccelUse> = table::<AccelUse>(), absent("off"),
             "True minus normal gravity. On a base at rest it can't be told from a common scale factor of the accelerometers: to be considered.";
+        gyro_bias_temperature: Option<GyroPerKelvinUse> = table::<GyroPerKelvinUse>(), absent("off"),
+            "Temperature coefficients of the gyro biases, three.";
+        gyro_scale_temperature: Option<ScalePerKelvinUse> = table::<ScalePerKelvinUse>(), absent("off"),
+            "Temperature coefficients of the gyros' scale factors, three.";
+        accel_bias_temperature: Option<AccelPerKelvinUse> = table::<AccelPerKelvinUse>(), absent("off"),
+            "Temperature coefficients of the accelerometer biases, three.";
+        accel_scale_temperature: Option<ScalePerKelvinUse> = table::<ScalePerKelvinUse>(), absent("off"),
+            "Temperature coefficients of the accelerometers' scale factors, three.";
+        temperature_reference_c: Option<f64> = number(Bounds::Any), absent("the first temperature"),
+            "Temperature of the instrument at which its parameters are as they are estimated, degC.";
         gimbal_angles: Option<GimbalAnglesKeys> = table::<GimbalAnglesKeys>(), absent("the angles tell the filter nothing"),
             "Gimbal angles as measurements of attitude, once per aiding period while the gimbals rest. For a case at rest.";
     }
@@ -110,6 +123,9 @@ drawn!(DrawnRatios, UnitDimension::RATIO);
 drawn!(DrawnQuadratics, UnitDimension::ACCEL_QUADRATIC);
 drawn!(DrawnAngles, UnitDimension::SMALL_ANGLE);
 drawn!(DrawnAccelerations, UnitDimension::ACCEL_BIAS);
+drawn!(DrawnGyrosPerKelvin, UnitDimension::GYRO_BIAS_PER_K);
+drawn!(DrawnAccelsPerKelvin, UnitDimension::ACCEL_BIAS_PER_K);
+drawn!(DrawnScalesPerKelvin, UnitDimension::SCALE_PER_K);
 
 keys! {
     /// `[imu.extensions.drawn]`.
@@ -122,6 +138,18 @@ keys! {
             "Asymmetry of the accelerometers' scale factors, three.";
         accel_quadratic: Option<DrawnQuadratics> = table::<DrawnQuadratics>(), absent("as given"),
             "Second-order coefficients of the accelerometers, three.";
+        gyro_bias_temperature: At<Option<DrawnGyrosPerKelvin>>
+            = table::<DrawnGyrosPerKelvin>(), absent("as given"),
+            "Temperature coefficients of the gyro biases, three.";
+        gyro_scale_temperature: At<Option<DrawnScalesPerKelvin>>
+            = table::<DrawnScalesPerKelvin>(), absent("as given"),
+            "Temperature coefficients of the gyros' scale factors, three.";
+        accel_bias_temperature: At<Option<DrawnAccelsPerKelvin>>
+            = table::<DrawnAccelsPerKelvin>(), absent("as given"),
+            "Temperature coefficients of the accelerometer biases, three.";
+        accel_scale_temperature: At<Option<DrawnScalesPerKelvin>>
+            = table::<DrawnScalesPerKelvin>(), absent("as given"),
+            "Temperature coefficients of the accelerometers' scale factors, three.";
     }
 }
 

@@ -42,8 +42,10 @@ pub(crate) use faults::{
 };
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use further::{
-    AccelUse, AngleUse, DrawnAccelerations, DrawnAngles, DrawnLengths, DrawnQuadratics,
-    DrawnRatios, FurtherKeys, GimbalAnglesKeys, GyroUse, LeverUse, QuadraticUse, RatioUse,
+    AccelPerKelvinUse, AccelUse, AngleUse, DrawnAccelerations, DrawnAccelsPerKelvin, DrawnAngles,
+    DrawnGyrosPerKelvin, DrawnLengths, DrawnQuadratics, DrawnRatios, DrawnScalesPerKelvin,
+    FurtherKeys, GimbalAnglesKeys, GyroPerKelvinUse, GyroUse, LeverUse, QuadraticUse, RatioUse,
+    ScalePerKelvinUse,
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;

@@ -40,7 +40,7 @@ pub struct Scenario {
     pub parameters: [ParameterDistribution; 7],
     /// Draws of the errors beside the parameters about those in `imu` and `site`, in the order of
     /// [`FurtherGroup::ALL`]; `None`: not drawn.
-    pub further: [Option<ParameterDistribution>; 11],
+    pub further: [Option<ParameterDistribution>; 15],
     /// The two gimbals.
     pub turntable: plant::TurntableConfig,
     /// Real table with these gimbals, if there is one.

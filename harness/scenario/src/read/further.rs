@@ -2,13 +2,15 @@
 
 use crate::error::Problem;
 use crate::keys::{
-    AccelUse, AngleUse, At, CalibrationKeys, DrawnAccelerations, DrawnAngles, DrawnLengths,
-    DrawnQuadratics, DrawnRatios, EstimatorName, FurtherKeys, GimbalAnglesKeys, GyroUse, LeverUse,
-    QuadraticUse, RatioUse, ScenarioKeys,
+    AccelPerKelvinUse, AccelUse, AngleUse, At, CalibrationKeys, DrawnAccelerations,
+    DrawnAccelsPerKelvin, DrawnAngles, DrawnGyrosPerKelvin, DrawnLengths, DrawnQuadratics,
+    DrawnRatios, DrawnScalesPerKelvin, EstimatorName, FurtherKeys, GimbalAnglesKeys,
+    GyroPerKelvinUse, GyroUse, LeverUse, QuadraticUse, RatioUse, ScalePerKelvinUse, ScenarioKeys,
 };
 use crate::model::{Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_calibration::config as core;
 use octant_calibration::further::FurtherGroup;
+use octant_plant::config as plant;
 
 /// Reads the further states of a calibration.
 pub(super) fn further(
@@ -29,6 +31,11 @@ pub(super) fn further(
     if further.has_states() && *keys.aiding.sway == core::SwayNoise::Coloured {
         return Err(keys.further.problem(
             "found with aiding.sway = \"coloured\", expected \"white\": the filter has room for one of the two",
+        ));
+    }
+    if further.angles.is_some() && further.follows_temperature() {
+        return Err(keys.further.problem(
+            "found gimbal_angles with errors that follow the temperature, expected one of the two: the filter has room for one",
         ));
     }
     if further.angles.is_some() && matches!(motion, MotionSpec::Dockside(_)) {
@@ -57,12 +64,30 @@ fn of(keys: &FurtherKeys) -> core::Further {
             }
             FurtherGroup::Deflection => keys.deflection.as_ref().map(AngleUse::treatment),
             FurtherGroup::GravityAnomaly => keys.gravity_anomaly.as_ref().map(AccelUse::treatment),
+            FurtherGroup::GyroBiasTemperature => {
+                keys.gyro_bias_temperature.as_ref().map(GyroPerKelvinUse::treatment)
+            }
+            FurtherGroup::GyroScaleTemperature => {
+                keys.gyro_scale_temperature.as_ref().map(ScalePerKelvinUse::treatment)
+            }
+            FurtherGroup::AccelBiasTemperature => {
+                keys.accel_bias_temperature.as_ref().map(AccelPerKelvinUse::treatment)
+            }
+            FurtherGroup::AccelScaleTemperature => {
+                keys.accel_scale_temperature.as_ref().map(ScalePerKelvinUse::treatment)
+            }
             FurtherGroup::GimbalMounting
             | FurtherGroup::GimbalNonOrthogonality
             | FurtherGroup::EncoderEccentricity => None,
         };
         found.unwrap_or_default()
     };
+    let temperature = core::TemperatureErrors {
+        groups: FurtherGroup::OF_TEMPERATURE.map(treatment),
+        reference_c: keys.temperature_reference_c,
+    };
+    // As with times below: a reference without what follows it is none.
+    let is_off = temperature.groups == [core::FurtherUse::Off; 4];
     let groups = std::array::from_fn(|index| treatment(FurtherGroup::ALL[index]));
     // A time without its process is none, so that a table without groups is as good as no table.
     let time = |is_there: bool, time_s| if is_there { time_s } else { 0.0 };
@@ -74,6 +99,7 @@ fn of(keys: &FurtherKeys) -> core::Further {
             keys.accel_correlation_time,
         ),
         gyro_rate_random_walk: keys.gyro_rate_random_walk,
+        temperature: (!is_off).then_some(temperature),
         angles: keys.gimbal_angles.as_ref().map(angles),
     }
 }
@@ -88,9 +114,26 @@ fn angles(keys: &GimbalAnglesKeys) -> core::AngleMeasurements {
     }
 }
 
-/// Draws of the errors beside the parameters, group by group; `None`: not drawn. Gauss-Markov biases are processes, which
-/// the plant draws.
-pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 11] {
+/// Draws of the errors beside the parameters, group by group; `None`: not drawn.
+pub(super) fn drawn(keys: &ScenarioKeys) -> Result<[Option<ParameterDistribution>; 15], Problem> {
+    if let (Some(imu), None) = (&keys.imu.extensions.drawn, &keys.imu.extensions.temperature) {
+        let constant = "found with a temperature that is constant, expected [imu.extensions.temperature] with a ramp and a plateau";
+        let scales = [&imu.gyro_scale_temperature, &imu.accel_scale_temperature];
+        if imu.gyro_bias_temperature.is_some() {
+            return Err(imu.gyro_bias_temperature.problem(constant));
+        }
+        if imu.accel_bias_temperature.is_some() {
+            return Err(imu.accel_bias_temperature.problem(constant));
+        }
+        if let Some(scale) = scales.into_iter().find(|scale| scale.is_some()) {
+            return Err(scale.problem(constant));
+        }
+    }
+    Ok(drawn_groups(keys))
+}
+
+/// Gauss-Markov biases are processes, which the plant draws.
+fn drawn_groups(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 15] {
     let (imu, site) = (keys.imu.extensions.drawn.as_ref(), keys.site.drawn.as_ref());
     let table = keys.turntable.drawn.as_ref();
     FurtherGroup::ALL.map(|group| match group {
@@ -103,6 +146,18 @@ pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 11] 
             imu?.accel_quadratic.as_ref().map(DrawnQuadratics::distribution)
         }
         FurtherGroup::GyroGaussMarkov | FurtherGroup::AccelGaussMarkov => None,
+        FurtherGroup::GyroBiasTemperature => {
+            imu?.gyro_bias_temperature.as_ref().map(DrawnGyrosPerKelvin::distribution)
+        }
+        FurtherGroup::GyroScaleTemperature => {
+            imu?.gyro_scale_temperature.as_ref().map(DrawnScalesPerKelvin::distribution)
+        }
+        FurtherGroup::AccelBiasTemperature => {
+            imu?.accel_bias_temperature.as_ref().map(DrawnAccelsPerKelvin::distribution)
+        }
+        FurtherGroup::AccelScaleTemperature => {
+            imu?.accel_scale_temperature.as_ref().map(DrawnScalesPerKelvin::distribution)
+        }
         FurtherGroup::Deflection => site?.deflection.as_ref().map(DrawnAngles::distribution),
         FurtherGroup::GravityAnomaly => {
             site?.gravity_anomaly.as_ref().map(DrawnAccelerations::distribution)
@@ -115,6 +170,25 @@ pub(super) fn drawn(keys: &ScenarioKeys) -> [Option<ParameterDistribution>; 11] 
             table?.eccentricity.as_ref().map(DrawnAngles::distribution)
         }
     })
+}
+
+/// Refuses a reference of the temperature that isn't the one at which a simulated instrument has its true parameters.
+pub(super) fn check_reference(
+    keys: &At<Option<CalibrationKeys>>,
+    scenario: &Scenario,
+) -> Result<(), Problem> {
+    let Some(keys) = &**keys else { return Ok(()) };
+    let found = keys.further.as_ref().and_then(|further| further.temperature_reference_c);
+    match found {
+        Some(found) if scenario.source.has_plant() && found != plant::START_TEMPERATURE_C => {
+            Err(keys.further.problem(format!(
+                "found temperature_reference_c = {found} with a simulated instrument, expected {}, its temperature at the \
+                 start, for which its parameters are given",
+                plant::START_TEMPERATURE_C
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses further states for a core that isn't called directly.

@@ -68,7 +68,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
         sample_period_ns,
         site,
         parameters: instrument::parameters(&keys.imu),
-        further: further::drawn(&keys),
+        further: further::drawn(&keys)?,
         imu: instrument::imu(&keys.imu)?,
         turntable,
         drive,
@@ -101,6 +101,7 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
     let scenario = Scenario { reference, power, ..scenario };
     check_once(&keys, &scenario)?;
     further::check_endpoint(&keys.endpoint.uri, &scenario)?;
+    further::check_reference(&keys.procedure.calibration, &scenario)?;
     trajectory::check(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {
         drive::check_reach(keys, &scenario)?;

@@ -318,6 +318,10 @@ impl Source for MovedPlant {
         Some(self.plant.truth())
     }
 
+    fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
+        Ok(Some(self.plant.temperature_c()))
+    }
+
     fn samples_total(&self) -> Option<u64> {
         Some(self.total)
     }

@@ -46,12 +46,23 @@ pub struct AngleMeasurements {
     pub groups: [FurtherUse; 3],
 }
 
+/// Errors that follow the temperature of the instrument linearly. The core has to be told the temperature
+/// ([`Core::feel`](crate::Core::feel)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub struct TemperatureErrors {
+    /// Treatment of each group, in the order of [`FurtherGroup::OF_TEMPERATURE`].
+    pub groups: [FurtherUse; 4],
+    /// Temperature at which the parameters are as they are estimated, °C; `None`: the first one that the core is
+    /// told.
+    pub reference_c: Option<f64>,
+}
+
 /// Errors beside the thirty parameters that the filter takes into account. The default has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Further {
-    /// Treatment of each group that drives attitude and velocity, in the order of
-    /// [`FurtherGroup::ALL`].
+    /// Treatment of the first eight groups of [`FurtherGroup::ALL`].
     pub groups: [FurtherUse; 8],
     /// Correlation time of [`FurtherGroup::GyroGaussMarkov`], s; not used while that is off.
     pub gyro_correlation_time_s: f64,
@@ -60,6 +71,10 @@ pub struct Further {
     /// Rate random walk of the gyros, (rad/s)/√s; 0: none. No further state: a process noise of the
     /// gyro biases, which are then no constants, so that the drift test is off.
     pub gyro_rate_random_walk: f64,
+    /// Errors that follow the temperature; `None`: the temperature tells the filter nothing. Not beside angles as
+    /// measurements. A configuration is stored with them: see `stored`.
+    #[cfg_attr(feature = "state", serde(skip))]
+    pub temperature: Option<TemperatureErrors>,
     /// Gimbal angles as measurements; `None`: the angles tell the filter nothing. A configuration is stored
     /// with them: see `stored`.
     #[cfg_attr(feature = "state", serde(skip))]
@@ -70,22 +85,27 @@ impl Further {
     /// Treatment of a group.
     #[must_use]
     pub fn of(&self, group: FurtherGroup) -> FurtherUse {
-        match (self.groups.get(group as usize), &self.angles) {
-            (Some(treatment), _) => *treatment,
-            (None, Some(angles)) => angles.groups[group as usize - self.groups.len()],
-            (None, None) => FurtherUse::Off,
+        { *self }.treatment(group).map_or(FurtherUse::Off, |found| *found)
+    }
+
+    /// Place of a group's treatment; `None` where there can't be one.
+    fn treatment(&mut self, group: FurtherGroup) -> Option<&mut FurtherUse> {
+        let place = |groups: &[FurtherGroup]| groups.iter().position(|other| *other == group);
+        if let Some(place) = place(&FurtherGroup::OF_TEMPERATURE) {
+            return self.temperature.as_mut()?.groups.get_mut(place);
         }
+        if let Some(place) = place(&FurtherGroup::OF_GIMBALS) {
+            return self.angles.as_mut()?.groups.get_mut(place);
+        }
+        self.groups.get_mut(group as usize)
     }
 
     /// The same with another treatment of a group. A group of the gimbals stays off without angles as
-    /// measurements.
+    /// measurements, and one of the temperature without errors that follow it.
     #[must_use]
     pub fn with(mut self, group: FurtherGroup, treatment: FurtherUse) -> Self {
-        let driving = self.groups.len();
-        if let Some(found) = self.groups.get_mut(group as usize) {
+        if let Some(found) = self.treatment(group) {
             *found = treatment;
-        } else if let Some(angles) = &mut self.angles {
-            angles.groups[group as usize - driving] = treatment;
         }
         self
     }
@@ -93,6 +113,14 @@ impl Further {
     /// Returns whether a group is on, or angles are measurements, whose case attitude is a state.
     #[must_use]
     pub fn has_states(&self) -> bool {
-        self.angles.is_some() || self.groups.iter().any(|group| *group != FurtherUse::Off)
+        let is_on = |group: &FurtherUse| *group != FurtherUse::Off;
+        self.angles.is_some() || self.follows_temperature() || self.groups.iter().any(is_on)
+    }
+
+    /// Returns whether a group of errors that follow the temperature is on.
+    #[must_use]
+    pub fn follows_temperature(&self) -> bool {
+        let is_on = |group: &FurtherUse| *group != FurtherUse::Off;
+        self.temperature.is_some_and(|temperature| temperature.groups.iter().any(is_on))
     }
 }

@@ -1,7 +1,9 @@
 //! Form in which an estimator is stored. A filter without further states is stored as before there
 //! were any, so that the bytes of earlier programs remain readable and the same.
 
-use super::{AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares};
+use super::{
+    AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares, TemperatureErrors,
+};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// [`super::Estimator`], whose filter is stored without its further states.
@@ -13,6 +15,7 @@ enum Estimator {
     ExternalTurntable(ExternalTurntable),
     KalmanFurther(Kalman, Further),
     KalmanAngles(Kalman, Further, AngleMeasurements),
+    KalmanTemperature(Kalman, Further, TemperatureErrors, Option<AngleMeasurements>),
 }
 
 impl Serialize for super::Estimator {
@@ -21,10 +24,16 @@ impl Serialize for super::Estimator {
             Self::Kalman(kalman) if kalman.further == Further::default() => {
                 Estimator::Kalman(kalman)
             }
-            Self::Kalman(kalman) => match kalman.further.angles {
-                None => Estimator::KalmanFurther(kalman, kalman.further),
-                Some(angles) => Estimator::KalmanAngles(kalman, kalman.further, angles),
-            },
+            Self::Kalman(kalman) => {
+                let further = kalman.further;
+                match (further.temperature, further.angles) {
+                    (None, None) => Estimator::KalmanFurther(kalman, further),
+                    (None, Some(angles)) => Estimator::KalmanAngles(kalman, further, angles),
+                    (Some(temperature), angles) => {
+                        Estimator::KalmanTemperature(kalman, further, temperature, angles)
+                    }
+                }
+            }
             Self::LeastSquares(settings) => Estimator::LeastSquares(settings),
             Self::ExternalTurntable(settings) => Estimator::ExternalTurntable(settings),
         };
@@ -39,6 +48,10 @@ impl<'de> Deserialize<'de> for super::Estimator {
             Estimator::KalmanFurther(kalman, further) => Self::Kalman(Kalman { further, ..kalman }),
             Estimator::KalmanAngles(kalman, further, angles) => {
                 let further = Further { angles: Some(angles), ..further };
+                Self::Kalman(Kalman { further, ..kalman })
+            }
+            Estimator::KalmanTemperature(kalman, further, temperature, angles) => {
+                let further = Further { temperature: Some(temperature), angles, ..further };
                 Self::Kalman(Kalman { further, ..kalman })
             }
             Estimator::LeastSquares(settings) => Self::LeastSquares(settings),

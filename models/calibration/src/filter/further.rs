@@ -4,7 +4,8 @@
 //! moving states m, the parameters p and the further states z the transition is
 //! `m ← T (m, p) + D z, p ← p, z ← F z`, F diagonal. The border holds the columns D, the covariance
 //! of z with the 39 states, and its own. The places of groups that are off stay zero; those of the gimbals,
-//! whose errors drive nothing (D = 0, F = 1), exist where [their angles are measurements](angles).
+//! whose errors drive nothing (D = 0, F = 1), exist where [their angles are measurements](angles), and those of the
+//! temperature where errors follow it: one of the two.
 
 mod angles;
 mod border;
@@ -17,12 +18,17 @@ mod tests;
 
 use crate::config::{Further, FurtherUse, Kalman};
 use crate::covariance::{Covariance, MOVING, STATE_COUNT, Transition};
+#[cfg(feature = "state")]
+use crate::covariance::{load_rows, save_rows};
 use crate::error_model::{MotionInterval, advance_columns};
 use crate::further::compensation::FurtherIntegrals;
 use crate::further::size_effect::SizeEffect;
-use crate::further::{DRIVING_COUNT, FurtherEstimates, FurtherGroup};
+use crate::further::{
+    DRIVING_COUNT, FURTHER_COUNT, FurtherEstimates, FurtherGroup, TEMPERATURE_START,
+};
 pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
-use border::{BORDER_COUNT, Border, CASE, Process};
+use border::{BORDER_COUNT, Border, CASE, Process, places};
+use columns::UNHEATED_ROW;
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
 pub use gimbals::AngleTally;
 use gimbals::GimbalAngleMeasurement;
@@ -38,12 +44,16 @@ pub(super) struct FurtherStates {
     /// Time since the last propagation up to the open sub-step, s.
     elapsed_s: f64,
     integrals: FurtherIntegrals,
+    /// T − T₀, K; not stored: the core tells it with every sample.
+    warmth_k: f64,
     size_effect: SizeEffect,
     /// The older and the newer checkpoint.
     checkpoints: Option<[Border; 2]>,
     effects: FurtherEffects,
     estimated: [bool; BORDER_COUNT],
     processes: [Option<Process>; 2],
+    /// Length of a row of the columns that isn't zero.
+    driving_row: usize,
     /// Gimbal angles as measurements, if they are.
     angles: Option<GimbalAngleMeasurement>,
 }
@@ -56,12 +66,19 @@ impl FurtherStates {
             return None;
         }
         let angles = further.angles.as_ref().map(GimbalAngleMeasurement::new);
-        let mut border = Border::new(angles.is_some());
+        let heated = further.follows_temperature();
+        let mut border = Border::new(match (&angles, heated) {
+            (Some(_), _) => BORDER_COUNT,
+            (None, true) => DRIVING_COUNT,
+            (None, false) => TEMPERATURE_START,
+        });
         let mut estimated = [false; BORDER_COUNT];
-        estimated[CASE..].fill(true);
+        if angles.is_some() {
+            estimated[CASE..].fill(true);
+        }
         for group in FurtherGroup::ALL {
-            let sigma = further.of(group).sigma().unwrap_or(0.0);
-            for k in group.range() {
+            let Some(sigma) = further.of(group).sigma() else { continue };
+            for k in places(group) {
                 border.own[k][k] = sigma * sigma;
                 estimated[k] = matches!(further.of(group), FurtherUse::Estimated { .. });
             }
@@ -70,14 +87,22 @@ impl FurtherStates {
             columns: [[0.0; FURTHER_ROW]; MOVING],
             elapsed_s: 0.0,
             integrals: FurtherIntegrals::default(),
+            warmth_k: 0.0,
             size_effect: SizeEffect::default(),
             checkpoints: checkpoints.then(|| [border.clone(), border.clone()]),
             border,
             effects: FurtherEffects::new(further),
             estimated,
             processes: processes(further),
+            driving_row: if heated { FURTHER_ROW } else { UNHEATED_ROW },
             angles,
         })
+    }
+
+    /// Takes T − T₀, K.
+    #[inline]
+    pub(super) fn feel(&mut self, warmth_k: f64) {
+        self.warmth_k = warmth_k;
     }
 
     /// Adds the compensated increments of an interval.
@@ -89,6 +114,9 @@ impl FurtherStates {
             Matrix3::zeros()
         };
         self.integrals.add(&size, dtheta, dv, interval_s);
+        if self.warmth_k != 0.0 {
+            self.integrals.add_warm(self.warmth_k, dtheta, dv, interval_s);
+        }
     }
 
     /// Advances the columns over a sub-step, with the transition; the flags say which sensors
@@ -122,7 +150,14 @@ impl FurtherStates {
             // As in `Transition::advance_bridged`.
             interval.delta_velocity_n = Vector3::zeros();
         }
-        advance_columns(&mut self.columns, kalman_model, &interval, earth, input, 0..FURTHER_ROW);
+        advance_columns(
+            &mut self.columns,
+            kalman_model,
+            &interval,
+            earth,
+            input,
+            0..self.driving_row,
+        );
     }
 
     /// Propagates to the present, after the covariance of the 39 states was by `transition`, and adds
@@ -136,25 +171,24 @@ impl FurtherStates {
         let columns = core::mem::replace(&mut self.columns, [[0.0; FURTHER_ROW]; MOVING]);
         self.elapsed_s = 0.0;
         let Border { count, cross, own, .. } = &mut self.border;
-        let count = *count;
+        let (count, driving) = (*count, self.driving_row);
         // Covariance with the moving states: by the transition alone, and with the columns too.
         let mut carried = [[0.0; BORDER_COUNT]; MOVING];
         let mut moved = [[0.0; BORDER_COUNT]; MOVING];
         for i in 0..MOVING {
             for k in 0..count {
                 carried[i][k] = dot(&transition.rows[i], &cross[k]);
-                moved[i][k] = carried[i][k] + dot(&columns[i], Border::driving(&own[k]));
+                moved[i][k] = carried[i][k] + dot(&columns[i][..driving], &own[k][..driving]);
             }
         }
-        let driving =
-            |row: &[f64; BORDER_COUNT], other: &FurtherRow| dot(Border::driving(row), other);
         for i in 0..MOVING {
             for j in i..MOVING {
-                let value = driving(&moved[j], &columns[i]) + driving(&carried[i], &columns[j]);
+                let value = dot(&moved[j][..driving], &columns[i][..driving])
+                    + dot(&carried[i][..driving], &columns[j][..driving]);
                 errors.add(i, j, value);
             }
             let mut with_parameters = [0.0; 40];
-            for (column, row) in columns[i][..DRIVING_COUNT].iter().zip(cross.iter()) {
+            for (column, row) in columns[i][..driving].iter().zip(&cross[..count]) {
                 for (out, p) in with_parameters.iter_mut().zip(row) {
                     *out += column * p;
                 }
@@ -251,9 +285,23 @@ impl FurtherStates {
 
     /// Estimates with their standard deviations.
     pub(super) fn estimates(&self) -> FurtherEstimates {
-        let sigma = |k: usize| libm::sqrt(self.border.own[k][k].max(0.0));
-        let value = core::array::from_fn(|k| self.border.value[k]);
-        FurtherEstimates { value, sigma: core::array::from_fn(sigma) }
+        let mut found =
+            FurtherEstimates { value: [0.0; FURTHER_COUNT], sigma: [0.0; FURTHER_COUNT] };
+        for group in FurtherGroup::ALL {
+            // The other of the two that share a room isn't there.
+            let is_there = match (group.is_of_gimbals(), group.start() < TEMPERATURE_START) {
+                (true, _) => self.angles.is_some(),
+                (false, is_always) => is_always || self.angles.is_none(),
+            };
+            if !is_there {
+                continue;
+            }
+            for (index, k) in group.range().zip(places(group)) {
+                found.value[index] = self.border.value[k];
+                found.sigma[index] = libm::sqrt(self.border.own[k][k].max(0.0));
+            }
+        }
+        found
     }
 
     /// Returns whether every number is finite.
@@ -274,7 +322,7 @@ fn processes(further: &Further) -> [Option<Process>; 2] {
 
 /// Scalar product in four partial sums: a fixed order that the compiler can vectorize.
 #[inline(always)]
-fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
         for lane in 0..4 {
@@ -286,23 +334,35 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 
 #[cfg(feature = "state")]
 impl octant_state::State for FurtherStates {
-    /// Without angles as measurements the layout is that of a program that knew none.
+    /// Without angles as measurements, and errors that follow the temperature, the layout is that of a program that
+    /// knew none.
     fn save(&self, to: &mut octant_state::Writer) {
         let Self {
             border,
             columns,
             elapsed_s,
             integrals,
+            warmth_k: _,
             size_effect,
             checkpoints,
             effects: _,
             estimated: _,
             processes: _,
+            driving_row,
             angles,
         } = self;
-        to.value("columns", columns);
+        if *driving_row == FURTHER_ROW {
+            save_rows(columns, to);
+        } else {
+            let unheated: [[f64; UNHEATED_ROW]; MOVING] =
+                core::array::from_fn(|i| core::array::from_fn(|k| columns[i][k]));
+            to.value("columns", &unheated);
+        }
         to.value("elapsed_s", elapsed_s);
         to.value("integrals", integrals);
+        if *driving_row == FURTHER_ROW {
+            to.value("warm integrals", &integrals.warm());
+        }
         to.value("size_effect", size_effect);
         to.part("border", border);
         to.part("checkpoints", checkpoints);
@@ -315,9 +375,19 @@ impl octant_state::State for FurtherStates {
         &mut self,
         from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
-        self.columns = from.value("columns")?;
+        if self.driving_row == FURTHER_ROW {
+            load_rows(&mut self.columns, from)?;
+        } else {
+            let unheated: [[f64; UNHEATED_ROW]; MOVING] = from.value("columns")?;
+            for (row, unheated) in self.columns.iter_mut().zip(unheated) {
+                row[..UNHEATED_ROW].copy_from_slice(&unheated);
+            }
+        }
         self.elapsed_s = from.value("elapsed_s")?;
         self.integrals = from.value("integrals")?;
+        if self.driving_row == FURTHER_ROW {
+            self.integrals.set_warm(from.value("warm integrals")?);
+        }
         self.size_effect = from.value("size_effect")?;
         from.part("border", &mut self.border)?;
         from.part("checkpoints", &mut self.checkpoints)?;

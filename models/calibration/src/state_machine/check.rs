@@ -89,6 +89,17 @@ pub enum CoreConfigError {
     /// Gimbal angles as measurements of attitude where the case moves.
     #[error("gimbal angles are measurements and the base moves, a base at rest is expected")]
     AnglesOnMovingBase,
+    /// Errors that follow the temperature beside angles as measurements.
+    #[error(
+        "errors follow the temperature and gimbal angles are measurements, one of the two is expected"
+    )]
+    TemperatureWithAngles,
+    /// A temperature that is no number.
+    #[error("reference of the temperature is {found_c} degC, a finite number is expected")]
+    ReferenceTemperature {
+        /// Value found, °C.
+        found_c: f64,
+    },
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::AdjustmentRefusal),
@@ -131,6 +142,14 @@ fn check_further(further: &Further) -> Result<(), CoreConfigError> {
         if *curve_sigma_rad != 0.0 {
             positive("sigma of the encoders' curve", *curve_sigma_rad)?;
         }
+    }
+    if further.follows_temperature() && further.angles.is_some() {
+        return Err(CoreConfigError::TemperatureWithAngles);
+    }
+    if let Some(found_c) = further.temperature.and_then(|temperature| temperature.reference_c)
+        && !found_c.is_finite()
+    {
+        return Err(CoreConfigError::ReferenceTemperature { found_c });
     }
     if further.of(FurtherGroup::GyroGaussMarkov).sigma().is_some() {
         positive("correlation time of the gyros", further.gyro_correlation_time_s)?;

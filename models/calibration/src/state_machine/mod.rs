@@ -387,6 +387,16 @@ impl Core {
         &self.sigma
     }
 
+    /// Takes the temperature of the instrument, °C, which holds until the next call: for errors that follow it
+    /// ([`config::TemperatureErrors`](crate::config::TemperatureErrors)). A core without any isn't changed by it, nor any
+    /// by what is no number.
+    #[inline]
+    pub fn feel(&mut self, temperature_c: f64) {
+        if let Some((_, further)) = &mut self.further {
+            further.feel(temperature_c);
+        }
+    }
+
     /// Estimates of the further states with their standard deviations, as after the last
     /// measurement; `None` if the calibration has none. Navigation compensates them too.
     #[must_use]

@@ -7,7 +7,7 @@
 use super::estimation::Estimation;
 use super::{Core, kalman_of};
 use crate::config::CoreConfig;
-use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherEstimates};
+use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherEstimates, TEMPERATURE_START};
 use crate::schedule::Cursor;
 use alloc::string::ToString;
 use alloc::vec::Vec;
@@ -62,36 +62,42 @@ impl Core {
     }
 }
 
-/// Estimates of the further states that drive attitude and velocity, as they are stored.
+/// Estimates of a range of the further states, as they are stored.
 #[derive(serde::Serialize, serde::Deserialize)]
-struct Driving {
-    value: [f64; DRIVING_COUNT],
-    sigma: [f64; DRIVING_COUNT],
+#[serde(bound(
+    serialize = "[f64; N]: serde::Serialize",
+    deserialize = "[f64; N]: serde::Deserialize<'de>"
+))]
+struct Estimates<const N: usize> {
+    value: [f64; N],
+    sigma: [f64; N],
 }
 
-/// Estimates of the errors of the gimbals, as they are stored.
-#[derive(serde::Serialize, serde::Deserialize)]
-struct OfGimbals {
-    value: [f64; FURTHER_COUNT - DRIVING_COUNT],
-    sigma: [f64; FURTHER_COUNT - DRIVING_COUNT],
-}
-
-impl Driving {
-    fn of(estimates: &FurtherEstimates) -> Self {
+impl<const N: usize> Estimates<N> {
+    /// Those from this place on.
+    fn of(estimates: &FurtherEstimates, start: usize) -> Self {
         Self {
-            value: core::array::from_fn(|k| estimates.value[k]),
-            sigma: core::array::from_fn(|k| estimates.sigma[k]),
+            value: core::array::from_fn(|k| estimates.value[start + k]),
+            sigma: core::array::from_fn(|k| estimates.sigma[start + k]),
         }
+    }
+
+    fn put(&self, estimates: &mut FurtherEstimates, start: usize) {
+        estimates.value[start..start + N].copy_from_slice(&self.value);
+        estimates.sigma[start..start + N].copy_from_slice(&self.sigma);
     }
 }
 
-impl OfGimbals {
-    fn of(estimates: &FurtherEstimates) -> Self {
-        Self {
-            value: core::array::from_fn(|k| estimates.value[DRIVING_COUNT + k]),
-            sigma: core::array::from_fn(|k| estimates.sigma[DRIVING_COUNT + k]),
-        }
-    }
+/// Estimates that are always there.
+type Always = Estimates<TEMPERATURE_START>;
+/// Estimates of the errors that follow the temperature.
+type OfTemperature = Estimates<{ DRIVING_COUNT - TEMPERATURE_START }>;
+/// Estimates of the errors of the gimbals.
+type OfGimbals = Estimates<{ FURTHER_COUNT - DRIVING_COUNT }>;
+
+/// Returns whether errors follow the temperature.
+fn follows_temperature(config: &CoreConfig) -> bool {
+    kalman_of(config).is_some_and(|kalman| kalman.further.follows_temperature())
 }
 
 /// Returns whether gimbal angles are measurements.
@@ -190,10 +196,13 @@ impl State for Core {
         // Last, and nothing without further states: then the bytes are those of a core that never
         // had any.
         if let Some((estimates, compensation)) = further {
-            to.value("further", &Driving::of(estimates));
+            to.value("further", &Always::of(estimates, 0));
             to.part("further compensation", compensation);
+            if follows_temperature(config) {
+                to.value("temperature", &OfTemperature::of(estimates, TEMPERATURE_START));
+            }
             if has_angles(config) {
-                to.value("gimbals", &OfGimbals::of(estimates));
+                to.value("gimbals", &OfGimbals::of(estimates, DRIVING_COUNT));
             }
         }
     }
@@ -252,14 +261,13 @@ impl State for Core {
         self.gimbals = from.value("gimbals")?;
         self.answered = from.value("answered")?;
         if let Some((estimates, compensation)) = &mut self.further {
-            let driving: Driving = from.value("further")?;
-            estimates.value[..DRIVING_COUNT].copy_from_slice(&driving.value);
-            estimates.sigma[..DRIVING_COUNT].copy_from_slice(&driving.sigma);
+            from.value::<Always>("further")?.put(estimates, 0);
             from.part("further compensation", compensation)?;
+            if follows_temperature(&self.config) {
+                from.value::<OfTemperature>("temperature")?.put(estimates, TEMPERATURE_START);
+            }
             if has_angles(&self.config) {
-                let gimbals: OfGimbals = from.value("gimbals")?;
-                estimates.value[DRIVING_COUNT..].copy_from_slice(&gimbals.value);
-                estimates.sigma[DRIVING_COUNT..].copy_from_slice(&gimbals.sigma);
+                from.value::<OfGimbals>("gimbals")?.put(estimates, DRIVING_COUNT);
             }
         }
         Ok(())

@@ -143,11 +143,16 @@ impl Core {
         interval_s: f64,
     ) {
         let (mut dtheta, mut dv) = self.compensation.apply(theta, velocity, interval_s);
+        let mut warmth_k = None;
         if let Some((_, further)) = &mut self.further {
             (dtheta, dv) = further.apply(&self.strapdown, &dtheta, &dv, interval_s);
+            warmth_k = further.warmth_k();
         }
         self.strapdown.step(&dtheta, &dv, interval_s);
         if let Estimation::Kalman(filter) = &mut self.estimation {
+            if let Some(warmth_k) = warmth_k {
+                filter.feel(warmth_k);
+            }
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);
         }
     }

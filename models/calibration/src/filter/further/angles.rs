@@ -25,7 +25,7 @@
 mod tests;
 
 use super::FurtherStates;
-use super::border::{BORDER_COUNT, Border, BorderRow, CASE, CURVE};
+use super::border::{BORDER_COUNT, Border, BorderRow, CASE, CURVE, places};
 use super::gimbals::{AngleTally, GimbalReference};
 use crate::config::ErrorModel;
 use crate::covariance::{Covariance, CovarianceRow, DR, PHI, STATE_COUNT};
@@ -70,11 +70,11 @@ struct Estimates {
 
 impl Estimates {
     fn of(value: &BorderRow) -> Self {
-        let eccentricity = FurtherGroup::EncoderEccentricity.start();
-        let mounting = FurtherGroup::GimbalMounting.start();
+        let eccentricity = places(FurtherGroup::EncoderEccentricity).start;
+        let mounting = places(FurtherGroup::GimbalMounting).start;
         Self {
             mounting: Vector3::from_fn(|i, _| value[mounting + i]),
-            non_orthogonality_rad: value[FurtherGroup::GimbalNonOrthogonality.start()],
+            non_orthogonality_rad: value[places(FurtherGroup::GimbalNonOrthogonality).start],
             eccentricity_rad: core::array::from_fn(|i| value[eccentricity + i]),
             curve_rad: [value[CURVE], value[CURVE + 1]],
         }
@@ -101,10 +101,10 @@ fn predict(
     for (i, row) in rows.iter_mut().enumerate() {
         row[CASE + i] = 1.0;
         for axis in 0..3 {
-            row[FurtherGroup::GimbalMounting.start() + axis] = mounting[(i, axis)];
+            row[places(FurtherGroup::GimbalMounting).start + axis] = mounting[(i, axis)];
         }
-        row[FurtherGroup::GimbalNonOrthogonality.start()] = y[i];
-        let at = FurtherGroup::EncoderEccentricity.start();
+        row[places(FurtherGroup::GimbalNonOrthogonality).start] = y[i];
+        let at = places(FurtherGroup::EncoderEccentricity).start;
         (row[at], row[at + 1]) = (-z[i] * cos_a, -z[i] * sin_a);
         (row[at + 2], row[at + 3]) = (-x[i] * cos_r, -x[i] * sin_r);
         (row[CURVE], row[CURVE + 1]) = (-z[i], -x[i]);
@@ -191,6 +191,10 @@ impl FurtherStates {
 
     /// Turns the estimated error of the case's attitude into the reference.
     pub(super) fn fold_case(&mut self) {
+        // Without angles its place may be another state's.
+        if self.angles.is_none() {
+            return;
+        }
         let Border { value, reference, .. } = &mut self.border;
         let psi = Vector3::new(value[CASE], value[CASE + 1], value[CASE + 2]);
         if let Some(q_nc) = &mut reference.q_nc

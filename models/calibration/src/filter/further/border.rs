@@ -1,15 +1,20 @@
 //! The border itself: estimates of the further states, and their covariance with the 39 and with each other.
 
-use super::columns::{FURTHER_ROW, FurtherRow};
+use super::columns::FurtherRow;
+#[cfg(feature = "state")]
+use super::columns::UNHEATED_ROW;
 use super::gimbals::GimbalReference;
 use crate::covariance::{Covariance, CovarianceRow, MOVING};
 #[cfg(feature = "state")]
 use crate::covariance::{load_rows, save_rows};
-use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup};
+use crate::further::{DRIVING_COUNT, FURTHER_COUNT, FurtherGroup, TEMPERATURE_START};
+use core::ops::Range;
 
+/// States that follow the temperature. Those of the gimbals are in their room: a filter has one of the two.
+const SHARED: usize = DRIVING_COUNT - TEMPERATURE_START;
 /// First of the three states of the case's attitude, rad in n, true − estimated. They have no estimate: it is
 /// in the reference.
-pub(super) const CASE: usize = FURTHER_COUNT;
+pub(super) const CASE: usize = FURTHER_COUNT - SHARED;
 /// First of the two states of the rest of the encoders' error curves at the present stop, azimuth and roll.
 pub(super) const CURVE: usize = CASE + 3;
 /// States of the border where gimbal angles are measurements.
@@ -18,6 +23,13 @@ pub(super) const BORDER_COUNT: usize = CURVE + 2;
 /// One row over the states of the border: as long as one over the 39, and without padding.
 pub(super) type BorderRow = CovarianceRow;
 const _: () = assert!(size_of::<BorderRow>() == BORDER_COUNT * size_of::<f64>());
+
+/// Places of a group's states in the border.
+pub(super) const fn places(group: FurtherGroup) -> Range<usize> {
+    let Range { start, end } = group.range();
+    let back = if group.is_of_gimbals() { SHARED } else { 0 };
+    start - back..end - back
+}
 
 /// A first-order Gauss-Markov process of three further states.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +43,8 @@ pub(super) struct Process {
 #[derive(Clone, Debug)]
 pub(super) struct Border {
     pub(super) time_s: f64,
-    /// States that are there: [`DRIVING_COUNT`], or [`BORDER_COUNT`] with those of the gimbals. All others
-    /// stay zero.
+    /// States that are there: [`TEMPERATURE_START`], [`DRIVING_COUNT`] with those that follow the temperature, or
+    /// [`BORDER_COUNT`] with those of the gimbals. All others stay zero.
     pub(super) count: usize,
     pub(super) value: BorderRow,
     /// Covariance with the 39 states, a row for each further state.
@@ -42,10 +54,10 @@ pub(super) struct Border {
 }
 
 impl Border {
-    pub(super) fn new(with_gimbals: bool) -> Self {
+    pub(super) fn new(count: usize) -> Self {
         Self {
             time_s: 0.0,
-            count: if with_gimbals { BORDER_COUNT } else { DRIVING_COUNT },
+            count,
             value: [0.0; BORDER_COUNT],
             cross: [[0.0; 40]; BORDER_COUNT],
             own: [[0.0; BORDER_COUNT]; BORDER_COUNT],
@@ -96,13 +108,6 @@ impl Border {
         self.own[k][k] = sigma * sigma;
     }
 
-    /// The first elements of a row: those of the states that drive attitude and velocity.
-    #[inline(always)]
-    pub(super) fn driving(row: &BorderRow) -> &FurtherRow {
-        // The row is longer than this.
-        row.first_chunk().unwrap_or(&[0.0; FURTHER_ROW])
-    }
-
     /// Returns whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
         let Self { time_s: _, count: _, value, cross, own, reference: _ } = self;
@@ -125,29 +130,32 @@ pub(super) fn share_of_noise(ratio: f64, lost: f64) -> f64 {
     }
 }
 
-/// Elements of a row beyond those of the driving states.
+/// Elements of a row beyond those that are always there.
 #[cfg(feature = "state")]
-const REST: usize = BORDER_COUNT - DRIVING_COUNT;
+const REST: usize = BORDER_COUNT - TEMPERATURE_START;
 
 #[cfg(feature = "state")]
 impl octant_state::State for Border {
-    /// Without states of the gimbals the layout is that of a program that knew none.
+    /// Without states of the gimbals, or of the temperature, the layout is that of a program that knew none.
     fn save(&self, to: &mut octant_state::Writer) {
         let Self { time_s, count, value, cross, own, reference } = self;
         to.value("time_s", time_s);
-        let driving: [f64; DRIVING_COUNT] = core::array::from_fn(|k| value[k]);
-        to.value("value", &driving);
+        let always: [f64; TEMPERATURE_START] = core::array::from_fn(|k| value[k]);
+        to.value("value", &always);
         save_rows(&cross[..*count], to);
-        if *count == DRIVING_COUNT {
-            for row in &own[..DRIVING_COUNT] {
-                to.value("own", Self::driving(row));
+        if *count == TEMPERATURE_START {
+            for row in &own[..TEMPERATURE_START] {
+                let own: [f64; UNHEATED_ROW] = core::array::from_fn(|k| row[k]);
+                to.value("own", &own);
             }
             return;
         }
-        save_rows(own, to);
-        let rest: [f64; REST] = core::array::from_fn(|k| value[DRIVING_COUNT + k]);
-        to.value("value of the gimbals", &rest);
-        to.value("reference", reference);
+        save_rows(&own[..*count], to);
+        let rest: [f64; REST] = core::array::from_fn(|k| value[TEMPERATURE_START + k]);
+        to.value("rest of value", &rest);
+        if *count == BORDER_COUNT {
+            to.value("reference", reference);
+        }
     }
 
     fn load(
@@ -155,20 +163,22 @@ impl octant_state::State for Border {
         from: &mut octant_state::StateReader<'_>,
     ) -> Result<(), octant_state::StateError> {
         self.time_s = from.value("time_s")?;
-        let driving: [f64; DRIVING_COUNT] = from.value("value")?;
-        self.value[..DRIVING_COUNT].copy_from_slice(&driving);
+        let always: [f64; TEMPERATURE_START] = from.value("value")?;
+        self.value[..TEMPERATURE_START].copy_from_slice(&always);
         load_rows(&mut self.cross[..self.count], from)?;
-        if self.count == DRIVING_COUNT {
-            for row in &mut self.own[..DRIVING_COUNT] {
-                let own: FurtherRow = from.value("own")?;
-                row[..FURTHER_ROW].copy_from_slice(&own);
+        if self.count == TEMPERATURE_START {
+            for row in &mut self.own[..TEMPERATURE_START] {
+                let own: [f64; UNHEATED_ROW] = from.value("own")?;
+                row[..UNHEATED_ROW].copy_from_slice(&own);
             }
             return Ok(());
         }
-        load_rows(&mut self.own, from)?;
-        let rest: [f64; REST] = from.value("value of the gimbals")?;
-        self.value[DRIVING_COUNT..].copy_from_slice(&rest);
-        self.reference = from.value("reference")?;
+        load_rows(&mut self.own[..self.count], from)?;
+        let rest: [f64; REST] = from.value("rest of value")?;
+        self.value[TEMPERATURE_START..].copy_from_slice(&rest);
+        if self.count == BORDER_COUNT {
+            self.reference = from.value("reference")?;
+        }
         Ok(())
     }
 }

@@ -7,19 +7,27 @@ use crate::further::compensation::FurtherIntegrals;
 use octant_earth::ellipsoid::Ellipsoid;
 
 /// Row length in memory, a multiple of the vector registers' width.
-pub const FURTHER_ROW: usize = 28;
+pub const FURTHER_ROW: usize = 40;
+/// The same without the states that follow the temperature, which come last.
+pub(super) const UNHEATED_ROW: usize = 28;
 /// One padded row over the further states.
 pub type FurtherRow = [f64; FURTHER_ROW];
 
 /// Groups that are on.
 #[derive(Clone, Copy, Debug)]
-pub struct FurtherEffects([bool; 8]);
+pub struct FurtherEffects([bool; 12]);
 
 impl FurtherEffects {
     /// Makes the effects of the groups that aren't off.
     #[must_use]
     pub fn new(further: &Further) -> Self {
-        Self(further.groups.map(|group| group != FurtherUse::Off))
+        Self(core::array::from_fn(|group| further.of(FurtherGroup::ALL[group]) != FurtherUse::Off))
+    }
+
+    /// The effects of all groups.
+    #[must_use]
+    pub fn all() -> Self {
+        Self([true; 12])
     }
 
     pub(super) fn on(&self, group: FurtherGroup) -> bool {
@@ -56,6 +64,14 @@ impl FurtherEffects {
                         phi[FurtherGroup::GyroGaussMarkov.start() + axis] =
                             -c[axis] * (h * decay[0]);
                     }
+                    if self.on(FurtherGroup::GyroBiasTemperature) {
+                        phi[FurtherGroup::GyroBiasTemperature.start() + axis] =
+                            -c[axis] * integrals.warmth;
+                    }
+                    if self.on(FurtherGroup::GyroScaleTemperature) {
+                        phi[FurtherGroup::GyroScaleTemperature.start() + axis] =
+                            -c[axis] * integrals.warm_turn[axis];
+                    }
                 }
                 if !used.1 {
                     continue;
@@ -77,6 +93,14 @@ impl FurtherEffects {
                 }
                 if self.on(FurtherGroup::AccelGaussMarkov) {
                     dv[FurtherGroup::AccelGaussMarkov.start() + axis] = c[axis] * (h * decay[1]);
+                }
+                if self.on(FurtherGroup::AccelBiasTemperature) {
+                    dv[FurtherGroup::AccelBiasTemperature.start() + axis] =
+                        c[axis] * integrals.warmth;
+                }
+                if self.on(FurtherGroup::AccelScaleTemperature) {
+                    dv[FurtherGroup::AccelScaleTemperature.start() + axis] =
+                        c[axis] * integrals.warm_push[axis];
                 }
             }
         }

@@ -21,6 +21,11 @@ const LATITUDE_RAD: f64 = 0.7;
 const GYRO_S: f64 = 3.0;
 const ACCEL_S: f64 = 5.0;
 
+/// T − T₀ at a time, K.
+fn warmth_k(t: f64) -> f64 {
+    1.5 + libm::sin(0.8 * t)
+}
+
 /// Rate of the body, its derivative, and specific force, in b.
 fn motion(t: f64) -> [Vector3<f64>; 3] {
     let (s, c) = libm::sincos(0.9 * t);
@@ -61,6 +66,10 @@ fn effect(state: usize, t: f64, strapdown: &Strapdown) -> [Vector3<f64>; 2] {
         // Navigation lacks a pull to the south of g for each unit of ξ: as a force to the north.
         FurtherGroup::Deflection => [zero, c_bn * unit(axis) * strapdown.earth().gravity_mps2],
         FurtherGroup::GravityAnomaly => [zero, -c_bn * unit(2)],
+        FurtherGroup::GyroBiasTemperature => [unit(axis) * warmth_k(t), zero],
+        FurtherGroup::GyroScaleTemperature => [unit(axis) * (warmth_k(t) * w[axis]), zero],
+        FurtherGroup::AccelBiasTemperature => [zero, unit(axis) * warmth_k(t)],
+        FurtherGroup::AccelScaleTemperature => [zero, unit(axis) * (warmth_k(t) * f[axis])],
         FurtherGroup::GimbalMounting
         | FurtherGroup::GimbalNonOrthogonality
         | FurtherGroup::EncoderEccentricity => unreachable!("they drive nothing"),
@@ -123,6 +132,7 @@ fn columns(model: ErrorModel) -> [FurtherRow; MOVING] {
         for k in 0..SUB_STEP {
             let (dtheta, dv) = increments(first + k, None, &strapdown);
             strapdown.step(&dtheta, &dv, DT);
+            states.feel(warmth_k(((first + k) as f64 + 0.5) * DT));
             states.accumulate(&dtheta, &dv, DT);
             interval.delta_theta += dtheta;
             interval.delta_velocity += dv;
@@ -141,8 +151,10 @@ fn columns(model: ErrorModel) -> [FurtherRow; MOVING] {
 fn size(group: FurtherGroup) -> f64 {
     match group {
         FurtherGroup::AccelLever => 1e-3,
-        FurtherGroup::GyroGaussMarkov => 1e-6,
-        FurtherGroup::AccelGaussMarkov | FurtherGroup::GravityAnomaly => 1e-3,
+        FurtherGroup::GyroGaussMarkov | FurtherGroup::GyroBiasTemperature => 1e-6,
+        FurtherGroup::AccelGaussMarkov
+        | FurtherGroup::GravityAnomaly
+        | FurtherGroup::AccelBiasTemperature => 1e-3,
         _ => 1e-5,
     }
 }
@@ -210,7 +222,10 @@ fn compensation_takes_away_the_errors() {
         let mut compensation = FurtherCompensation::new(&further, DT).unwrap();
         let mut strapdown = start();
         compensation.set(&value);
+        // The first temperature is the reference.
+        compensation.feel(20.0);
         for k in 0..SAMPLES {
+            compensation.feel(20.0 + warmth_k((k as f64 + 0.5) * DT));
             let (mut dtheta, mut dv) = increments(k, None, &strapdown);
             for (state, value) in value[..DRIVING_COUNT].iter().enumerate() {
                 let [rate, force] = effect(state, (k as f64 + 0.5) * DT, &strapdown);
@@ -241,6 +256,7 @@ fn bridged_channels_have_no_columns() {
     let mut states = FurtherStates::new(&kalman(further), false).unwrap();
     let strapdown = start();
     let [w, _, f] = motion(0.0);
+    states.feel(warmth_k(0.0));
     states.accumulate(&(w * DT), &(f * DT), DT);
     let interval = MotionInterval {
         interval_s: DT,
@@ -254,7 +270,8 @@ fn bridged_channels_have_no_columns() {
     states.advance(ErrorModel::Phi, &interval, earth, [false, true, false], false);
     let on = |k: usize| (0..MOVING).any(|row| states.columns[row][k] != 0.0);
     for k in 0..DRIVING_COUNT {
-        let is_y = [10, 19].contains(&k);
+        // Of those that drive rates, y alone.
+        let is_y = [10, 19, 28, 31].contains(&k);
         assert_eq!(on(k), is_y, "{}", crate::further::FURTHER_NAMES[k]);
     }
 }

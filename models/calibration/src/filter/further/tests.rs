@@ -2,7 +2,9 @@
 
 use super::border::share_of_noise;
 use super::*;
-use crate::config::{AidingMode, AngleMeasurements, ErrorModel, Prior, SwayNoise};
+use crate::config::{
+    AidingMode, AngleMeasurements, ErrorModel, Prior, SwayNoise, TemperatureErrors,
+};
 use nalgebra::{SMatrix, SVector};
 
 pub(super) const ALL: usize = STATE_COUNT + BORDER_COUNT;
@@ -26,13 +28,31 @@ fn angles() -> AngleMeasurements {
     AngleMeasurements { sigma_rad: 0.5, curve_sigma_rad: 0.4, groups: [FurtherUse::Off; 3] }
 }
 
-fn further() -> Further {
-    let mut further = Further {
+/// Errors that follow the temperature, with all groups off.
+fn temperature() -> TemperatureErrors {
+    TemperatureErrors { groups: [FurtherUse::Off; 4], reference_c: None }
+}
+
+/// With the two kinds of states that share a room: those of the gimbals, and those that follow the temperature.
+fn both() -> [Further; 2] {
+    let further = Further {
         gyro_correlation_time_s: 2.0,
         accel_correlation_time_s: 300.0,
-        angles: Some(angles()),
         ..Further::default()
     };
+    [
+        all_groups(Further { angles: Some(angles()), ..further }),
+        all_groups(Further { temperature: Some(temperature()), ..further }),
+    ]
+}
+
+/// Groups of a filter, with the places of their states.
+fn groups_of(further: &Further) -> impl Iterator<Item = (FurtherGroup, core::ops::Range<usize>)> {
+    let is_there = |group: &FurtherGroup| further.of(*group) != FurtherUse::Off;
+    FurtherGroup::ALL.into_iter().filter(is_there).map(|group| (group, places(group)))
+}
+
+fn all_groups(mut further: Further) -> Further {
     for group in FurtherGroup::ALL {
         let sigma = 0.3;
         let treatment = if is_estimated(group) {
@@ -52,6 +72,10 @@ pub(super) fn all_on(sigma: f64) -> Further {
         gyro_correlation_time_s: 300.0,
         accel_correlation_time_s: 300.0,
         gyro_rate_random_walk: 0.0,
+        temperature: Some(TemperatureErrors {
+            groups: [FurtherUse::Estimated { sigma }; 4],
+            ..temperature()
+        }),
         angles: None,
     }
 }
@@ -74,20 +98,30 @@ pub(super) fn kalman(further: Further) -> Kalman {
     }
 }
 
-/// A filter with a full covariance of all states, the further ones last, and the same as one matrix.
+/// A filter with the states of the gimbals and a full covariance of all states, the further ones last, and the same as
+/// one matrix.
 pub(super) fn example() -> (FurtherStates, Covariance, Full) {
-    let a = Full::from_fn(scatter);
-    let full = a * a.transpose() + Full::identity();
+    let [with_gimbals, _] = both();
+    example_of(&with_gimbals)
+}
+
+fn example_of(further: &Further) -> (FurtherStates, Covariance, Full) {
+    let mut states = FurtherStates::new(&kalman(*further), true).unwrap();
+    // A place without a state stays zero.
+    let end = STATE_COUNT + states.border.count;
+    let a = Full::from_fn(|i, j| if i < end && j < end { scatter(i, j) } else { 0.0 });
+    let full = a * a.transpose() + Full::from_fn(|i, j| f64::from(u8::from(i == j && i < end)));
     let mut errors = Covariance::from_sigmas(&[0.0; STATE_COUNT]);
     for i in 0..STATE_COUNT {
         for j in i..STATE_COUNT {
             errors.add(i, j, full[(i, j)]);
         }
     }
-    let mut states = FurtherStates::new(&kalman(further()), true).unwrap();
-    for k in 0..BORDER_COUNT {
+    let has_case = further.angles.is_some();
+    for k in 0..states.border.count {
         // The attitude of the case has no estimate.
-        states.border.value[k] = if (CASE..CASE + 3).contains(&k) { 0.0 } else { scatter(k, 3) };
+        let is_case = has_case && (CASE..CASE + 3).contains(&k);
+        states.border.value[k] = if is_case { 0.0 } else { scatter(k, 3) };
         for j in 0..STATE_COUNT {
             states.border.cross[k][j] = full[(STATE_COUNT + k, j)];
         }
@@ -117,7 +151,12 @@ pub(super) fn assert_equal(states: &FurtherStates, errors: &Covariance, full: &F
 
 #[test]
 fn propagation_is_that_of_one_filter_with_all_states() {
-    let (mut states, mut errors, full) = example();
+    both().iter().for_each(propagates_as_one_filter);
+}
+
+fn propagates_as_one_filter(further: &Further) {
+    let (mut states, mut errors, full) = example_of(further);
+    let driving = if further.angles.is_some() { TEMPERATURE_START } else { DRIVING_COUNT };
     let mut transition = Transition::identity();
     let mut phi = Full::identity();
     for i in 0..MOVING {
@@ -125,7 +164,7 @@ fn propagation_is_that_of_one_filter_with_all_states() {
             let value = scatter(j + 3, i) + f64::from(u8::from(i == j));
             match j.checked_sub(STATE_COUNT) {
                 None => transition.rows[i][j] = value,
-                Some(k) if k < DRIVING_COUNT => states.columns[i][k] = value,
+                Some(k) if k < driving => states.columns[i][k] = value,
                 // Errors of the gimbals drive nothing.
                 Some(_) => continue,
             }
@@ -136,7 +175,7 @@ fn propagation_is_that_of_one_filter_with_all_states() {
     let columns = states.columns;
     let mut expected = value;
     let mut noise = Full::zeros();
-    for process in processes(&further()).iter().flatten() {
+    for process in processes(further).iter().flatten() {
         let tau = process.correlation_time_s;
         let decay = (-ELAPSED_S / tau).exp();
         let variance = process.sigma * process.sigma;
@@ -184,8 +223,12 @@ fn propagation_is_that_of_one_filter_with_all_states() {
 
 #[test]
 fn an_update_is_that_of_one_filter_with_all_states() {
+    both().iter().for_each(updates_as_one_filter);
+}
+
+fn updates_as_one_filter(further: &Further) {
     for held in [false, true] {
-        let (mut states, mut errors, mut full) = example();
+        let (mut states, mut errors, mut full) = example_of(further);
         let mut x = [0.0; STATE_COUNT];
         let mut state = SVector::<f64, ALL>::zeros();
         for k in 0..BORDER_COUNT {
@@ -197,8 +240,8 @@ fn an_update_is_that_of_one_filter_with_all_states() {
             if held {
                 gain.rows_mut(MOVING, ALL - MOVING).fill(0.0);
             }
-            for group in FurtherGroup::ALL.into_iter().filter(|group| !is_estimated(*group)) {
-                gain.rows_mut(STATE_COUNT + group.start(), group.range().len()).fill(0.0);
+            for (_, places) in groups_of(further).filter(|(group, _)| !is_estimated(*group)) {
+                gain.rows_mut(STATE_COUNT + places.start, places.len()).fill(0.0);
             }
             let innovation = error - state[s];
             state += gain * innovation;
@@ -217,7 +260,8 @@ fn an_update_is_that_of_one_filter_with_all_states() {
         }
         for i in 0..ALL {
             let found = if i < STATE_COUNT { x[i] } else { states.border.value[i - STATE_COUNT] };
-            if (STATE_COUNT + CASE..STATE_COUNT + CASE + 3).contains(&i) {
+            let case = STATE_COUNT + CASE;
+            if further.angles.is_some() && (case..case + 3).contains(&i) {
                 assert_eq!(found, 0.0, "it is in the reference");
                 continue;
             }
@@ -228,7 +272,11 @@ fn an_update_is_that_of_one_filter_with_all_states() {
 
 #[test]
 fn the_way_back_restores_what_was_and_ages_what_wanders() {
-    let (mut states, mut errors, full) = example();
+    both().iter().for_each(goes_back);
+}
+
+fn goes_back(further: &Further) {
+    let (mut states, mut errors, full) = example_of(further);
     states.remember();
     states.remember();
     let kept = states.border.clone();
@@ -237,14 +285,14 @@ fn the_way_back_restores_what_was_and_ages_what_wanders() {
     states.border.cross = [[1.0; 40]; BORDER_COUNT];
     states.border.own = [[2.0; BORDER_COUNT]; BORDER_COUNT];
     states.go_back(&mut errors);
-    for group in FurtherGroup::ALL {
+    for (group, places) in groups_of(further) {
         let tau = match group {
             FurtherGroup::GyroGaussMarkov => 2.0,
             FurtherGroup::AccelGaussMarkov => 300.0,
             _ => f64::INFINITY,
         };
         let decay: f64 = (-60.0 / tau).exp();
-        for k in group.range() {
+        for k in places {
             assert!((states.border.value[k] - decay * kept.value[k]).abs() < 1e-15);
             let variance = 0.09 * (1.0 - decay * decay) + kept.own[k][k] * decay * decay;
             assert!((states.border.own[k][k] - variance).abs() < 1e-12);
@@ -255,7 +303,8 @@ fn the_way_back_restores_what_was_and_ages_what_wanders() {
     assert!((0..STATE_COUNT).all(|i| errors.at(i, i) == full[(i, i)]));
     states.reopen();
     assert!(states.border.cross.iter().all(|row| row[..MOVING] == [0.0; MOVING]));
-    assert!(states.border.cross.iter().all(|row| row[MOVING..STATE_COUNT] != [0.0; 30]));
+    let there = &states.border.cross[..states.border.count];
+    assert!(there.iter().all(|row| row[MOVING..STATE_COUNT] != [0.0; 30]));
 }
 
 #[test]

@@ -7,7 +7,6 @@ use super::{BorderRow, CURVE};
 use crate::config::{AngleMeasurements, ErrorModel};
 use crate::covariance::{DR, PHI};
 use crate::error_model::computer_frame_error;
-use crate::further::FURTHER_COUNT;
 use crate::positions::EIGHT;
 use crate::strapdown::{Strapdown, Vertical};
 use nalgebra::{SMatrix, SVector, UnitQuaternion};
@@ -16,9 +15,9 @@ use octant_earth::rotation::{exp, log};
 use octant_sample::GimbalAngles;
 use octant_sample::counts::GIMBAL_LSB_RAD;
 
-const MOUNTING: usize = FurtherGroup::GimbalMounting.start();
-const LEANT: usize = FurtherGroup::GimbalNonOrthogonality.start();
-const ECCENTRIC: usize = FurtherGroup::EncoderEccentricity.start();
+const MOUNTING: usize = places(FurtherGroup::GimbalMounting).start;
+const LEANT: usize = places(FurtherGroup::GimbalNonOrthogonality).start;
+const ECCENTRIC: usize = places(FurtherGroup::EncoderEccentricity).start;
 
 fn q_case() -> UnitQuaternion<f64> {
     quaternion_from_matrix(&c_nc(0.8, 0.05, -0.03))
@@ -74,7 +73,7 @@ fn z(
 #[test]
 fn the_rows_are_the_jacobian_of_the_measurement() {
     let mut estimate = [0.0; BORDER_COUNT];
-    for k in (MOUNTING..FURTHER_COUNT).chain(CURVE..BORDER_COUNT) {
+    for k in (MOUNTING..CASE).chain(CURVE..BORDER_COUNT) {
         estimate[k] = 1e-4 * (1.0 + (k % 5) as f64) * if k % 2 == 0 { 1.0 } else { -1.0 };
     }
     // Large against the counts of 7.5e-9 rad, small against second order.
@@ -83,7 +82,7 @@ fn the_rows_are_the_jacobian_of_the_measurement() {
         let (at_zero, rows) = z(&estimate, &estimate, true_angles, Vector3::zeros());
         // The errors of a reading are computed from the reading: 4e-4 of 4e-4 rad, twice.
         assert!(at_zero.norm() < 5e-7, "{at_zero}");
-        for k in (MOUNTING..FURTHER_COUNT).chain(CASE..BORDER_COUNT) {
+        for k in (MOUNTING..CASE).chain(CASE..BORDER_COUNT) {
             let at = |h: f64| {
                 let mut truth = estimate;
                 truth[k] += h;
@@ -162,7 +161,7 @@ fn an_update_by_angles_is_that_of_one_filter_with_all_states() {
     let psi = Vector3::from_fn(|i, _| state[STATE_COUNT + CASE + i]);
     let turned = log(&(states.border.reference.q_nc.unwrap() * q_case().inverse()));
     assert!((turned - psi).norm() < 1e-12);
-    for k in (0..FURTHER_COUNT).chain(CURVE..BORDER_COUNT) {
+    for k in (0..CASE).chain(CURVE..BORDER_COUNT) {
         assert!((states.border.value[k] - state[STATE_COUNT + k]).abs() < 1e-10, "further {k}");
     }
 }
