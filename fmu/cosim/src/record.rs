@@ -87,6 +87,7 @@ impl RowRecorder {
         let numbers = vec![0.0; place];
         let outputs = Outputs {
             plan: octant_fmu_host::instance::AccessPlan::default(),
+            texts: Vec::new(),
             columns,
             left_out: Vec::new(),
         };
@@ -145,7 +146,7 @@ impl RowRecorder {
             return Ok(());
         }
         for sink in &mut self.sinks {
-            sink.row(time_s, &self.outputs, &self.numbers)?;
+            sink.row(time_s, &self.outputs, &self.numbers, &[])?;
         }
         self.rows += 1;
         Ok(())

@@ -28,6 +28,7 @@ fn model() -> Description {
             variable("was_on", 9, VariableType::Boolean, Output),
             variable("m", 10, VariableType::Float64, Output).array(2),
             variable("words", 12, VariableType::String, Output),
+            variable("bytes", 11, VariableType::Binary, Output),
             variable("k", 13, VariableType::Float64, Parameter),
             tunable(variable("t", 14, VariableType::Float64, Parameter).array(2)),
         ],
@@ -90,7 +91,8 @@ const INPUTS: &str = "time,u [cm],h [deg/s],on,w[2]\n0,0,180,0,7\n1,100,180,1,7\
 #[test]
 fn what_is_continuous_is_interpolated_and_everything_else_held() {
     let span = Span { start_s: 0.0, stop_s: 2.0, step_s: 0.25, tolerance: None };
-    let (finished, csv) = run(INPUTS, &[], span, "out.csv");
+    let numbers = ["y", "held", "n", "was_on", "m"];
+    let (finished, csv) = run(INPUTS, &numbers, span, "out.csv");
     assert_eq!((finished.steps, finished.time_s, finished.terminated), (8, 2.0, false));
     let text = String::from_utf8(csv).unwrap();
     let lines: Vec<&str> = text.lines().collect();
@@ -121,11 +123,19 @@ fn some_outputs_and_a_last_step_that_is_shorter() {
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "\"time\",\"n\",\"m[1]\",\"m[2]\",\"y\"");
     assert!(lines[2].starts_with("1.0,1,") && lines[3].starts_with("1.25,2,"), "{lines:?}");
-    let error = Outputs::choose(&model(), &["words".to_owned()]).unwrap_err().to_string();
-    assert!(error.contains("words is a String"), "{error}");
+    let mut clocked = model();
+    clocked.variables.push(variable("tick", 17, VariableType::Clock, Causality::Output));
+    let mut frames = variable("frames", 18, VariableType::Binary, Causality::Output);
+    frames.clocks = vec![17];
+    clocked.variables.push(frames);
+    for (name, expected) in [("tick", "is a clock"), ("frames", "at the ticks of its clock alone")]
+    {
+        let error = Outputs::choose(&clocked, &[name.to_owned()]).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(expected), "{error}");
+    }
     let error = Outputs::choose(&model(), &["z".to_owned()]).unwrap_err().to_string();
     assert!(error.contains("no variable \"z\""), "{error}");
-    assert_eq!(Outputs::choose(&model(), &[]).unwrap().left_out, ["words"]);
+    assert_eq!(Outputs::choose(&clocked, &[]).unwrap().left_out, ["tick", "frames"]);
 }
 
 #[test]
@@ -144,6 +154,33 @@ fn rows_of_mcap_are_json_with_a_schema() {
     assert_eq!(schema["properties"]["y"]["description"], "in m");
     let message: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
     assert!(octant_json_schema::draft202012::is_valid(&schema, &message));
+}
+
+/// A text between quotes with its own doubled (RFC 4180), bytes as digits; in a row of JSON as strings.
+#[test]
+fn texts_and_bytes_are_recorded_beside_numbers() {
+    let span = Span { start_s: 0.0, stop_s: 0.5, step_s: 0.5, tolerance: None };
+    let (_, csv) = run(INPUTS, &["bytes", "n", "words"], span, "out.csv");
+    let mut table = csv::Reader::from_reader(csv.as_slice());
+    assert_eq!(table.headers().unwrap(), vec!["time", "bytes", "n", "words"]);
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    assert_eq!(rows[0], vec!["0.0", "0000000b", "0", "\"12, text"]);
+    assert_eq!(rows[1], vec!["0.5", "0000000b", "1", "\"12, text"]);
+    let (_, bytes) = run(INPUTS, &["words", "bytes"], span, "out.mcap");
+    let last = mcap::MessageStream::new(&bytes).unwrap().last().unwrap().unwrap();
+    let expected = br#"{"time":0.5,"words":"\"12, text","bytes":"0000000b"}"#;
+    assert_eq!(last.data.as_ref(), expected);
+    let schema = last.channel.schema.as_ref().unwrap();
+    let schema: serde_json::Value = serde_json::from_slice(&schema.data).unwrap();
+    let message: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
+    assert!(octant_json_schema::draft202012::is_valid(&schema, &message));
+    // Without names: all of them.
+    let all = Outputs::choose(&model(), &[]).unwrap();
+    let names = all.columns.iter().map(|column| column.name.as_str());
+    assert_eq!(
+        names.collect::<Vec<_>>(),
+        ["y", "held", "n", "was_on", "m[1]", "m[2]", "words", "bytes"]
+    );
 }
 
 #[test]

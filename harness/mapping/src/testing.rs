@@ -229,16 +229,18 @@ macro_rules! not_asked_for {
             unimplemented!("no test sets texts")
         }
 
-        fn get_strings(&mut self, _: &VariableGroup) -> Result<Vec<String>, InstanceError> {
-            unimplemented!("no test gets texts")
+        /// The value references, as texts with a quotation mark.
+        fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
+            Ok(group.references.iter().map(|reference| format!("\"{reference}, text")).collect())
         }
 
         fn set_binaries(&mut self, _: &VariableGroup, _: &[Vec<u8>]) -> Result<(), InstanceError> {
             unimplemented!("no test sets bytes")
         }
 
-        fn get_binaries(&mut self, _: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
-            unimplemented!("no test gets bytes")
+        /// The value references, as bytes.
+        fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
+            Ok(group.references.iter().map(|reference| reference.to_be_bytes().to_vec()).collect())
         }
 
         fn handle_events(&mut self) -> Result<bool, InstanceError> {

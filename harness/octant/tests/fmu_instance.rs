@@ -289,6 +289,34 @@ fn fmi3_takes_and_gives_every_type() {
     }
 }
 
+/// A compiled FMU: texts and bytes that were set come back, between quotes and as digits.
+#[test]
+fn texts_and_bytes_are_rows_of_a_run() {
+    let folder = without_clocks();
+    let out = folder.path().join("out.csv");
+    let arguments = [
+        "fmu",
+        "run",
+        folder.path().to_str().unwrap(),
+        "--set",
+        "string=\"größer, \\\"als\\\"\"",
+        "--stop",
+        "0.2",
+        "--output",
+        "string_out",
+        "--output",
+        "binary_out",
+        "--output",
+        "i8_out",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    crate::common::program::ends(&arguments, 0);
+    let text = std::fs::read_to_string(&out).unwrap();
+    let last = text.lines().last().unwrap();
+    assert_eq!(last, "0.2,\"größer, \"\"als\"\"\",\"\",0", "{text}");
+}
+
 #[test]
 fn arrays_have_the_size_of_their_structural_parameter() {
     let mut signals = open("signals_fmi3");

@@ -143,14 +143,15 @@ pub fn simulate(
         }
     }
     instance.exit_initialization()?;
-    let mut numbers = vec![0.0; outputs.plan.elements];
+    let (mut numbers, mut texts) = (vec![0.0; outputs.plan.elements], Vec::new());
     let mut rest = numbers.as_mut_slice();
     for group in &outputs.plan.groups {
         let (these, others) = rest.split_at_mut(group.elements);
         instance.get(group, these)?;
         rest = others;
     }
-    sink.row(span.start_s, outputs, &numbers)?;
+    outputs.read_texts(instance, &mut texts)?;
+    sink.row(span.start_s, outputs, &numbers, &texts)?;
     let steps = span.steps().unwrap_or(0);
     let mut finished =
         Finished { steps: 0, time_s: span.start_s, terminated: false, cancelled: false };
@@ -184,7 +185,8 @@ pub fn simulate(
         }
         finished.steps += 1;
         finished.time_s = if stepped.outcome == StepOutcome::Done { end_s } else { stepped.time_s };
-        sink.row(finished.time_s, outputs, &numbers)?;
+        outputs.read_texts(instance, &mut texts)?;
+        sink.row(finished.time_s, outputs, &numbers, &texts)?;
         if stepped.terminate {
             finished.terminated = true;
             break;

@@ -1,7 +1,7 @@
 //! Writes rows of an FMU's outputs, as CSV or as an MCAP file of JSON messages.
 
 use octant_fmu_host::description::{Causality, Description, Variable, VariableType};
-use octant_fmu_host::instance::{AccessPlan, InstanceError};
+use octant_fmu_host::instance::{AccessPlan, Instance, InstanceError, VariableGroup};
 use octant_mapping::find::{UnknownVariable, count, find, unknown};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -11,11 +11,13 @@ use std::path::{Path, PathBuf};
 /// Values that are read at every row.
 #[derive(Clone, Debug)]
 pub struct Outputs {
-    /// Groups that are read.
+    /// Groups of numbers that are read.
     pub plan: AccessPlan,
+    /// Groups of texts and bytes that are read.
+    pub texts: Vec<VariableGroup>,
     /// Columns except time.
     pub columns: Vec<OutputColumn>,
-    /// Outputs that aren't numbers, and are left out.
+    /// Outputs that are left out: clocks, and what has a value at their ticks alone.
     pub left_out: Vec<String>,
 }
 
@@ -25,13 +27,17 @@ pub enum OutputError {
     /// No variable has the name.
     #[error(transparent)]
     Unknown(#[from] UnknownVariable),
-    /// The variable has no numbers.
-    #[error("{variable} is a {kind:?}: numbers, Booleans and enumerations are recorded")]
-    Kind {
+    /// The variable is a clock, or has a value at the ticks of one alone.
+    #[error("{variable} {}: expected a variable that has a value after each step", if *.is_clock {
+        "is a clock"
+    } else {
+        "has a value at the ticks of its clock alone"
+    })]
+    Clocked {
         /// Name of the variable.
         variable: String,
-        /// Type found.
-        kind: VariableType,
+        /// True of a clock itself.
+        is_clock: bool,
     },
     /// The variables can't be read together.
     #[error(transparent)]
@@ -80,7 +86,7 @@ pub struct OutputColumn {
     pub name: String,
     /// Type of its values.
     pub kind: VariableType,
-    /// Place among the numbers that are read.
+    /// Place among the numbers that are read; of texts and bytes, among the texts.
     pub place: usize,
     /// Unit, if there is one.
     pub unit: Option<String>,
@@ -90,13 +96,15 @@ impl Outputs {
     /// Chooses the variables of these names; without names, the outputs of the FMU.
     ///
     /// # Errors
-    /// If there is no such variable, or it isn't a number.
+    /// If there is no such variable, or it is a clock or has one.
     pub fn choose(description: &Description, names: &[String]) -> Result<Self, OutputError> {
-        let number = |variable: &Variable| {
-            !matches!(
-                variable.kind,
-                VariableType::String | VariableType::Binary | VariableType::Clock
-            )
+        let is_text = |variable: &Variable| {
+            matches!(variable.kind, VariableType::String | VariableType::Binary)
+        };
+        // Numbers that a clock has are read between its ticks too; texts and bytes aren't.
+        let is_read = |variable: &Variable| {
+            variable.kind != VariableType::Clock
+                && (!is_text(variable) || variable.clocks.is_empty())
         };
         let mut elements: Vec<(&Variable, usize)> = Vec::new();
         let mut left_out = Vec::new();
@@ -105,7 +113,7 @@ impl Outputs {
                 if variable.causality != Causality::Output {
                     continue;
                 }
-                if number(variable) {
+                if is_read(variable) {
                     elements.extend((0..count(description, variable)).map(|n| (variable, n)));
                 } else {
                     left_out.push(variable.name.clone());
@@ -120,10 +128,10 @@ impl Outputs {
                 .map(|found| found.elements)
                 .or_else(array)
                 .ok_or_else(|| unknown(description, name, |_| true))?;
-            if let Some((variable, _)) = found.iter().find(|(variable, _)| !number(variable)) {
-                return Err(OutputError::Kind {
+            if let Some((variable, _)) = found.iter().find(|(variable, _)| !is_read(variable)) {
+                return Err(OutputError::Clocked {
                     variable: variable.name.clone(),
-                    kind: variable.kind,
+                    is_clock: variable.kind == VariableType::Clock,
                 });
             }
             elements.extend(found);
@@ -134,18 +142,47 @@ impl Outputs {
                 variables.push(variable);
             }
         }
-        let plan = AccessPlan::new(description, &variables)?;
-        let column = |(variable, element): &(&Variable, usize)| {
-            let known = variables.iter().position(|known| std::ptr::eq(*known, *variable));
-            OutputColumn {
-                name: element_name(description, variable, *element),
-                kind: variable.kind,
-                place: known.map_or(0, |index| plan.places[index].start) + element,
-                unit: variable.unit.clone(),
+        let (texts, numbers): (Vec<&Variable>, Vec<&Variable>) =
+            variables.into_iter().partition(|variable| is_text(variable));
+        let plan = AccessPlan::new(description, &numbers)?;
+        let groups = texts.iter().map(|variable| VariableGroup::of(description, variable));
+        let groups: Vec<VariableGroup> = groups.collect::<Result<_, _>>()?;
+        let place_of = |variable: &Variable| {
+            let place =
+                |all: &[&Variable]| all.iter().position(|known| std::ptr::eq(*known, variable));
+            if let Some(index) = place(&texts) {
+                return groups[..index].iter().map(|group| group.elements).sum();
             }
+            place(&numbers).map_or(0, |index| plan.places[index].start)
+        };
+        let column = |(variable, element): &(&Variable, usize)| OutputColumn {
+            name: element_name(description, variable, *element),
+            kind: variable.kind,
+            place: place_of(variable) + element,
+            unit: variable.unit.clone(),
         };
         let columns = elements.iter().map(column).collect();
-        Ok(Self { plan, columns, left_out })
+        Ok(Self { plan, texts: groups, columns, left_out })
+    }
+
+    /// Reads the texts, and the bytes as hexadecimal digits.
+    ///
+    /// # Errors
+    /// If the FMU fails.
+    pub fn read_texts(
+        &self,
+        instance: &mut dyn Instance,
+        texts: &mut Vec<String>,
+    ) -> Result<(), InstanceError> {
+        texts.clear();
+        for group in &self.texts {
+            if group.kind == VariableType::String {
+                texts.extend(instance.get_strings(group)?);
+            } else {
+                texts.extend(instance.get_binaries(group)?.iter().map(|bytes| hexadecimal(bytes)));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -179,6 +216,15 @@ fn element_name(description: &Description, variable: &Variable, element: usize) 
     }
     subscripts.reverse();
     format!("{}[{}]", variable.name, subscripts.join(","))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Writes a text between quotes, as RFC 4180 has it.
+fn write_quoted(out: &mut (impl Write + ?Sized), text: &str) -> io::Result<()> {
+    write!(out, "\"{}\"", text.replace('"', "\"\""))
 }
 
 /// Writes a value in the form of its type: whole numbers without a point, all others so that they
@@ -249,7 +295,8 @@ impl Sink {
         let write = |out: &mut dyn Write| {
             write!(out, "\"time\"")?;
             for column in &outputs.columns {
-                write!(out, ",\"{}\"", column.name.replace('"', "\"\""))?;
+                out.write_all(b",")?;
+                write_quoted(out, &column.name)?;
             }
             writeln!(out)
         };
@@ -263,24 +310,29 @@ impl Sink {
     ///
     /// # Errors
     /// If it can't be written.
-    pub fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
-        fn csv(
-            out: &mut impl Write,
-            time_s: f64,
-            outputs: &Outputs,
-            numbers: &[f64],
-        ) -> io::Result<()> {
-            write!(out, "{time_s:?}")?;
-            for column in &outputs.columns {
-                out.write_all(b",")?;
-                write_value(out, column.kind, numbers[column.place])?;
-            }
-            out.write_all(b"\n")
-        }
+    pub fn row(
+        &mut self,
+        time_s: f64,
+        outputs: &Outputs,
+        numbers: &[f64],
+        texts: &[String],
+    ) -> io::Result<()> {
         match self {
             Self::None => Ok(()),
-            Self::Csv(out) => csv(out, time_s, outputs, numbers),
-            Self::Mcap(mcap) => mcap.row(time_s, outputs, numbers),
+            Self::Csv(out) => {
+                write!(out, "{time_s:?}")?;
+                for column in &outputs.columns {
+                    out.write_all(b",")?;
+                    match column.kind {
+                        VariableType::String | VariableType::Binary => {
+                            write_quoted(out, &texts[column.place])?;
+                        }
+                        kind => write_value(out, kind, numbers[column.place])?,
+                    }
+                }
+                out.write_all(b"\n")
+            }
+            Self::Mcap(mcap) => mcap.row(time_s, outputs, numbers, texts),
         }
     }
 
@@ -320,11 +372,15 @@ impl Mcap {
             let kind = match column.kind {
                 VariableType::Boolean => "boolean",
                 VariableType::Float64 | VariableType::Float32 => "number",
+                VariableType::String | VariableType::Binary => "string",
                 _ => "integer",
             };
             let mut property = serde_json::json!({ "type": [kind, "null"] });
             if let Some(unit) = &column.unit {
                 property["description"] = format!("in {unit}").into();
+            }
+            if column.kind == VariableType::Binary {
+                property["description"] = "bytes as hexadecimal digits".into();
             }
             (column.name.clone(), property)
         };
@@ -339,7 +395,13 @@ impl Mcap {
         Ok(Self { writer, channel, events: None, sequence: 0, text: Vec::new() })
     }
 
-    fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
+    fn row(
+        &mut self,
+        time_s: f64,
+        outputs: &Outputs,
+        numbers: &[f64],
+        texts: &[String],
+    ) -> io::Result<()> {
         let text = &mut self.text;
         text.clear();
         write!(text, "{{\"time\":{time_s:?}")?;
@@ -347,6 +409,10 @@ impl Mcap {
             text.extend_from_slice(b",");
             serde_json::to_writer(&mut *text, &column.name)?;
             text.extend_from_slice(b":");
+            if matches!(column.kind, VariableType::String | VariableType::Binary) {
+                serde_json::to_writer(&mut *text, &texts[column.place])?;
+                continue;
+            }
             let value = numbers[column.place];
             match column.kind {
                 VariableType::Boolean => write!(text, "{}", value != 0.0)?,

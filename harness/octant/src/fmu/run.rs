@@ -265,7 +265,10 @@ fn tell(
         _ => "\n",
     };
     if !told.left_out.is_empty() {
-        text += &format!("not recorded, because not numeric: {}\n", told.left_out.join(", "));
+        text += &format!(
+            "not recorded, because they have no value between ticks: {}\n",
+            told.left_out.join(", ")
+        );
     }
     if let Some(out) = &told.out {
         let rows = counted(told.steps + 1, "row", "rows");
