@@ -4,7 +4,10 @@ use octant_base::control::Control;
 use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink, TOPIC};
 use octant_cosim::single::{Finished, Span, simulate};
-use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
+use octant_fmu_host::description::{
+    Causality, ClockProperties, Description, IntervalVariability, Variability, Variable,
+    VariableType,
+};
 use octant_fmu_host::instance::Instance;
 use octant_mapping::settings::{Starts, ValueSettings};
 use octant_mapping::testing::{Scripted, With, description, variable};
@@ -193,6 +196,40 @@ fn an_array_has_a_column_or_one_for_each_element() {
     let apart = at_half("time,w[1],w[2],u\n0,1,2,3\n1,2,4,6\n");
     assert_eq!(apart, at_half("time,w,u\n0,1 2,3\n1, 2  4 ,6\n"));
     assert_eq!(apart, at_half("time,w[2],w[1],u\n0,2,1,3\n1,4,2,6\n"));
+}
+
+/// Each row ticks once, at the first communication point at or after it; none before the first row.
+#[test]
+fn a_triggered_clock_ticks_at_the_rows_that_say_so() {
+    let mut description = model();
+    let triggered = |interval_variability| ClockProperties {
+        interval_variability,
+        ..ClockProperties::default()
+    };
+    for (name, reference) in [("a", 20), ("b", 21), ("c", 22)] {
+        let mut clock = variable(name, reference, VariableType::Clock, Causality::Input);
+        clock.clock = Some(triggered(IntervalVariability::Triggered));
+        description.variables.push(clock);
+    }
+    description.variables.last_mut().unwrap().clock =
+        Some(triggered(IntervalVariability::Countdown));
+    let text = "time,a,u,b\n1,1,0,0\n1.5,0,1,1\n1.6,1,2,0\n2,0,3,0\n2,1,4,0\n";
+    let read = |text: &str| Inputs::from_reader(text.as_bytes(), "in.csv", &description);
+    let mut inputs = read(text).unwrap();
+    let mut found = Vec::new();
+    for time_s in [0.0, 0.5, 1.0, 1.25, 1.75, 2.0, 2.5] {
+        inputs.at(time_s);
+        found.push(inputs.ticks().map(|group| group.references));
+    }
+    let [a, both] = [vec![20], vec![20, 21]];
+    assert_eq!(found, [None, None, Some(a.clone()), None, Some(both), Some(a), None]);
+    for (text, expected) in [
+        ("time,c\n0,1\n", "c is a clock with times of its own, expected a triggered one"),
+        ("time,a\n0,2\n", "in.csv:2:2: found \"2\", expected 0, 1, true or false"),
+    ] {
+        let error = read(text).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
 }
 
 #[test]

@@ -318,6 +318,26 @@ fn texts_and_bytes_are_rows_of_a_run() {
 }
 
 #[test]
+fn a_clock_ticks_by_a_column_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, out) = (folder.path().join("in.csv"), folder.path().join("out.csv"));
+    std::fs::write(&input, "time,kick\n0,1\n0.2,0\n0.3,1\n").unwrap();
+    let fmu = foreign::fmu("signals_fmi3");
+    let paths = [&fmu, &input, &out].map(|path| path.to_str().unwrap());
+    for process in ["own", "shared"] {
+        let [fmu, input, out] = paths;
+        let arguments =
+            ["fmu", "run", fmu, "--input", input, "--stop", "0.5", "--process", process];
+        let named = ["--output", "kicked", "--out", out];
+        crate::common::program::ends(&[&arguments[..], &named[..]].concat(), 0);
+        let text = std::fs::read_to_string(&paths[2]).unwrap();
+        let kicked: Vec<&str> =
+            text.lines().skip(1).map(|line| line.split_once(',').unwrap().1).collect();
+        assert_eq!(kicked, ["0", "1", "1", "1", "2", "2"], "{text}");
+    }
+}
+
+#[test]
 fn arrays_have_the_size_of_their_structural_parameter() {
     let mut signals = open("signals_fmi3");
     let signals = &mut *signals;

@@ -3,11 +3,13 @@
 //! Continuous variables are interpolated linearly, all others are held from their row on; two rows
 //! of the same time are a step. Before the first row and after the last, the nearest row holds. An
 //! array has a column for each element, or one column with all of them separated by blanks, as in
-//! the inputs that FMI 3.0 FMUs contain.
+//! the inputs that FMI 3.0 FMUs contain. A triggered clock ticks once for each row that has a 1.
 
 use octant_fmu_host::description::units::{UnitConversion, known};
-use octant_fmu_host::description::{Causality, Description, Variability, Variable, VariableType};
-use octant_fmu_host::instance::{AccessPlan, InstanceError};
+use octant_fmu_host::description::{
+    Causality, Description, IntervalVariability, Variability, Variable, VariableType,
+};
+use octant_fmu_host::instance::{AccessPlan, InstanceError, VariableGroup};
 use octant_mapping::find::{ValueWay, allowed, count, find, unknown};
 use std::path::Path;
 
@@ -48,8 +50,21 @@ pub struct Inputs {
     pub numbers: Vec<f64>,
     time_s: Vec<f64>,
     columns: Vec<Column>,
+    clocks: Vec<ClockColumn>,
     /// Index of the last row at or before the last requested time.
     row: usize,
+    /// Number of rows at or before the last requested time.
+    reached: usize,
+    /// Number of rows whose ticks were asked for.
+    ticked: usize,
+}
+
+/// Column of a triggered clock.
+#[derive(Clone, Debug)]
+struct ClockColumn {
+    group: VariableGroup,
+    /// Whether it ticks at a row.
+    ticks: Vec<bool>,
 }
 
 #[derive(Clone, Debug)]
@@ -136,6 +151,16 @@ impl Inputs {
             }
         }
 
+        let clock = |header: &Header<'_>| {
+            let first = header.elements.first().map(|(variable, _)| *variable);
+            first.filter(|variable| variable.kind == VariableType::Clock)
+        };
+        let mut clocks = Vec::new();
+        for variable in headers.iter().filter_map(clock) {
+            let group = VariableGroup::of(description, variable)?;
+            clocks.push(ClockColumn { group, ticks: Vec::new() });
+        }
+        seen.retain(|(variable, _)| variable.kind != VariableType::Clock);
         let mut variables: Vec<&Variable> = Vec::new();
         for (variable, _) in &seen {
             if !variables.iter().any(|known| std::ptr::eq(*known, *variable)) {
@@ -179,10 +204,15 @@ impl Inputs {
                 return Err(content(line, 1, reason));
             }
             time_s.push(now);
-            let mut columns = columns.iter_mut();
+            let (mut columns, mut clocks) = (columns.iter_mut(), clocks.iter_mut());
             for (index, header) in headers.iter().enumerate() {
                 let wrong = |reason: String| content(line, index + 2, reason);
                 let field = &record[index + 1];
+                if clock(header).is_some() {
+                    let ticks = number(field, VariableType::Boolean).map_err(wrong)?;
+                    clocks.by_ref().take(1).for_each(|clock| clock.ticks.push(ticks != 0.0));
+                    continue;
+                }
                 let expected = header.elements.len();
                 let texts = field.split_ascii_whitespace().count();
                 // A scalar field is parsed as it is: the parser's message for an empty field or for
@@ -201,7 +231,7 @@ impl Inputs {
         if time_s.is_empty() {
             return Err(content(line + 1, 1, "the file ends, expected a row of numbers".into()));
         }
-        Ok(Self { plan, numbers, time_s, columns, row: 0 })
+        Ok(Self { plan, numbers, time_s, columns, clocks, row: 0, reached: 0, ticked: 0 })
     }
 
     /// Returns first and last time of the table, s.
@@ -221,6 +251,8 @@ impl Inputs {
         while self.time_s.get(self.row + 1).is_some_and(|next| *next <= reached) {
             self.row += 1;
         }
+        // Before the first row its values hold, and it doesn't tick.
+        self.reached = if self.time_s[self.row] > reached { 0 } else { self.row + 1 };
         let (row, next) = (self.row, self.row + 1);
         let here = self.time_s[row];
         let part = match self.time_s.get(next) {
@@ -235,6 +267,24 @@ impl Inputs {
                 value
             };
         }
+    }
+}
+
+impl Inputs {
+    /// Returns the clocks that tick at the last requested time: those of each row since the last call.
+    pub fn ticks(&mut self) -> Option<VariableGroup> {
+        let (first, end) = (self.ticked, self.reached);
+        self.ticked = first.max(end);
+        let ticks = |clock: &&ClockColumn| {
+            clock.ticks.get(first..end).is_some_and(|ticks| ticks.contains(&true))
+        };
+        let mut due = self.clocks.iter().filter(ticks);
+        let mut group = due.next()?.group.clone();
+        for clock in due {
+            group.references.extend(&clock.group.references);
+            group.elements += clock.group.elements;
+        }
+        Some(group)
     }
 }
 
@@ -263,10 +313,14 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
     let Some(found) = found else { return Err(unknown(description, name, is_input).to_string()) };
     for (variable, element) in &found.elements {
         allowed(variable, ValueWay::In).map_err(|error| error.to_string())?;
-        if matches!(
-            variable.kind,
-            VariableType::String | VariableType::Binary | VariableType::Clock
-        ) {
+        if let Some(clock) = &variable.clock
+            && clock.interval_variability != IntervalVariability::Triggered
+        {
+            return Err(format!(
+                "{name} is a clock with times of its own, expected a triggered one"
+            ));
+        }
+        if matches!(variable.kind, VariableType::String | VariableType::Binary) {
             return Err(format!(
                 "{name} is a {:?}, and a column of numbers can't be one",
                 variable.kind

@@ -167,6 +167,9 @@ pub fn simulate(
         let (set, given): (&[_], &[f64]) = match &mut inputs {
             Some(inputs) => {
                 inputs.at(now_s);
+                if let Some(clocks) = inputs.ticks() {
+                    instance.set(&clocks, &vec![1.0; clocks.elements])?;
+                }
                 (&inputs.plan.groups, &inputs.numbers)
             }
             None => (&[], &[]),
