@@ -202,17 +202,23 @@ fn an_array_has_a_column_or_one_for_each_element() {
 #[test]
 fn a_triggered_clock_ticks_at_the_rows_that_say_so() {
     let mut description = model();
-    let triggered = |interval_variability| ClockProperties {
+    let of_kind = |interval_variability| ClockProperties {
         interval_variability,
-        ..ClockProperties::default()
+        interval_s: None,
+        interval_counter: None,
+        resolution: None,
+        shift_s: 0.0,
+        shift_counter: 0,
+        supports_fraction: false,
+        priority: None,
+        can_be_deactivated: false,
     };
     for (name, reference) in [("a", 20), ("b", 21), ("c", 22)] {
         let mut clock = variable(name, reference, VariableType::Clock, Causality::Input);
-        clock.clock = Some(triggered(IntervalVariability::Triggered));
+        clock.clock = Some(of_kind(IntervalVariability::Triggered));
         description.variables.push(clock);
     }
-    description.variables.last_mut().unwrap().clock =
-        Some(triggered(IntervalVariability::Countdown));
+    description.variables.last_mut().unwrap().clock = Some(of_kind(IntervalVariability::Countdown));
     let text = "time,a,u,b\n1,1,0,0\n1.5,0,1,1\n1.6,1,2,0\n2,0,3,0\n2,1,4,0\n";
     let read = |text: &str| Inputs::from_reader(text.as_bytes(), "in.csv", &description);
     let mut inputs = read(text).unwrap();
