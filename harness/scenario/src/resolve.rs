@@ -377,7 +377,12 @@ mod tests {
         // Errors beside the parameters, all groups of them.
         let drawn_too = "[imu.extensions.drawn]\nlever_arm = { normal = \"3 cm\" }\n\
                          gyro_asymmetry = { uniform = \"30 ppm\" }\naccel_asymmetry = { normal = \"30 ppm\" }\n\
-                         accel_quadratic = { normal = \"20 ug/g^2\" }\n[site.drawn]\n\
+                         accel_quadratic = { normal = \"20 ug/g^2\" }\n\
+                         gyro_bias_temperature = { normal = \"0.001 deg/h/K\" }\n\
+                         gyro_scale_temperature = { uniform = \"1 ppm/K\" }\n\
+                         accel_bias_temperature = { normal = \"5 ug/K\" }\n\
+                         accel_scale_temperature = { normal = \"1 ppm/K\" }\n\
+                         [imu.extensions.temperature]\nramp = \"1 K/h\"\nplateau = \"2 K\"\n[site.drawn]\n\
                          deflection = { normal = \"10 arcsec\" }\ngravity_anomaly = { normal = \"50 ug\" }\n\
                          [turntable.drawn]\nmounting = { normal = \"1 arcmin\" }\n\
                          non_orthogonality = { normal = \"20 arcsec\" }\neccentricity = { uniform = \"5 arcsec\" }\n";
