@@ -69,12 +69,26 @@ pub(super) fn check(model: &Model<'_, '_>, archive: &Archive, findings: &mut Fin
     }
 }
 
+/// Returns whether a file is there that is named from `sources/`, with `.` and `..` among the parts of its name.
+fn has_source(archive: &Archive, name: &str) -> bool {
+    let mut parts = vec!["sources"];
+    for part in name.split('/') {
+        match part {
+            "" | "." => {}
+            ".." if parts.pop().is_none() => return false,
+            ".." => {}
+            part => parts.push(part),
+        }
+    }
+    archive.contains(&parts.join("/"))
+}
+
 /// Checks the source files that the description of FMI 2.0 lists.
 fn listed_sources(model: &Model<'_, '_>, archive: &Archive, findings: &mut Findings) {
     for interface in model.root.children() {
         for file in interface.child("SourceFiles").into_iter().flat_map(Element::children) {
             let Some(name) = file.text("name") else { continue };
-            if !archive.contains(&format!("sources/{name}")) {
+            if !has_source(archive, name) {
                 let place = model.at(file, name);
                 findings.add(&SOURCES_FILES, place, format!("no sources/{name}"), "the file");
             }
@@ -111,7 +125,7 @@ pub(super) fn build_description(
         for set in configuration.children().filter(|child| child.name() == "SourceFileSet") {
             for file in set.children().filter(|child| child.name() == "SourceFile") {
                 let Some(name) = file.text("name") else { continue };
-                if !archive.contains(&format!("sources/{name}")) {
+                if !has_source(archive, name) {
                     let found = format!("no sources/{name}");
                     findings.add(&SOURCES_FILES, place(file, name), found, "the file");
                 }

@@ -250,6 +250,26 @@ fn a_change_of_a_file_is_found_by_one_rule() {
     assert_eq!(found, ["files.implementation", "sources.files"]);
 }
 
+/// OpenModelica writes names of sources with `./` before them.
+#[test]
+fn names_of_sources_have_steps_between_folders() {
+    for (name, expected) in [
+        ("./good.c", &[][..]),
+        ("../sources/./good.c", &[]),
+        ("sub/good.c", &["sources.files"]),
+        ("../../good.c", &["sources.files"]),
+    ] {
+        let mut files = files(GOOD2);
+        let file = files.iter_mut().find(|(name, _)| *name == "modelDescription.xml").expect("it");
+        let text = String::from_utf8(file.1.clone()).expect("text");
+        let to = format!("<File name=\"{name}\"/>");
+        file.1 = edited(&text, &[("<File name=\"good.c\"/>", &to)]).into_bytes();
+        let found = ids(&survey(packed(&files)).findings);
+        let found: Vec<&str> = found.into_iter().filter(|id| *id != "binary.platform").collect();
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
 /// Replaces all occurrences of `from` in a zip.
 fn patched(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
     let mut at = 0;
