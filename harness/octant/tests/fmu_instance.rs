@@ -328,9 +328,9 @@ fn a_clock_ticks_by_a_column_of_a_run() {
         let [fmu, input, out] = paths;
         let arguments =
             ["fmu", "run", fmu, "--input", input, "--stop", "0.5", "--process", process];
-        let named = ["--output", "kicked", "--out", out];
+        let named = ["--output", "kicked", "--out", out, "--force"];
         crate::common::program::ends(&[&arguments[..], &named[..]].concat(), 0);
-        let text = std::fs::read_to_string(&paths[2]).unwrap();
+        let text = std::fs::read_to_string(paths[2]).unwrap();
         let kicked: Vec<&str> =
             text.lines().skip(1).map(|line| line.split_once(',').unwrap().1).collect();
         assert_eq!(kicked, ["0", "1", "1", "1", "2", "2"], "{text}");

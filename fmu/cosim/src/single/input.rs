@@ -82,6 +82,14 @@ struct Header<'a> {
     units: UnitConversion,
 }
 
+impl<'a> Header<'a> {
+    /// The clock that ticks by the column, if it is one.
+    fn clock(&self) -> Option<&'a Variable> {
+        let (variable, _) = self.elements.first()?;
+        (variable.kind == VariableType::Clock).then_some(*variable)
+    }
+}
+
 impl Inputs {
     /// Reads a file for an FMU.
     ///
@@ -151,12 +159,8 @@ impl Inputs {
             }
         }
 
-        let clock = |header: &Header<'_>| {
-            let first = header.elements.first().map(|(variable, _)| *variable);
-            first.filter(|variable| variable.kind == VariableType::Clock)
-        };
         let mut clocks = Vec::new();
-        for variable in headers.iter().filter_map(clock) {
+        for variable in headers.iter().filter_map(Header::clock) {
             let group = VariableGroup::of(description, variable)?;
             clocks.push(ClockColumn { group, ticks: Vec::new() });
         }
@@ -208,7 +212,7 @@ impl Inputs {
             for (index, header) in headers.iter().enumerate() {
                 let wrong = |reason: String| content(line, index + 2, reason);
                 let field = &record[index + 1];
-                if clock(header).is_some() {
+                if header.clock().is_some() {
                     let ticks = number(field, VariableType::Boolean).map_err(wrong)?;
                     clocks.by_ref().take(1).for_each(|clock| clock.ticks.push(ticks != 0.0));
                     continue;
