@@ -342,7 +342,7 @@ fn temperature_coefficients_are_found_as_well_as_was_predicted() {
     let done = program(&["run", "s.toml", "--out", "out"]).current_dir(folder.path()).output();
     assert_eq!(done.unwrap().status.code(), Some(0));
     assert!(!folder.path().join("out/calibration.octcal").exists());
-    // What is drawn and what the run resolved it to are the same instrument.
+    // The resolved scenario, with the drawn values as given ones, is the same instrument.
     let mut again = program(&["run", "out/scenario.toml", "--out", "again", "--json"]);
     let again = again.current_dir(folder.path()).output().unwrap();
     let again: Value = serde_json::from_slice(&again.stdout).unwrap();

@@ -98,7 +98,7 @@ pub enum DeskRefusal {
     Unfit {
         /// The step.
         id: String,
-        /// What was found and expected.
+        /// Reason: found and expected.
         problem: String,
     },
     /// The request isn't possible now.

@@ -13,7 +13,7 @@ use std::path::Path;
 pub struct ScriptError {
     /// The file.
     pub file: String,
-    /// What was found and expected.
+    /// Reason: found and expected.
     pub problem: String,
 }
 

@@ -89,7 +89,7 @@ pub(super) fn without_power(
         return Some(("kind", why.to_owned()));
     };
     let dip_v = table.optional_si("voltage")?;
-    // What is measured has to tell the two voltages apart.
+    // The two voltages have to differ by more than the tolerance of a measurement.
     let below_v = (supply.voltage_v * (1.0 - 2.0 * supply.tolerance) * 1e6).round() / 1e6;
     (dip_v >= below_v).then(|| {
         let why = format!(

@@ -26,7 +26,7 @@ pub(crate) struct FurtherCompensation {
     thermometer: Option<Thermometer>,
 }
 
-/// What the core knows of its temperature.
+/// Temperature as the core was told it, and the coefficients by which errors follow it.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Thermometer {

@@ -270,7 +270,7 @@ fn bridged_channels_have_no_columns() {
     states.advance(ErrorModel::Phi, &interval, earth, [false, true, false], false);
     let on = |k: usize| (0..MOVING).any(|row| states.columns[row][k] != 0.0);
     for k in 0..DRIVING_COUNT {
-        // Of those that drive rates, y alone.
+        // Gyro y alone isn't bridged: only its states have a column.
         let is_y = [10, 19, 28, 31].contains(&k);
         assert_eq!(on(k), is_y, "{}", crate::further::FURTHER_NAMES[k]);
     }
