@@ -5,7 +5,7 @@ use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_requirements::Verdict;
-use octant_scenario::{Scenario, UnitDimension, quantity_of};
+use octant_scenario::{Scenario, TableDriver, UnitDimension, quantity_of};
 use octant_turntable::simulate::listen;
 use octant_turntable::{
     AxisLimits, Dialect, DriverSettings, Error, Move, TableAxis, TableLimits, TablePlan,
@@ -117,7 +117,7 @@ fn failure(error: &Error) -> Failure {
 }
 
 /// Returns the plan of a table, and whether its limits are known.
-fn plan(table: &str, dialect: Option<&Path>) -> Result<(TablePlan, bool), Failure> {
+fn plan(table: &str, dialect: Option<&Path>, moves: bool) -> Result<(TablePlan, bool), Failure> {
     if table.starts_with("tcp:") || table.starts_with("serial:") {
         check_port(table).map_err(Failure::input)?;
         // Without limits no angle is commanded.
@@ -141,6 +141,7 @@ fn plan(table: &str, dialect: Option<&Path>) -> Result<(TablePlan, bool), Failur
             home: false,
             start: Duration::from_secs(120),
             tolerance_rad: 0.0,
+            units: 1,
         };
         return Ok((plan, false));
     }
@@ -154,6 +155,11 @@ fn plan(table: &str, dialect: Option<&Path>) -> Result<(TablePlan, bool), Failur
     let Some(drive) = &scenario.drive else {
         return Err(Failure::input(format!("{table}: found no [turntable.drive]")));
     };
+    if drive.driver == TableDriver::AnotherRun && moves {
+        return Err(Failure::input(format!(
+            "{table}: found turntable.drive.driver = \"another run\", expected the scenario of the run that drives the table"
+        )));
+    }
     let plan = drive.plan(&scenario.folder).map_err(|error| failure(&error))?;
     Ok((plan, true))
 }
@@ -220,11 +226,11 @@ fn told(status: &TableStatus, as_json: bool) -> Result<(), Failure> {
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     match &arguments.action {
         Action::Status { table, json } => {
-            let (plan, _) = plan(&table.table, table.dialect.as_deref())?;
+            let (plan, _) = plan(&table.table, table.dialect.as_deref(), false)?;
             told(&look(&plan).map_err(|error| failure(&error))?, *json)?;
         }
         Action::Home { table, axis, json } => {
-            let (plan, _) = plan(&table.table, table.dialect.as_deref())?;
+            let (plan, _) = plan(&table.table, table.dialect.as_deref(), true)?;
             let axes = axis.map_or(TableAxis::ALL.to_vec(), |axis| vec![axis.into()]);
             let moves: Vec<Move> = axes.into_iter().map(Move::Home).collect();
             told(&moved(&plan, &moves)?, *json)?;
@@ -233,7 +239,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             let angle_rad = quantity("ANGLE", angle, UnitDimension::ANGLE)?;
             let rate = rate.as_deref();
             let rate = rate.map(|rate| quantity("--rate", rate, UnitDimension::ANGULAR_RATE));
-            let (plan, limited) = plan(&table.table, table.dialect.as_deref())?;
+            let (plan, limited) = plan(&table.table, table.dialect.as_deref(), true)?;
             if !limited {
                 return Err(Failure::input(format!(
                     "found {}, expected a scenario: its [turntable.drive] has the limits of the table",
@@ -257,7 +263,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             }
         }
         Action::Stop { table: Some(table), dialect } => {
-            let (plan, _) = plan(table, dialect.as_deref())?;
+            let (plan, _) = plan(table, dialect.as_deref(), false)?;
             let who = stop_by_hand(&plan.port, &plan.dialect).map_err(|error| failure(&error))?;
             print(&format!("{}: stop sent through {}\n", plan.port, who.join(", and through ")))?;
         }

@@ -110,6 +110,8 @@ mod scenario_schema;
 mod score;
 mod score_solution;
 mod selftest;
+#[cfg(unix)]
+mod shared_table;
 mod smooth;
 mod solution;
 mod source_uri;

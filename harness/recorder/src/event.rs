@@ -8,7 +8,9 @@ mod link;
 mod pacing;
 mod power;
 
-pub use bench::{BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchTable};
+pub use bench::{
+    BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchShared, BenchTable,
+};
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;
 pub use pacing::{DeviceClock, LatenessOverRun, LatenessQuantiles, PacingRecord};

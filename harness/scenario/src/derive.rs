@@ -276,6 +276,13 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
              of another source aren't those of the table",
         );
     }
+    if is("turntable.drive.driver", "another run") {
+        add(
+            "turntable.drive",
+            &["units", "dialect", "home", "tolerance", "look", "reply", "guard", "watchdog"],
+            "without effect: another run drives the table",
+        );
+    }
     if !is("source.live.protocol", "dbc") {
         add(
             "source.live",

@@ -4,9 +4,9 @@
 //! while a harness drives a table, no other program reaches it. So the harness opens a socket for each
 //! table, in a folder of this host, with a thread that only waits for somebody to press. The thread
 //! takes no lock of the driver and needs no reply of the table. Every user of this host may stop a
-//! table this way, and can do nothing else to it.
+//! table this way, and can do nothing else to it. Runs that share the table knock at the same socket.
 
-use crate::{EmergencyStop, Error};
+use crate::{EmergencyStop, Error, TableHost};
 
 /// Result of pressing a button.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,6 +18,9 @@ pub struct Pressed {
 }
 
 #[cfg(unix)]
+#[cfg(target_os = "linux")]
+pub(crate) use unix::knock;
+#[cfg(unix)]
 pub use unix::{Button, press};
 
 #[cfg(not(unix))]
@@ -25,7 +28,7 @@ pub use elsewhere::{Button, press};
 
 #[cfg(unix)]
 mod unix {
-    use super::{EmergencyStop, Error, Pressed};
+    use super::{EmergencyStop, Error, Pressed, TableHost};
     use std::io::{self, ErrorKind, Read, Write};
     use std::os::unix::fs::{FileTypeExt, PermissionsExt};
     use std::os::unix::net::{UnixListener, UnixStream};
@@ -40,6 +43,8 @@ mod unix {
     const FOLDER: &str = "/tmp/octant-tables";
     /// Word that presses the button. A connection without it only tests whether the table is in use.
     const WORD: &[u8] = b"stop\n";
+    /// Word of a run that shares the table; as long as the other.
+    const KNOCK: &[u8] = b"join\n";
     /// Longest wait of either end for the other.
     const PATIENCE: Duration = Duration::from_secs(3);
 
@@ -61,11 +66,11 @@ mod unix {
     }
 
     impl Button {
-        /// Offers a stop button for the table on a port.
+        /// Offers a stop button for the table on a port, and lets guests of `host` in.
         ///
         /// # Errors
         /// If another program drives the table, or the socket can't be made.
-        pub fn offer(port: &str, stop: EmergencyStop) -> Result<Self, Error> {
+        pub fn offer(port: &str, stop: EmergencyStop, host: TableHost) -> Result<Self, Error> {
             let place = place(port);
             let failed = |reason: String| Error::Button { port: port.to_owned(), reason };
             let listener = listen(&place).map_err(|error| match error.kind() {
@@ -83,7 +88,7 @@ mod unix {
                         }
                         if let Ok(stream) = stream {
                             // A peer that doesn't wait for the answer has still pressed the button.
-                            let _ = pressed(stream, &stop, &name);
+                            let _ = pressed(stream, &stop, &host, &name);
                         }
                     }
                 })
@@ -128,11 +133,20 @@ mod unix {
         Ok(listener)
     }
 
-    fn pressed(mut stream: UnixStream, stop: &EmergencyStop, port: &str) -> io::Result<()> {
+    fn pressed(
+        mut stream: UnixStream,
+        stop: &EmergencyStop,
+        host: &TableHost,
+        port: &str,
+    ) -> io::Result<()> {
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
         let mut word = [0; WORD.len()];
         stream.read_exact(&mut word)?;
+        if word == KNOCK {
+            host.join(stream);
+            return Ok(());
+        }
         if word != WORD {
             return Ok(());
         }
@@ -173,6 +187,14 @@ mod unix {
         silent.map_or(Ok(all), Err)
     }
 
+    /// Knocks at a table; `None` if no program drives it.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn knock(port: &str) -> Option<UnixStream> {
+        let mut stream = UnixStream::connect(place(port)).ok()?;
+        stream.write_all(KNOCK).ok()?;
+        Some(stream)
+    }
+
     fn answer(mut stream: UnixStream) -> io::Result<Pressed> {
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
@@ -186,7 +208,7 @@ mod unix {
 
 #[cfg(not(unix))]
 mod elsewhere {
-    use super::{EmergencyStop, Error, Pressed};
+    use super::{EmergencyStop, Error, Pressed, TableHost};
 
     /// Stop button, which doesn't exist on this system: only a stop on the port itself remains.
     #[derive(Debug)]
@@ -197,7 +219,7 @@ mod elsewhere {
         ///
         /// # Errors
         /// Never.
-        pub fn offer(_: &str, _: EmergencyStop) -> Result<Self, Error> {
+        pub fn offer(_: &str, _: EmergencyStop, _: TableHost) -> Result<Self, Error> {
             Ok(Self)
         }
     }

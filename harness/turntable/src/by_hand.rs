@@ -2,8 +2,8 @@
 
 use crate::following::rest;
 use crate::{
-    Button, Driver, DriverSettings, Error, Supervisor, TableAxis, TablePlan, TableStatus,
-    Turntable, on_panic, on_signals, open,
+    Button, Driver, DriverSettings, Error, Supervisor, TableAxis, TableHost, TablePlan,
+    TableStatus, Turntable, on_panic, on_signals, open,
 };
 
 /// Move by hand.
@@ -47,7 +47,7 @@ pub fn move_by_hand(
     let mut driver = Driver::new(port, &plan.port, plan.dialect.clone(), plan.settings)?;
     on_panic();
     on_signals().map_err(|error| Error::Guard { reason: format!("signals: {error}") })?;
-    let _button = Button::offer(&plan.port, driver.emergency())?;
+    let _button = Button::offer(&plan.port, driver.emergency(), TableHost::new(1))?;
     if let Some(silence) = plan.guard {
         driver.guard(guard, silence)?;
     }

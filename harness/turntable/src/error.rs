@@ -157,6 +157,34 @@ pub enum Error {
         /// Reason.
         reason: String,
     },
+    /// Other runs at the table didn't come.
+    #[error(
+        "{port}: {found} of the {expected} runs of turntable.drive.units came within {within:?}"
+    )]
+    Alone {
+        /// Port of the table.
+        port: String,
+        /// Number of runs that are there, the driving one among them.
+        found: usize,
+        /// Number of runs expected.
+        expected: usize,
+        /// Time waited.
+        within: Duration,
+    },
+    /// Another run at the table doesn't end.
+    #[error("another run at the table still goes on {within:?} after the one that drives it")]
+    Unended {
+        /// Time waited.
+        within: Duration,
+    },
+    /// The table that another run drives can't be used.
+    #[error("the table {port}, which another run drives: {reason}")]
+    Shared {
+        /// Port of the table.
+        port: String,
+        /// Reason.
+        reason: String,
+    },
     /// The guard can't be started, or is gone.
     #[error("the guard of the table: {reason}")]
     Guard {

@@ -2,7 +2,7 @@
 
 use crate::{
     Button, Dialect, Driver, DriverSettings, EmergencyStop, Error, Follower, Supervisor, TableAxis,
-    TablePort, TableStatus, Track, TrackPoint, Turntable, on_panic, open,
+    TableHost, TablePort, TableStatus, Track, TrackPoint, Turntable, on_panic, open,
 };
 use octant_sample::{GimbalAngles, GimbalCommand};
 use std::sync::Arc;
@@ -39,6 +39,8 @@ pub struct TablePlan {
     pub start: Duration,
     /// Largest angle from zero at which an axis may rest at the start, rad.
     pub tolerance_rad: f64,
+    /// Number of runs at the table, this one among them: see [`TableHost`].
+    pub units: usize,
 }
 
 /// Counts of the communication between a run and its table.
@@ -71,6 +73,7 @@ pub struct Following {
     shared: Arc<Shared>,
     looks: rtrb::Consumer<TableStatus>,
     track: Track,
+    host: TableHost,
     /// Removed after the table is stopped.
     _button: Button,
 }
@@ -112,7 +115,8 @@ impl Following {
         let mut driver = Driver::new(port, &plan.port, dialect, settings)?;
         on_panic();
         let stop = driver.emergency();
-        let button = Button::offer(&plan.port, stop.clone())?;
+        let host = TableHost::new(plan.units);
+        let button = Button::offer(&plan.port, stop.clone(), host.clone())?;
         if let Some(silence) = plan.guard {
             driver.guard(guard, silence)?;
         }
@@ -129,13 +133,16 @@ impl Following {
         let shared = Arc::new(Shared::default());
         let (mut producer, mut looks) = rtrb::RingBuffer::new(LOOKS);
         let (of_table, mut follower) = (Arc::clone(&shared), Follower::new());
+        let of_guests = host.clone();
         let duty = move |status: &TableStatus, driver: &mut Driver<Box<dyn TablePort>>| {
             of_table.looks.fetch_add(1, Ordering::Relaxed);
             // A full queue means that the run doesn't take them: the angles of its samples then become
             // too old, which is noticed.
             let _ = producer.push(*status);
-            if of_table.follows.load(Ordering::Acquire) {
-                let target = unpacked(of_table.target.load(Ordering::Acquire));
+            let follows = of_table.follows.load(Ordering::Acquire);
+            let target = follows.then(|| unpacked(of_table.target.load(Ordering::Acquire)));
+            of_guests.look(status, target);
+            if let Some(target) = target {
                 if follower.command(driver, &GimbalCommand { target })? {
                     of_table.commands.fetch_add(1, Ordering::Relaxed);
                 }
@@ -160,9 +167,10 @@ impl Following {
                 });
             }
         }
+        others(&host, plan, &stop)?;
         // Looks from the way to zero would leave no room for the next ones.
         while looks.pop().is_ok() {}
-        Ok(Self { supervisor, stop, shared, looks, track: Track::new(), _button: button })
+        Ok(Self { supervisor, stop, shared, looks, track: Track::new(), host, _button: button })
     }
 
     /// Stores the set point of the core.
@@ -202,6 +210,29 @@ impl Following {
     /// Stops the table at once, and for good.
     pub fn trip(&self, why: &str) {
         self.stop.trip(why);
+        self.host.stopped(why);
+    }
+
+    /// Other runs at the table.
+    #[must_use]
+    pub fn host(&self) -> &TableHost {
+        &self.host
+    }
+
+    /// Waits, while the table rests at its last set point, until the other runs have ended.
+    ///
+    /// # Errors
+    /// If one of them still goes on after `within`, or the table was stopped.
+    pub fn wait_for_others(&self, within: Duration) -> Result<(), Error> {
+        let until = Instant::now() + within;
+        while self.host.has_open() {
+            self.stop.check()?;
+            if Instant::now() > until {
+                return Err(Error::Unended { within });
+            }
+            std::thread::sleep(WAIT);
+        }
+        Ok(())
     }
 
     /// Counts of the communication so far.
@@ -218,8 +249,31 @@ impl Following {
     /// # Errors
     /// If the table doesn't come to rest: by then every stop command was sent.
     pub fn finish(self) -> Result<(), Error> {
+        match self.stopped() {
+            Some(why) => self.host.stopped(&why),
+            None => self.host.end(),
+        }
         self.supervisor.finish()
     }
+}
+
+/// Waits at zero for the other runs, and lets all begin.
+fn others(host: &TableHost, plan: &TablePlan, stop: &EmergencyStop) -> Result<(), Error> {
+    let until = Instant::now() + plan.start;
+    while !host.is_complete() {
+        stop.check()?;
+        if Instant::now() > until {
+            return Err(Error::Alone {
+                port: plan.port.clone(),
+                found: host.present(),
+                expected: host.units(),
+                within: plan.start,
+            });
+        }
+        std::thread::sleep(WAIT);
+    }
+    host.begin();
+    Ok(())
 }
 
 /// Waits until both axes have rested for a while; returns their status then.

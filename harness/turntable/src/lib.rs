@@ -18,6 +18,8 @@
 //! - the watchdog of the controller, if it has one and is told to use it, stops a table that receives
 //!   nothing, when the line is cut or the computer fails.
 //!
+//! Several runs may share a table: one drives it ([`TableHost`]), the others get its angles ([`TableGuest`]).
+//!
 //! None of this replaces the hardware emergency stop button.
 
 mod button;
@@ -30,6 +32,7 @@ mod following;
 mod guard;
 mod limits;
 mod port;
+mod shared;
 pub mod simulate;
 mod stop;
 mod supervisor;
@@ -46,6 +49,7 @@ pub use following::{Following, TablePlan, Told, packed, unpacked};
 pub use guard::{FAREWELL, Guard, guard, run_guard};
 pub use limits::{AxisLimits, TableLimits};
 pub use port::{TablePort, check_port, open};
+pub use shared::{GuestEnd, TableGuest, TableHost};
 pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
 pub use supervisor::Supervisor;
 pub use table::{AxisStatus, TableAxis, TableStatus, Turntable};

@@ -17,6 +17,7 @@ fn plan(port: &str) -> TablePlan {
         home: true,
         start: Duration::from_secs(60),
         tolerance_rad: degrees(0.001),
+        units: 1,
     }
 }
 

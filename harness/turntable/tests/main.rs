@@ -10,5 +10,6 @@ mod following;
 mod guard;
 mod panic;
 mod set_points;
+mod shared;
 mod stop;
 mod track;

@@ -82,7 +82,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    fn new(table: Arc<SimulatedServer>) -> Self {
+    pub fn new(table: Arc<SimulatedServer>) -> Self {
         let line = Pty::open("").unwrap();
         let uri = format!("serial:{}?baud=921600", line.name());
         let (silent, ends) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
@@ -147,6 +147,11 @@ pub struct Bench {
 impl Bench {
     /// Makes two stops, the second at a roll of `roll_deg`, with more keys of `[turntable.drive]`.
     pub fn new(stage: &Stage, roll_deg: u32, drive: &str) -> Self {
+        Self::under(&stage.instrument, &stage.port, roll_deg, drive)
+    }
+
+    /// The same with an instrument and the port of its table.
+    pub fn under(instrument: &Instrument, port: &str, roll_deg: u32, drive: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let scenario = folder.path().join("s.toml");
         // 10°/s, a second to get there, and two dwells.
@@ -157,8 +162,8 @@ impl Bench {
              [source]\nuri = {:?}\n[source.live]\nsilence = \"1 s\"\n\
              [turntable.drive]\nport = {:?}\nazimuth = [\"-5 deg\", \"5 deg\"]\n\
              roll = [\"-5 deg\", \"{} deg\"]\noldest = \"500 ms\"\n{drive}",
-            stage.instrument.uri,
-            stage.port,
+            instrument.uri,
+            port,
             roll_deg + 5,
         );
         std::fs::write(&scenario, text).unwrap();

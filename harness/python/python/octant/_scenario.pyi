@@ -2772,8 +2772,9 @@ class TurntableDrawn(Section):
 
 class TurntableDrive(Section):
     """A real table that the core's set points turn, under a real instrument. It can hurt people: read
-    docs/turntable.md first. Takes a table with port, dialect, azimuth, roll, home, start, tolerance, look,
-    oldest, reply, guard, watchdog. Left out: no table is turned: the gimbals are those of the source."""
+    docs/turntable.md first. Takes a table with port, dialect, driver, units, azimuth, roll, home, start,
+    tolerance, look, oldest, reply, guard, watchdog. Left out: no table is turned: the gimbals are those of
+    the source."""
 
     azimuth: Sequence[str]
     """Least and greatest angle to which azimuth may turn. How fast both may turn is turntable.rate and
@@ -2781,6 +2782,8 @@ class TurntableDrive(Section):
     dialect: str
     """What the controller speaks: aerotech-ensemble, or a file with a table of patterns. Takes a text in quotes.
     Default: "aerotech-ensemble"."""
+    driver: Literal["this run", "another run"]
+    """Which run drives the table. Takes one of "this run", "another run". Default: "this run"."""
     guard: str
     """Silence of the program after which a process of its own stops the table. 0 s: there is none. Takes a time
     such as "12 h". Default: 1 s where the system has guards, 0 s elsewhere."""
@@ -2805,6 +2808,9 @@ class TurntableDrive(Section):
     tolerance: str
     """How far from zero a gimbal may rest at the start. Takes an angle such as "40 arcsec". Default: "36
     arcsec"."""
+    units: int
+    """Number of runs on the table, this one included: all begin together. Takes a whole number from 1 to 64.
+    Default: 1."""
     watchdog: str
     """Silence after which the controller stops the table by itself. 0 s: it isn't told to. Takes a time such as
     "12 h". Default: "0 s"."""
@@ -2826,9 +2832,9 @@ class Turntable(Section):
     @property
     def drive(self) -> TurntableDrive:
         """A real table that the core's set points turn, under a real instrument. It can hurt people: read
-        docs/turntable.md first. Takes a table with port, dialect, azimuth, roll, home, start, tolerance,
-        look, oldest, reply, guard, watchdog. Left out: no table is turned: the gimbals are those of the
-        source."""
+        docs/turntable.md first. Takes a table with port, dialect, driver, units, azimuth, roll, home, start,
+        tolerance, look, oldest, reply, guard, watchdog. Left out: no table is turned: the gimbals are those
+        of the source."""
     @drive.setter
     def drive(self, value: TurntableDrive | Mapping[str, Any]) -> None: ...
     eccentricity_azimuth: Sequence[str]

@@ -79,10 +79,25 @@ pub struct BenchTable {
     pub port: String,
     /// Limits of the roll.
     pub roll: BenchAxis,
+    /// Other runs at the table, where there are some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared: Option<BenchShared>,
     /// Reason of an emergency stop.
     pub stopped: Option<String>,
     /// Time after which the controller stops the table, s.
     pub watchdog_s: Option<f64>,
+}
+
+/// A table under several units.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BenchShared {
+    /// True if another run drove the table.
+    pub driven_by_another: bool,
+    /// How the others ended that got the table's angles from this run, in the order in which they came.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<String>,
+    /// Number of runs, this one included.
+    pub units: usize,
 }
 
 /// Limits of an axis.

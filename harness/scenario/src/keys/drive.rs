@@ -1,7 +1,8 @@
 //! Keys of a real table.
 
 use super::definition::Bounds;
-use super::table::{At, Of, boolean, keys, si, si_array, text, time};
+use super::table::{At, Of, boolean, choice, integer, keys, si, si_array, text, time};
+use crate::model::TableDriver;
 use crate::quantity::UnitDimension;
 
 const fn wait() -> Of<f64> {
@@ -19,6 +20,12 @@ keys! {
             "Port of its controller: tcp:HOST:PORT or serial:DEVICE?baud=RATE.";
         dialect: String = text(), "aerotech-ensemble",
             "What the controller speaks: aerotech-ensemble, or a file with a table of patterns.";
+        driver: TableDriver = choice! {
+            "this run" => TableDriver::ThisRun, "This run drives the table.";
+            "another run" => TableDriver::AnotherRun, "Another run on this host drives it: this one gets its angles, and commands nothing.";
+        }, "this run", "Which run drives the table.";
+        units: u64 = integer(1, 64), "1",
+            "Number of runs on the table, this one included: all begin together.";
         azimuth: At<[f64; 2]> = si_array(UnitDimension::ANGLE), required,
             "Least and greatest angle to which azimuth may turn. How fast both may turn is turntable.rate and turntable.acceleration.";
         roll: At<[f64; 2]> = si_array(UnitDimension::ANGLE), required,

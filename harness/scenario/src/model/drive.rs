@@ -5,11 +5,24 @@ use octant_turntable::{Dialect, DriverSettings, Error, TablePlan};
 use std::path::Path;
 use std::time::Duration;
 
+/// Run that drives a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableDriver {
+    /// This one.
+    ThisRun,
+    /// Another one on the same host, whose angles this one gets.
+    AnotherRun,
+}
+
 /// A real table that is moved by the core's set points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// Port.
     pub port: String,
+    /// Run that drives it.
+    pub driver: TableDriver,
+    /// Number of runs on it; of importance where this one drives.
+    pub units: usize,
     /// Dialect, by its built-in name or its file: see [`Drive::plan`].
     pub dialect: FileName,
     /// Limits, time limits and watchdog.
@@ -50,6 +63,7 @@ impl Drive {
             home: self.home,
             start: self.start,
             tolerance_rad: self.tolerance_rad,
+            units: self.units,
         })
     }
 }

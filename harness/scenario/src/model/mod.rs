@@ -12,7 +12,7 @@ mod procedure;
 mod scenario;
 mod source;
 
-pub use drive::Drive;
+pub use drive::{Drive, TableDriver};
 pub use endpoint::{EndpointSpec, Live};
 pub use fault::Fault;
 pub use file_name::{FileName, FileNameError};

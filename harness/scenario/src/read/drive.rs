@@ -39,6 +39,8 @@ pub(super) fn drive(keys: &DriveKeys, moves: &TurntableConfig) -> Result<Drive, 
     };
     let drive = Drive {
         port: keys.port.to_string(),
+        driver: keys.driver,
+        units: keys.units as usize,
         dialect: FileName(keys.dialect.clone()),
         settings,
         look: time(keys.look),

@@ -193,9 +193,14 @@ impl Source for LiveSource {
         broken: Option<&str>,
     ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let table = self.table.take();
+        // A run that has all its samples leaves the table to the others at it; one that ends early doesn't.
+        let is_whole = broken.is_none() && self.delivered == self.total;
+        let waited =
+            table.as_ref().filter(|_| is_whole).and_then(|table| table.wait_for_others().err());
         let told = table.as_ref().map(Table::told);
         // The table is stopped before anything else is done.
         let ended = table.and_then(|table| table.end(broken).err());
+        let ended = waited.or(ended);
         let counters = self.sampler.counters();
         let protocol = self.instrument.speaks.told();
         let (instruments_clock, clock) = self.clock.told().unzip();

@@ -2,21 +2,91 @@
 
 use crate::SourceError;
 use octant_base::number::counted;
-use octant_recorder::event::{BenchAngles, BenchAxis, BenchTable};
+use octant_recorder::event::{BenchAngles, BenchAxis, BenchShared, BenchTable};
 use octant_sample::{GimbalAngles, GimbalCommand};
-use octant_scenario::Drive;
-use octant_turntable::{Following, TableAxis};
+use octant_scenario::{Drive, TableDriver};
+use octant_turntable::{Following, GuestEnd, TableAxis, TableGuest, TrackPoint};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Table that follows the core's gimbal command.
+/// Table under the instrument.
 #[derive(Debug)]
 pub(super) struct Table {
-    following: Following,
+    turns: Turns,
     drive: Drive,
     /// Name of the table's dialect.
     language: String,
     ages: Ages,
+}
+
+/// How the table is turned.
+#[derive(Debug)]
+enum Turns {
+    /// It follows the set point of this run's core.
+    Driven(Box<Following>),
+    /// Another run drives it.
+    Elsewhere(TableGuest),
+}
+
+impl Turns {
+    fn at(&self, axis: TableAxis, when: Instant) -> Option<TrackPoint> {
+        match self {
+            Self::Driven(following) => following.at(axis, when),
+            Self::Elsewhere(guest) => guest.at(axis, when),
+        }
+    }
+
+    fn take_looks(&mut self) {
+        match self {
+            Self::Driven(following) => following.take_looks(),
+            Self::Elsewhere(guest) => guest.take_looks(),
+        }
+    }
+
+    fn is_stopped(&self) -> bool {
+        match self {
+            Self::Driven(following) => following.is_stopped(),
+            Self::Elsewhere(guest) => guest.is_stopped(),
+        }
+    }
+
+    fn stopped(&self) -> Option<String> {
+        match self {
+            Self::Driven(following) => following.stopped(),
+            Self::Elsewhere(guest) => guest.stopped(),
+        }
+    }
+
+    fn told(&self) -> octant_turntable::Told {
+        match self {
+            Self::Driven(following) => following.told(),
+            Self::Elsewhere(guest) => guest.told(),
+        }
+    }
+
+    /// Other runs at the table.
+    fn shared(&self) -> Option<BenchShared> {
+        let said = |end: &GuestEnd| match end {
+            GuestEnd::Open => "still went on".to_owned(),
+            GuestEnd::Done => "had all its samples".to_owned(),
+            GuestEnd::Left(why) => format!("left: {why}"),
+        };
+        match self {
+            Self::Driven(following) => {
+                let host = following.host();
+                (host.units() > 1).then(|| BenchShared {
+                    driven_by_another: false,
+                    others: host.ends().iter().map(said).collect(),
+                    units: host.units(),
+                })
+            }
+            Self::Elsewhere(guest) => Some(BenchShared {
+                driven_by_another: true,
+                others: Vec::new(),
+                units: guest.units(),
+            }),
+        }
+    }
 }
 
 /// Ages of the angles that samples were given.
@@ -39,8 +109,14 @@ pub(super) struct Told {
 }
 
 impl Table {
-    /// Takes over the table and moves it to the start position of a run.
+    /// Takes over the table and moves it to the start position of a run; or waits for the run that does so.
     pub(super) fn start(drive: &Drive, folder: &Path) -> Result<Self, SourceError> {
+        let made =
+            |turns, language| Self { turns, drive: drive.clone(), language, ages: Ages::default() };
+        if drive.driver == TableDriver::AnotherRun {
+            let guest = TableGuest::join(&drive.port, drive.start).map_err(SourceError::Table)?;
+            return Ok(made(Turns::Elsewhere(guest), "driven by another run".to_owned()));
+        }
         let plan = drive.plan(folder).map_err(SourceError::Table)?;
         let program = std::env::current_exe().map_err(|error| {
             let reason = format!("failed to find this program: {error}");
@@ -50,7 +126,7 @@ impl Table {
         guard.args(["turntable", "guard"]);
         let following = Following::start(&plan, &mut guard).map_err(SourceError::Table)?;
         let language = plan.dialect.name().to_owned();
-        Ok(Self { following, drive: drive.clone(), language, ages: Ages::default() })
+        Ok(made(Turns::Driven(Box::new(following)), language))
     }
 
     fn stopped(&self, reason: String) -> SourceError {
@@ -59,26 +135,28 @@ impl Table {
 
     /// Fails if the table was stopped.
     pub(super) fn check(&self) -> Result<(), SourceError> {
-        if !self.following.is_stopped() {
+        if !self.turns.is_stopped() {
             return Ok(());
         }
-        Err(self.stopped(
-            self.following.stopped().unwrap_or_else(|| "the table was stopped".to_owned()),
-        ))
+        Err(self
+            .stopped(self.turns.stopped().unwrap_or_else(|| "the table was stopped".to_owned())))
     }
 
     /// Commands the table to the core's gimbal target.
     pub(super) fn command(&mut self, command: &GimbalCommand) -> Result<(), SourceError> {
         self.check()?;
-        self.following.command(command);
+        match &mut self.turns {
+            Turns::Driven(following) => following.command(command),
+            Turns::Elsewhere(guest) => guest.command(command),
+        }
         Ok(())
     }
 
     /// Returns the gimbal angles at a time, if a reading of the table is near enough.
     pub(super) fn angles(&mut self, when: Instant) -> Option<GimbalAngles> {
-        self.following.take_looks();
+        self.turns.take_looks();
         let place = |axis| {
-            let place = self.following.at(axis, when)?;
+            let place = self.turns.at(axis, when)?;
             (place.age <= self.drive.oldest).then_some(place)
         };
         let ages = &mut self.ages;
@@ -107,11 +185,11 @@ impl Table {
                 rate_degps: limits.rate_radps.to_degrees(),
             }
         };
-        let went = self.following.told();
+        let went = self.turns.told();
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let ms = |time: Duration| time.as_secs_f64() * 1e3;
         let mean_ms = ms(ages.sum) / ages.given.max(1) as f64;
-        let stopped = self.following.stopped();
+        let stopped = self.turns.stopped();
         let figures = BenchTable {
             angles: BenchAngles {
                 age_max_ms: ms(ages.largest),
@@ -127,6 +205,7 @@ impl Table {
             looks: went.looks,
             port: drive.port.clone(),
             roll: axis(TableAxis::Roll),
+            shared: self.turns.shared(),
             stopped: stopped.clone(),
             watchdog_s: seconds(drive.settings.watchdog),
         };
@@ -135,7 +214,12 @@ impl Table {
             let (least, most) = (limits.least_rad.to_degrees(), limits.most_rad.to_degrees());
             format!("{axis} {least:.4} to {most:.4}°")
         };
-        let how = stopped.map_or_else(String::new, |why| format!("; stopped: {why}"));
+        let mut how = stopped.map_or_else(String::new, |why| format!("; stopped: {why}"));
+        if let Some(shared) = figures.shared.as_ref().filter(|shared| !shared.driven_by_another) {
+            let others: Vec<String> =
+                (2..).zip(&shared.others).map(|(unit, end)| format!("unit {unit} {end}")).collect();
+            how += &format!("; {} units: {}", shared.units, others.join(", "));
+        }
         let angles = if ages.given + ages.without == 0 {
             "measured by the instrument".to_owned()
         } else {
@@ -162,12 +246,35 @@ impl Table {
         }
     }
 
+    /// Waits for the other runs at a table that this one drives.
+    pub(super) fn wait_for_others(&self) -> Result<(), SourceError> {
+        match &self.turns {
+            Turns::Driven(following) => {
+                let waited = following.wait_for_others(self.drive.start);
+                waited.map_err(|error| self.stopped(error.to_string()))
+            }
+            Turns::Elsewhere(_) => Ok(()),
+        }
+    }
+
     /// Ends the run: the table is braked, immediately where the run was aborted.
     pub(super) fn end(self, broken: Option<&str>) -> Result<(), SourceError> {
+        let port = self.drive.port;
+        let following = match self.turns {
+            Turns::Driven(following) => following,
+            Turns::Elsewhere(guest) => {
+                // What ended with the last sample is reported too.
+                let stopped = if broken.is_none() { guest.stopped() } else { None };
+                guest.leave(broken.or(stopped.as_deref()));
+                return match stopped {
+                    Some(reason) => Err(SourceError::TableStopped { port, reason }),
+                    None => Ok(()),
+                };
+            }
+        };
         if let Some(why) = broken {
-            self.following.trip(why);
+            following.trip(why);
         }
-        let (port, following) = (self.drive.port, self.following);
         // A stop that came with the last sample is reported too.
         let stopped = if broken.is_none() { following.stopped() } else { None };
         let ended = following.finish().map_err(|error| error.to_string());
