@@ -71,6 +71,8 @@ fn two_units_on_one_table_have_its_angles_and_each_its_verdict() {
     assert_eq!((&first["shared"]["units"], &second["shared"]["units"]), (&2.into(), &2.into()));
     assert_eq!(second["shared"]["driven_by_another"], true, "{second}");
     assert_eq!(second["commands"], 0);
+    let report = std::fs::read_to_string(host.out().join("report.html")).unwrap();
+    assert!(report.contains("2 units: unit 2 had all its samples"));
     assert!(second["looks"].as_u64().unwrap() > 200);
 }
 
@@ -153,6 +155,14 @@ fn who_does_not_come_is_told() {
     let (status, said) = alone.run(&[]).wait();
     assert_ne!(status, Some(0));
     assert!(said.contains("no run on this host drives it within 1s"), "{said}");
+    // Who waits can be interrupted.
+    let waits = pair.guest(20);
+    let waiting = waits.run(&[]);
+    wait_for("the run", || waits.out().is_dir());
+    waiting.signal("-INT");
+    let (status, said) = waiting.wait();
+    assert_ne!(status, Some(0));
+    assert!(said.contains("interrupted while it waited for another run at the table"), "{said}");
     // One that drives its table for itself takes nobody.
     let host = Bench::new(&pair.stage, 20, "");
     let first = host.run(&[]);

@@ -171,6 +171,9 @@ pub enum Error {
         /// Time waited.
         within: Duration,
     },
+    /// The program was interrupted before everybody was there.
+    #[error("interrupted while it waited for another run at the table")]
+    Interrupted,
     /// Another run at the table doesn't end.
     #[error("another run at the table still goes on {within:?} after the one that drives it")]
     Unended {

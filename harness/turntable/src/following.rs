@@ -219,13 +219,13 @@ impl Following {
         &self.host
     }
 
-    /// Waits, while the table rests at its last set point, until the other runs have ended.
+    /// Waits, while the table rests at its last set point, until the other runs have ended or the program is interrupted.
     ///
     /// # Errors
     /// If one of them still goes on after `within`, or the table was stopped.
     pub fn wait_for_others(&self, within: Duration) -> Result<(), Error> {
         let until = Instant::now() + within;
-        while self.host.has_open() {
+        while self.host.has_open() && !octant_base::interrupt::seen() {
             self.stop.check()?;
             if Instant::now() > until {
                 return Err(Error::Unended { within });
@@ -262,6 +262,9 @@ fn others(host: &TableHost, plan: &TablePlan, stop: &EmergencyStop) -> Result<()
     let until = Instant::now() + plan.start;
     while !host.is_complete() {
         stop.check()?;
+        if octant_base::interrupt::seen() {
+            return Err(Error::Interrupted);
+        }
         if Instant::now() > until {
             return Err(Error::Alone {
                 port: plan.port.clone(),

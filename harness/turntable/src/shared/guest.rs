@@ -71,6 +71,7 @@ impl TableGuest {
         let stream = loop {
             match knock(port) {
                 Some(stream) => break stream,
+                None if octant_base::interrupt::seen() => return Err(Error::Interrupted),
                 None if Instant::now() > until => {
                     return Err(failed(format!("no run on this host drives it within {within:?}")));
                 }
@@ -93,6 +94,9 @@ impl TableGuest {
                 }
                 Some(HostWord::Refused(why)) => return Err(failed(why)),
                 Some(HostWord::Go) => break,
+                Some(HostWord::Look(_)) if octant_base::interrupt::seen() => {
+                    return Err(Error::Interrupted);
+                }
                 Some(HostWord::Look(_)) => {}
                 Some(HostWord::Stopped(why)) => {
                     return Err(failed(format!("the run that drives it stopped it: {why}")));
@@ -100,6 +104,7 @@ impl TableGuest {
                 Some(HostWord::End) => {
                     return Err(failed("the run that drives it ended".to_owned()));
                 }
+                None if octant_base::interrupt::seen() => return Err(Error::Interrupted),
                 None if Instant::now() > until => {
                     return Err(failed(format!(
                         "the run that drives it doesn't begin within {within:?}"
