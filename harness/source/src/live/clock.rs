@@ -1,7 +1,10 @@
 //! Relates the instrument's clock to the host's.
 
+use super::arrival::Arrival;
+use super::dates::Dates;
+use super::pulses::Pulses;
 use octant_instruments::align::ClockAlignment;
-use octant_recorder::event::BenchClock;
+use octant_recorder::event::{BenchClock, BenchTime};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Host time at which the alignment starts, ns: an hour above zero, so that slightly earlier events
@@ -14,33 +17,75 @@ pub(super) struct Clock {
     base: Instant,
     utc: SystemTime,
     alignment: ClockAlignment,
+    pulses: Option<Pulses>,
+    dates: Dates,
 }
 
 impl Clock {
-    pub(super) fn new() -> Self {
-        Self { base: Instant::now(), utc: SystemTime::now(), alignment: ClockAlignment::new() }
+    pub(super) fn new(pulses: Option<Pulses>) -> Self {
+        Self {
+            base: Instant::now(),
+            utc: SystemTime::now(),
+            alignment: ClockAlignment::new(),
+            pulses,
+            dates: Dates::default(),
+        }
     }
 
-    /// Returns when the interval of a reading ended: from its stamp by the estimated clock
-    /// relation, with the least delay of the line; without a stamp, the time of arrival.
-    pub(super) fn when(&mut self, stamp_ns: Option<u64>, came: Instant) -> Instant {
-        let Some(stamp_ns) = stamp_ns else { return came };
-        let since = came.saturating_duration_since(self.base).as_nanos();
-        self.alignment
-            .add(stamp_ns, BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX)));
-        let Some(estimate) = self.alignment.estimate() else { return came };
-        let since_ns = estimate.host_ns(stamp_ns) - BASE_NS as f64;
+    /// Returns when the interval of a reading ended: from its stamp by the clock relation of pulses,
+    /// or by that of arrivals, with the least delay of the line; without a stamp, the time of arrival.
+    /// `None`: there are too few pulses yet.
+    pub(super) fn when(
+        &mut self,
+        stamp_ns: Option<u64>,
+        came: Arrival,
+    ) -> Result<Option<Instant>, String> {
+        self.dates.came(came);
+        let Some(stamp_ns) = stamp_ns else {
+            return match &self.pulses {
+                None => Ok(Some(came.at)),
+                Some(_) => Err("found a reading without a stamp, expected stamps, whose whole seconds \
+                     the pulses of source.live.pps mark"
+                    .to_owned()),
+            };
+        };
+        let base = self.base;
+        let host_ns = |at: Instant| {
+            let since = at.saturating_duration_since(base).as_nanos();
+            BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX))
+        };
+        self.alignment.add(stamp_ns, host_ns(came.at));
+        let Some(arrivals) = self.alignment.estimate() else { return Ok(Some(came.at)) };
+        let Some(pulses) = &mut self.pulses else {
+            // A reading can't be made after it arrived.
+            let when = self.instant(arrivals.host_ns(stamp_ns));
+            return Ok(Some(when.map_or(came.at, |when| when.min(came.at))));
+        };
+        let Some(line) = pulses.take(&arrivals, came.at, host_ns)? else { return Ok(None) };
+        let at_ns = line.host_ns(stamp_ns);
+        let within_ns = line.within_ns(stamp_ns) + pulses.within().as_secs_f64() * 1e9;
+        self.dates.dated(host_ns(came.at) as f64 - at_ns, within_ns);
+        Ok(Some(self.instant(at_ns).unwrap_or(came.at)))
+    }
+
+    /// Instant of a host time.
+    fn instant(&self, host_ns: f64) -> Option<Instant> {
+        let since_ns = host_ns - BASE_NS as f64;
         if !since_ns.is_finite() {
-            return came;
+            return None;
         }
         let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
-        let when = if since_ns < 0.0 {
-            self.base.checked_sub(since)
-        } else {
-            self.base.checked_add(since)
-        };
-        // A reading can't be made after it arrived.
-        when.map_or(came, |when| when.min(came))
+        if since_ns < 0.0 { self.base.checked_sub(since) } else { self.base.checked_add(since) }
+    }
+
+    /// Describes origin and uncertainty of the times in words and figures, at a turning rate and with
+    /// looks of the table within so much.
+    pub(super) fn dated(
+        &self,
+        rate_degps: Option<f64>,
+        looks_ms: Option<f64>,
+    ) -> (String, BenchTime) {
+        self.dates.told(self.pulses.as_ref().map(Pulses::told), rate_degps, looks_ms)
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.
@@ -82,12 +127,13 @@ mod tests {
     /// the others come 2 ms later; each must be dated as if it had come without delay.
     #[test]
     fn a_reading_that_came_late_was_made_when_it_was_made() {
-        let mut clock = Clock::new();
+        let mut clock = Clock::new(None);
         let mut worst = Duration::ZERO;
         for number in 0..2000u64 {
             let true_at = clock.base + Duration::from_nanos(7_000_000 + number * 5_000_500);
             let late = Duration::from_millis(if number % 4 == 0 { 0 } else { 2 });
-            let when = clock.when(Some(90_000 + number * 5_000_000), true_at + late);
+            let came = Arrival::read(true_at + late);
+            let when = clock.when(Some(90_000 + number * 5_000_000), came).unwrap().unwrap();
             if number > 100 {
                 worst = worst.max(when.max(true_at) - when.min(true_at));
             }
@@ -102,9 +148,9 @@ mod tests {
 
     #[test]
     fn without_a_stamp_it_is_when_it_came() {
-        let mut clock = Clock::new();
+        let mut clock = Clock::new(None);
         let came = clock.base + Duration::from_millis(3);
-        assert_eq!(clock.when(None, came), came);
+        assert_eq!(clock.when(None, Arrival::read(came)), Ok(Some(came)));
         assert!(clock.told().is_none());
     }
 }
