@@ -59,8 +59,8 @@ fn arrivals_are_off_by_the_delay_and_pulses_within_their_jitter() {
         let (mut arrivals, mut pulses) = (ClockAlignment::new(), PulseAlignment::new());
         for second in 0..300 {
             unit.reads(second, &mut arrivals);
-            let found = pulses
-                .add(unit.pulse_ns(second, jitter_ns(second)), &arrivals.estimate().unwrap());
+            let found =
+                pulses.add(unit.pulse_ns(second, jitter_ns(second)), &arrivals.estimate().unwrap());
             assert_eq!(found, Ok(PulseUse::Taken));
             assert_eq!(pulses.estimate().is_some(), second + 1 >= PULSES_LEAST as u64);
         }
@@ -124,7 +124,9 @@ fn the_bound_grows_while_no_pulse_comes() {
     let (mut arrivals, mut pulses) = (ClockAlignment::new(), PulseAlignment::new());
     for second in 0..11 {
         unit.reads(second, &mut arrivals);
-        pulses.add(unit.pulse_ns(second, jitter_ns(second)), &arrivals.estimate().unwrap()).unwrap();
+        pulses
+            .add(unit.pulse_ns(second, jitter_ns(second)), &arrivals.estimate().unwrap())
+            .unwrap();
     }
     let estimate = pulses.estimate().unwrap();
     // A line of 11 pulses over 10 s, 20 s after its end: (1 + 4 / 9) · (1 + 2 · 20 / 10).

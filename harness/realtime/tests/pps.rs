@@ -35,9 +35,18 @@ fn line(realtime_ns: i128, sequence: u32) -> String {
 fn a_line_of_the_kernel_is_read() {
     let pulse = StampedPulse::parse("1287150563.294983612#2394\n").unwrap();
     assert_eq!(pulse, StampedPulse { realtime_ns: 1_287_150_563_294_983_612, sequence: 2394 });
-    for wrong in ["", "#", "1.5#3", "1.000000000#", "1.000000000", "-1.000000000#4", "1.+00000000#4",
-        "1.000000000#4294967296", "1.000000000#5 ", "99999999999999999999.000000000#1"]
-    {
+    for wrong in [
+        "",
+        "#",
+        "1.5#3",
+        "1.000000000#",
+        "1.000000000",
+        "-1.000000000#4",
+        "1.+00000000#4",
+        "1.000000000#4294967296",
+        "1.000000000#5 ",
+        "99999999999999999999.000000000#1",
+    ] {
         assert_eq!(StampedPulse::parse(wrong), None, "{wrong}");
     }
 }
@@ -48,7 +57,10 @@ fn a_file_that_is_none_is_refused() {
     assert!(error.starts_with("/sys/class/pps/pps9876/clear: "), "{error}");
     let file = PulseFile::new("garbage", "12:30\n");
     let error = PulseReader::open(file.0.to_str().unwrap(), PulseEdge::Assert).unwrap_err();
-    assert!(error.ends_with("found \"12:30\\n\", expected SECONDS.NANOSECONDS#SEQUENCE"), "{error}");
+    assert!(
+        error.ends_with("found \"12:30\\n\", expected SECONDS.NANOSECONDS#SEQUENCE"),
+        "{error}"
+    );
 }
 
 /// A thread rewrites the file; a reader may find it empty in between.

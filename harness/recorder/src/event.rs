@@ -8,7 +8,10 @@ mod link;
 mod pacing;
 mod power;
 
-pub use bench::{BenchAngles, BenchAxis, BenchClock, BenchDelay, BenchPulses, BenchReadings, BenchRecord, BenchTable, BenchTime};
+pub use bench::{
+    BenchAngles, BenchAxis, BenchClock, BenchDelay, BenchPulses, BenchReadings, BenchRecord,
+    BenchTable, BenchTime,
+};
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;
 pub use pacing::{DeviceClock, LatenessOverRun, LatenessQuantiles, PacingRecord};

@@ -2,11 +2,11 @@
 
 use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd};
 use super::secret::secret_in;
+use super::udp_stamps::ArrivalStamps;
 use super::{Bytes, PortError};
 use crate::uri::Udp;
 use std::io::ErrorKind;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket};
-use super::udp_stamps::ArrivalStamps;
 use std::time::{Duration, SystemTime};
 
 /// A UDP socket that listens to one peer at a time.

@@ -8,9 +8,7 @@ pub(super) use self::other::ArrivalStamps;
 #[cfg(target_os = "linux")]
 mod linux {
     use nix::sys::socket::sockopt::ReceiveTimestampns;
-    use nix::sys::socket::{
-        ControlMessageOwned, MsgFlags, SockaddrStorage, recvmsg, setsockopt,
-    };
+    use nix::sys::socket::{ControlMessageOwned, MsgFlags, SockaddrStorage, recvmsg, setsockopt};
     use nix::sys::time::TimeSpec;
     use std::io::{Error, IoSliceMut, Result};
     use std::net::{SocketAddr, UdpSocket};

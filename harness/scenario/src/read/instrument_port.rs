@@ -4,7 +4,9 @@
 use crate::choices::DESCRIBED;
 use crate::error::Problem;
 use crate::keys::{At, SourceKeys};
-use crate::model::{DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks, UnitPulses};
+use crate::model::{
+    DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks, UnitPulses,
+};
 use octant_base::names::suggestion;
 use octant_instruments::description::READY;
 use octant_instruments::novatel::CountScale;

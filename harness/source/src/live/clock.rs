@@ -44,9 +44,11 @@ impl Clock {
         let Some(stamp_ns) = stamp_ns else {
             return match &self.pulses {
                 None => Ok(Some(came.at)),
-                Some(_) => Err("found a reading without a stamp, expected stamps, whose whole seconds \
+                Some(_) => {
+                    Err("found a reading without a stamp, expected stamps, whose whole seconds \
                      the pulses of source.live.pps mark"
-                    .to_owned()),
+                        .to_owned())
+                }
             };
         };
         let base = self.base;
@@ -122,6 +124,8 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use octant_realtime::host_clocks::HostClocks;
+    use octant_scenario::UnitPulses;
 
     /// The clock of this instrument is slow by 100 ppm. One reading in four comes without delay,
     /// the others come 2 ms later; each must be dated as if it had come without delay.
@@ -144,6 +148,58 @@ mod tests {
         assert!((figures.late_mean_us - 1500.0).abs() < 1.0, "{figures:?}");
         assert_eq!(figures.first_stamp_ns, 90_000);
         assert!(words.starts_with("host faster by +100.0"), "{words}");
+    }
+
+    /// A unit that is slow by 50 ppm, on a line that delays each reading by 23 ms, with pulses in a file
+    /// of the kernel's form: by arrivals its readings would be dated 23 ms late.
+    #[test]
+    fn by_pulses_a_reading_was_made_without_the_delay_of_the_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("assert");
+        let pulse = |at: Instant, sequence: u64| {
+            let clocks = HostClocks::read();
+            let ns = clocks.realtime_ns - (clocks.monotonic - at).as_nanos() as i128;
+            let line = format!("{}.{:09}#{sequence}\n", ns / 1_000_000_000, ns % 1_000_000_000);
+            std::fs::write(file.with_extension("next"), line).unwrap();
+            std::fs::rename(file.with_extension("next"), &file).unwrap();
+        };
+        pulse(Instant::now(), 0);
+        let plan = UnitPulses {
+            device: "assert".to_owned(),
+            at_clear: false,
+            silence_s: 60.0,
+            within_s: 20e-6,
+        };
+        let mut clock = Clock::new(Some(Pulses::open(&plan, folder.path()).unwrap()));
+        let delay = Duration::from_millis(23);
+        let (start, first_ns) = (clock.base, 1_000_100_000_000u64);
+        let made = |number: u64| start + Duration::from_nanos(number * 5_000_250);
+        let (mut dated, mut worst) = (0, Duration::ZERO);
+        for number in 0..1000u64 {
+            let at = made(number);
+            std::thread::sleep((at + delay).saturating_duration_since(Instant::now()));
+            let stamp_ns = first_ns + number * 5_000_000;
+            if stamp_ns.is_multiple_of(1_000_000_000) {
+                pulse(at, number);
+            }
+            if let Some(when) = clock.when(Some(stamp_ns), Arrival::read(at + delay)).unwrap() {
+                dated += 1;
+                worst = worst.max(when.max(at) - when.min(at));
+            }
+        }
+        let (words, figures) = clock.dated(Some(10.0), None);
+        assert!(dated > 200, "{words}");
+        let within_us = figures.within_us.unwrap();
+        assert!(within_us >= 20.0 && worst.as_secs_f64() * 1e6 < within_us, "{worst:?} {words}");
+        let line = figures.line_delay.unwrap();
+        assert!((line.least_ms - 23.0).abs() * 1e3 < within_us, "{words}");
+        assert_eq!((line.early, figures.origin.as_str()), (0, "pulses"));
+        // 36 arcseconds a millisecond.
+        let angle = figures.angle_within_arcsec.unwrap();
+        assert!((angle - 0.036 * within_us).abs() < 1e-9, "{words}");
+        assert!(words.starts_with("by 5 pulses at assert, 0 missing, 0 off"), "{words}");
+        let error = clock.when(None, Arrival::read(Instant::now())).unwrap_err();
+        assert!(error.contains("a reading without a stamp"), "{error}");
     }
 
     #[test]

@@ -112,7 +112,9 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
         (None, _) => String::new(),
         (Some(arcsec), None) => format!(", {arcsec:.1}″ at {rate} °/s"),
         (Some(arcsec), Some(looks_ms)) => {
-            format!(", with the looks at the table within {looks_ms:.1} ms {arcsec:.1}″ at {rate} °/s")
+            format!(
+                ", with the looks at the table within {looks_ms:.1} ms {arcsec:.1}″ at {rate} °/s"
+            )
         }
     };
     let delay = time.line_delay.map_or_else(String::new, |delay| {

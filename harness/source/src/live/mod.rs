@@ -97,10 +97,9 @@ impl LiveSource {
         let feed = Feed::open(instrument, folder)?;
         let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
         let pulses = instrument.pulses.as_ref().map(|pulses| Pulses::open(pulses, folder));
-        let pulses = pulses.transpose().map_err(|reason| SourceError::Gone {
-            uri: instrument.uri.to_string(),
-            reason,
-        })?;
+        let pulses = pulses
+            .transpose()
+            .map_err(|reason| SourceError::Gone { uri: instrument.uri.to_string(), reason })?;
         Ok(Self {
             feed,
             instrument: instrument.clone(),
@@ -278,7 +277,8 @@ pub(crate) mod tests {
     ) -> (LiveSource, UdpSocket) {
         let uri = "udp:127.0.0.1:0".parse().unwrap();
         let speaks = Speaks::Bytes(protocol);
-        let instrument = Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3, pulses: None };
+        let instrument =
+            Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3, pulses: None };
         let source =
             LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
         let address = source.reached_at();
