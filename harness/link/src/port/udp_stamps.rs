@@ -24,7 +24,8 @@ mod linux {
     }
 
     impl ArrivalStamps {
-        /// Switches the stamps of a socket on; `None`: the kernel has none.
+        /// Switches the stamps of a socket on; `None`: the kernel has none. It begins a moment later:
+        /// until then the time is that of the reading.
         pub(in super::super) fn of(socket: &UdpSocket) -> Option<Self> {
             setsockopt(socket, ReceiveTimestampns, &true).ok()?;
             Some(Self { control: nix::cmsg_space!(TimeSpec), arrived: None })
