@@ -176,6 +176,7 @@ impl Manifest {
             [
                 "instrument",
                 "instrument's clock",
+                "samples' times",
                 "turntable",
                 "table's angles",
                 "power of the device",

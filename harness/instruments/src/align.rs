@@ -49,7 +49,8 @@ impl UnitClockEstimate {
     /// Host time of a stamp, ns: the earliest time at which its reading could have arrived.
     #[must_use]
     pub fn host_ns(&self, stamp_ns: u64) -> f64 {
-        let since = stamp_ns as f64 - self.origin_ns as f64;
+        // Stamps since 1980 in ns are no numbers that f64 has: the difference is taken first.
+        let since = (i128::from(stamp_ns) - i128::from(self.origin_ns)) as f64;
         self.offset_ns + since * (1.0 + self.skew.unwrap_or(0.0))
     }
 }
@@ -174,7 +175,7 @@ impl ClockAlignment {
             late_mean_ns,
             late_sigma_ns: libm::sqrt(variance.max(0.0)),
             origin_ns,
-            offset_ns: origin_ns as f64 + first_behind as f64 + behind_ns,
+            offset_ns: (i128::from(origin_ns) + first_behind) as f64 + behind_ns,
             skew,
             span_s: (self.last_ns - origin_ns) as f64 * 1e-9,
             readings: self.readings,

@@ -10,7 +10,8 @@
 //! of the body, counts increments and carries their remainders, and continues sequence and time across
 //! roll-overs.
 //!
-//! [`align`] finds the offset between a unit's clock and the host's, from stamps and arrivals alone.
+//! [`align`] finds the offset between a unit's clock and the host's, from stamps and arrivals alone,
+//! [`pulses`] from pulses at the unit's whole seconds.
 //!
 //! # Axes
 //! A reading is in the axes of the unit, right-handed, as its maker marks them on the housing: a
@@ -42,6 +43,7 @@ pub mod grades;
 pub mod navigation;
 pub mod novatel;
 pub mod own;
+pub mod pulses;
 pub mod rollover;
 pub mod sbg;
 pub mod vectornav;

@@ -16,6 +16,7 @@ mod fuzz_corpus;
 mod manuals;
 mod navigation;
 mod no_allocation;
+mod pulses;
 mod rollover;
 mod round_trip;
 mod sampler;

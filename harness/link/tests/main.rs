@@ -1,6 +1,7 @@
 //! Tests of ports and sessions, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod arrivals;
 mod asking;
 #[cfg(target_os = "linux")]
 mod can;

@@ -18,7 +18,7 @@ struct Pair {
 impl Pair {
     fn new() -> Self {
         let stage = Stage::new();
-        let other = Instrument::new(Arc::clone(&stage.server));
+        let other = Instrument::new(Arc::clone(&stage.server), None);
         Self { stage, other }
     }
 

@@ -65,6 +65,53 @@ fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
     assert!(report.contains("from the nearest look") && report.contains("host faster by"));
 }
 
+/// The line delays each reading by 3 ms: pulses show it, and the angles are those of the samples.
+#[test]
+fn pulses_give_samples_their_time_and_show_the_delay_of_the_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("assert");
+    let stage = Stage::with_pulses(&file);
+    let bench = Bench::new(&stage, 20, "");
+    let pps = format!("source.live.pps={:?}", file.display().to_string());
+    let (status, said) = bench.run(&["--set", &pps]).wait();
+    assert!(matches!(status, Some(0 | 1 | 3)), "{status:?}: {said}");
+    let manifest: Value = bench.json("manifest.json");
+    let time = &manifest["bench"]["time"];
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{time}"));
+    assert_eq!(time["origin"], "pulses", "{time}");
+    assert_eq!(time["arrivals_by_kernel"], 0, "{time}");
+    assert!(number(&time["pulses"]["taken"]) >= 10.0, "{time}");
+    assert_eq!(time["pulses"]["off"], 0, "{time}");
+    // Pulses are written at their time to the nanosecond: what is left is the conversion of clocks.
+    assert!(number(&time["pulses"]["residual_us"]) < 100.0, "{time}");
+    assert!(number(&time["line_delay"]["least_ms"]) > 2.9, "{time}");
+    assert!(number(&time["line_delay"]["least_ms"]) < 40.0, "{time}");
+    assert!(number(&time["within_us"]) >= 20.0, "{time}");
+    // At 10 °/s, with the looks: 36″ a millisecond.
+    let looks_ms = number(&manifest["bench"]["table"]["angles"]["time_within_ms"]);
+    let expected = 36.0 * (number(&time["within_us"]) * 1e-3 + looks_ms);
+    assert!((number(&time["angle_within_arcsec"]) / expected - 1.0).abs() < 1e-9, "{time}");
+    let report = std::fs::read_to_string(bench.out().join("report.html")).unwrap();
+    assert!(report.contains("delay of the line from"));
+    println!("{time}");
+}
+
+/// Without pulses the run doesn't begin.
+#[test]
+fn pulses_that_never_come_end_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("assert");
+    std::fs::write(&file, "0.000000000#0\n").unwrap();
+    let stage = Stage::new();
+    let bench = Bench::new(&stage, 20, "");
+    let pps = format!("source.live.pps={:?}", file.display().to_string());
+    let (status, _) = bench.run(&["--set", &pps, "--set", "source.live.pps_silence=2 s"]).wait();
+    assert_eq!(status, Some(4));
+    let reasons = bench.json("summary.json")["reasons"].to_string();
+    assert!(reasons.contains("source.live.pps: no pulse for 2 s"), "{reasons}");
+    assert!(stage.rests());
+}
+
 /// Ends a run in the middle of a move of 200°, and checks that the table comes to rest; returns the
 /// exit status and the reasons or the output.
 fn ended_on_the_way(more: &str, end: impl FnOnce(&Stage, &Running)) -> (Option<i32>, String) {

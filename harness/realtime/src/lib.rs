@@ -8,6 +8,8 @@
 //! | [`clock`] | host time as a type of its own, and sleep until an absolute deadline |
 //! | [`pace`] | the frame clock: waits for a deadline and measures the lateness |
 //! | [`lateness`] | the histogram of the lateness |
+//! | [`host_clocks`] | the realtime clock against the monotonic one |
+//! | [`pps`] | pulses that the kernel stamps |
 //! | [`schedule`] | real-time scheduling and locked memory, as far as the host permits them |
 //! | [`latency`] | wake-up latency of this host |
 //! | [`host`] | properties of a host that matter for all this, and advice |
@@ -21,8 +23,10 @@
 
 pub mod clock;
 pub mod host;
+pub mod host_clocks;
 pub mod latency;
 pub mod lateness;
 pub mod pace;
+pub mod pps;
 pub mod schedule;
 pub mod series;

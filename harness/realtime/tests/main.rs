@@ -5,5 +5,6 @@ mod latency;
 mod lateness;
 mod no_allocation;
 mod pace;
+mod pps;
 mod schedule;
 mod series;

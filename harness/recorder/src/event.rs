@@ -9,7 +9,8 @@ mod pacing;
 mod power;
 
 pub use bench::{
-    BenchAngles, BenchAxis, BenchClock, BenchReadings, BenchRecord, BenchShared, BenchTable,
+    BenchAngles, BenchAxis, BenchClock, BenchDelay, BenchPulses, BenchReadings, BenchRecord,
+    BenchShared, BenchTable, BenchTime,
 };
 pub use fault_result::FaultResult;
 pub use link::LinkRecord;

@@ -290,6 +290,10 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
             "without effect: source.live.protocol is not \"dbc\"",
         );
     }
+    if text(document, "source.live.pps").is_none() {
+        let keys = &["pps_edge", "pps_silence", "stamps_within"];
+        add("source.live", keys, "without effect: source.live.pps names no pulses");
+    }
     for table in ["source.live", "source.log"] {
         if !is(&format!("{table}.protocol"), DESCRIBED) {
             add(table, &["description"], "without effect: the protocol is not \"described\"");

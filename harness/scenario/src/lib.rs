@@ -39,7 +39,7 @@ pub use model::{
     EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog,
     InterfaceChoice, Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpec,
     NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
-    Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver, UnknownFault,
+    Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver, UnitPulses, UnknownFault,
 };
 pub use octant_instruments::grades::{FLICKER, GRADES, GradeSheet};
 pub use octant_quantity as quantity;

@@ -74,6 +74,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("source.live.protocol", r#""vectornav""#),
     ("source.live.gyro_count", r#""0.000390625 arcsec""#),
     ("source.live.accel_count", r#""1.5e-6 m/s""#),
+    ("source.live.stamps_within", r#""50 us""#),
+    ("source.live.pps", r#""/dev/pps0""#),
     ("source.log.protocol", r#""vectornav""#),
     ("source.log.description", r#""unit.toml""#),
     ("source.live.description", r#""unit.toml""#),

@@ -191,6 +191,8 @@ impl Source for LogSource {
             clock: None,
             instrument: format!("{}: {}", self.path, self.said()),
             instruments_clock: None,
+            samples_times: None,
+            time: None,
             readings: BenchReadings {
                 behind: counters.behind,
                 irregular: counters.irregular,

@@ -10,6 +10,7 @@ mod serial;
 mod slcan;
 mod tcp;
 mod udp;
+mod udp_stamps;
 
 #[cfg(all(target_os = "linux", feature = "can"))]
 #[doc(hidden)]
@@ -30,7 +31,7 @@ use octant_faults::wire::Wired;
 use octant_wire::EndRole;
 use octant_wire::can::{BusFrame, CanVersion};
 use std::fmt::Debug;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// Error of a port: it can't be opened, or went away.
 #[derive(Debug, thiserror::Error)]
@@ -93,6 +94,16 @@ pub trait Bytes: Debug + Send {
     /// Binds the port to the peer that was heard last, for a session, or releases it. While it is
     /// bound, nobody else is heard.
     fn hold_peer(&mut self, hold: bool);
+
+    /// Asks the kernel for the times at which data arrives. False: it has none for this port.
+    fn stamp_arrivals(&mut self) -> bool {
+        false
+    }
+
+    /// Time by the kernel's realtime clock at which the data of the last [`Self::receive`] arrived.
+    fn arrived(&self) -> Option<SystemTime> {
+        None
+    }
 
     /// Closes the port, which is gone until it is opened again.
     fn close(&mut self);

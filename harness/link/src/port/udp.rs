@@ -2,11 +2,12 @@
 
 use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd};
 use super::secret::secret_in;
+use super::udp_stamps::ArrivalStamps;
 use super::{Bytes, PortError};
 use crate::uri::Udp;
 use std::io::ErrorKind;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// A UDP socket that listens to one peer at a time.
 #[derive(Debug)]
@@ -23,6 +24,8 @@ pub struct UdpPort {
     /// Number of datagrams from strangers, all dropped.
     strangers: u64,
     sealed: Option<Box<Sealed>>,
+    /// The kernel's times of arrival, once they were asked for.
+    stamps: Option<ArrivalStamps>,
 }
 
 /// Room of a datagram: more than any frame needs.
@@ -122,6 +125,7 @@ impl UdpPort {
             wait: Wait::Unknown,
             strangers: 0,
             sealed: None,
+            stamps: None,
         }
     }
 
@@ -226,7 +230,11 @@ impl Bytes for UdpPort {
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         self.waits(wait).map_err(|error| self.gone(&error))?;
         let into = self.sealed.as_mut().map_or(&mut *buffer, |sealed| &mut sealed.received);
-        match self.socket.recv_from(into) {
+        let received = match &mut self.stamps {
+            None => self.socket.recv_from(into),
+            Some(stamps) => stamps.receive(&self.socket, into),
+        };
+        match received {
             Ok((count, from)) => {
                 if self.held && self.peer != Some(from) {
                     self.strangers += 1;
@@ -270,6 +278,15 @@ impl Bytes for UdpPort {
         if self.listens {
             self.held = hold;
         }
+    }
+
+    fn stamp_arrivals(&mut self) -> bool {
+        self.stamps = ArrivalStamps::of(&self.socket);
+        self.stamps.is_some()
+    }
+
+    fn arrived(&self) -> Option<SystemTime> {
+        self.stamps.as_ref()?.arrived()
     }
 
     /// The socket stays open, and datagrams that arrive meanwhile are queued in it.

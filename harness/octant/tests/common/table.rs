@@ -5,6 +5,7 @@ use octant_instruments::{AnyEncoder, Protocol, Reading};
 use octant_link::port::{Bytes, Pty};
 use octant_plant::Plant;
 use octant_plant::config::TurntableConfig;
+use octant_realtime::host_clocks::HostClocks;
 use octant_sample::{GimbalAngles, GimbalCommand, Status};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
@@ -49,11 +50,22 @@ pub struct Stage {
 
 impl Stage {
     pub fn new() -> Self {
+        Self::with(None)
+    }
+
+    /// The same with an instrument that sends each reading 3 ms late, and marks its whole seconds by
+    /// pulses in a file of the kernel's form.
+    pub fn with_pulses(file: &Path) -> Self {
+        std::fs::write(file, "0.000000000#0\n").unwrap();
+        Self::with(Some(file.to_owned()))
+    }
+
+    fn with(pulses: Option<PathBuf>) -> Self {
         let dialect = Dialect::aerotech_ensemble().unwrap();
         let controller = Controller::new(dialect, &moves(10.0, 10.0), 400f64.to_radians());
         let server = Arc::new(SimulatedServer::tcp(controller, "127.0.0.1:0", 1.0).unwrap());
         let port = format!("tcp:{}", server.address().unwrap());
-        let instrument = Instrument::new(Arc::clone(&server));
+        let instrument = Instrument::new(Arc::clone(&server), pulses);
         Self { server, port, instrument }
     }
 
@@ -82,12 +94,14 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    pub fn new(table: Arc<SimulatedServer>) -> Self {
+    pub fn new(table: Arc<SimulatedServer>, pulses: Option<PathBuf>) -> Self {
         let line = Pty::open("").unwrap();
         let uri = format!("serial:{}?baud=921600", line.name());
         let (silent, ends) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
         let flags = (Arc::clone(&silent), Arc::clone(&ends));
-        let thread = std::thread::spawn(move || play(line, &table, &flags.0, &flags.1));
+        let thread = std::thread::spawn(move || {
+            play(line, &table, pulses.as_deref(), &flags.0, &flags.1);
+        });
         Self { uri, silent, ends, thread: Some(thread) }
     }
 
@@ -106,7 +120,13 @@ impl Drop for Instrument {
 
 /// Runs the plant on the table, by the clock. The plant's own gimbals are fast, so that they follow
 /// the table.
-fn play(mut line: Pty, table: &SimulatedServer, silent: &AtomicBool, ends: &AtomicBool) {
+fn play(
+    mut line: Pty,
+    table: &SimulatedServer,
+    pulses: Option<&Path>,
+    silent: &AtomicBool,
+    ends: &AtomicBool,
+) {
     let text = "schema = 1\n[procedure.navigation]\nduration = \"1 h\"\nrotation = \"none\"\n";
     let scenario = Scenario::parse(text, "instrument", Path::new(""), &[]).unwrap();
     let (mut config, ..) = configurations(&scenario, Method::Primary, 1).unwrap();
@@ -120,6 +140,13 @@ fn play(mut line: Pty, table: &SimulatedServer, silent: &AtomicBool, ends: &Atom
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
         if ends.load(Ordering::SeqCst) {
             return;
+        }
+        if let Some(file) = pulses {
+            if (number * PERIOD_NS).is_multiple_of(1_000_000_000) {
+                mark(file, due, number * PERIOD_NS / 1_000_000_000);
+            }
+            let late = due + Duration::from_millis(3);
+            std::thread::sleep(late.saturating_duration_since(Instant::now()));
         }
         // Angles of the table at the stamp, however late this thread is.
         let stamp_ns = start_ns + number * PERIOD_NS;
@@ -136,6 +163,16 @@ fn play(mut line: Pty, table: &SimulatedServer, silent: &AtomicBool, ends: &Atom
         // While there is no reader the line is full: data without room is lost, as on a real one.
         let _ = line.send(encoder.encode(&reading).unwrap(), Duration::ZERO);
     }
+}
+
+/// Writes a pulse as the kernel does, whole at once.
+fn mark(file: &Path, due: Instant, sequence: u64) {
+    let clocks = HostClocks::read();
+    let ns = clocks.realtime_ns - (clocks.monotonic - due).as_nanos() as i128;
+    let next = file.with_extension("next");
+    let line = format!("{}.{:09}#{sequence}\n", ns / 1_000_000_000, ns % 1_000_000_000);
+    std::fs::write(&next, line).unwrap();
+    std::fs::rename(&next, file).unwrap();
 }
 
 /// A scenario in a folder.

@@ -2237,8 +2237,8 @@ class SourceFmu(Section):
 
 class SourceLive(Section):
     """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol, database,
-    mapping, description, axes, gyro_count, accel_count, silence. Default: serial, udp, can and slcan: the
-    defaults of its keys."""
+    mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence, stamps_within.
+    Default: serial, udp, can and slcan: the defaults of its keys."""
 
     accel_count: str
     """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
@@ -2258,12 +2258,24 @@ class SourceLive(Section):
     mapping: str
     """Which signals of the database are which channels, a TOML file. Relative to the scenario. Takes a text in
     quotes. Left out: needed by protocol = "dbc"."""
+    pps: str
+    """Pulses at the whole seconds of the unit's stamps (1PPS), which give samples their time: a device such as
+    /dev/pps0, or a file of the kernel's form. Takes a text in quotes. Left out: samples have the time of
+    their arrival."""
+    pps_edge: Literal["assert", "clear"]
+    """Edge of the pulse at which the second begins. Takes one of "assert", "clear". Default: "assert"."""
+    pps_silence: str
+    """How long a pulse is waited for; then the run ends. Takes a time such as "12 h". Default: "10 s"."""
     protocol: Literal["octant", "vectornav", "xsens", "novatel", "sbg", "described", "dbc"]
     """What the instrument speaks. Takes one of "octant", "vectornav", "xsens", "novatel", "sbg", "described",
     "dbc". Default: "octant"; on a CAN bus "dbc"."""
     silence: str
     """How long a reading is waited for; then the instrument is gone. Takes a time such as "12 h". Default: "5
     s"."""
+    stamps_within: str
+    """Bound of the time between a whole second of the stamps and the kernel's stamp of its pulse: it is part of
+    the uncertainty of a sample's time. Takes a time such as "12 h". Left out: 20 us, the latency of an
+    interrupt."""
 
 class SourceLog(Section):
     """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
@@ -2661,8 +2673,8 @@ class Source(Section):
     @property
     def live(self) -> SourceLive:
         """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol,
-        database, mapping, description, axes, gyro_count, accel_count, silence. Default: serial, udp, can and
-        slcan: the defaults of its keys."""
+        database, mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence,
+        stamps_within. Default: serial, udp, can and slcan: the defaults of its keys."""
     @live.setter
     def live(self, value: SourceLive | Mapping[str, Any]) -> None: ...
     @property

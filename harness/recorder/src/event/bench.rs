@@ -15,15 +15,91 @@ pub struct BenchRecord {
     pub instruments_clock: Option<String>,
     /// Counts of readings.
     pub readings: BenchReadings,
+    /// Times of the samples in words.
+    #[serde(rename = "samples' times", skip_serializing_if = "Option::is_none")]
+    pub samples_times: Option<String>,
     /// Figures of the table, where one is driven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<BenchTable>,
     /// The table's angles in words.
     #[serde(rename = "table's angles", skip_serializing_if = "Option::is_none")]
     pub tables_angles: Option<String>,
+    /// Origin and uncertainty of the samples' times.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<BenchTime>,
     /// The table in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turntable: Option<String>,
+}
+
+/// Origin and uncertainty of the times of samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchTime {
+    /// Bound of the error of gimbal angles at the turning rate, arcsec; null without a bound of the
+    /// time, or of a table whose looks give them.
+    pub angle_within_arcsec: Option<f64>,
+    /// Number of readings whose arrival the kernel stamped.
+    pub arrivals_by_kernel: u64,
+    /// Number of readings whose arrival is the return of the read.
+    pub arrivals_by_read: u64,
+    /// Largest bound of the conversion of the kernel's stamps, µs.
+    pub arrivals_within_us: f64,
+    /// Delay of the line, where the times don't rest on arrivals.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line_delay: Option<BenchDelay>,
+    /// `pulses`, `arrivals by the kernel` or `arrivals by the read`.
+    pub origin: String,
+    /// Pulses, where the unit has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pulses: Option<BenchPulses>,
+    /// Turning rate of the procedure, deg/s.
+    pub rate_degps: Option<f64>,
+    /// Bound of the error of a sample's time, µs; null of arrivals, whose least delay can't be known.
+    pub within_us: Option<f64>,
+}
+
+/// Delay from the sample to the arrival of its reading.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchDelay {
+    /// Number of readings that arrived before their time, by more than its bound.
+    pub early: u64,
+    /// Largest delay, ms.
+    pub largest_ms: f64,
+    /// Least delay, ms.
+    pub least_ms: f64,
+    /// Mean delay, ms.
+    pub mean_ms: f64,
+    /// Standard deviation of the delay, ms.
+    pub sigma_ms: f64,
+}
+
+/// Pulses at the whole seconds of a unit's stamps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchPulses {
+    /// Number of steps of the host's realtime clock.
+    pub clock_steps: u64,
+    /// Largest of them, with its sign, ms.
+    pub clock_step_largest_ms: f64,
+    /// Device or file.
+    pub device: String,
+    /// Number of pulses that were too far from the unit's clock, and left out.
+    pub off: u64,
+    /// Number of seconds without a pulse, between the first and the last one.
+    pub missing: u64,
+    /// Number of pulses whose number stood still or went back.
+    pub repeated: u64,
+    /// Largest distance of the last pulses from their line, µs.
+    pub residual_us: Option<f64>,
+    /// Standard deviation of these distances, µs.
+    pub sigma_us: Option<f64>,
+    /// Relative rate by which the host is fast, by the pulses.
+    pub skew_ppm: Option<f64>,
+    /// Number of pulses that the unit's clock rests on.
+    pub taken: u64,
+    /// Number of looks at the file that found no pulse's line.
+    pub unread: u64,
+    /// Number of pulses that can't be converted: from the future, too old, or about a step of the clock.
+    pub untimely: u64,
 }
 
 /// Clock of an instrument against the host's.

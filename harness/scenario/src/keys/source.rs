@@ -152,6 +152,17 @@ keys! {
             ACCEL_COUNT_DOC;
         silence: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "5 s",
             "How long a reading is waited for; then the instrument is gone.";
+        pps: Option<String> = text(), absent("samples have the time of their arrival"),
+            "Pulses at the whole seconds of the unit's stamps (1PPS), which give samples their time: a device such as /dev/pps0, or a file of the kernel's form.";
+        pps_edge: bool = choice! {
+                "assert" => false, "the edge that the kernel calls assert";
+                "clear" => true, "the other one";
+            }, "assert",
+            "Edge of the pulse at which the second begins.";
+        pps_silence: f64 = time(2.0, 3600.0, "from 2 s to 1 h"), "10 s",
+            "How long a pulse is waited for; then the run ends.";
+        stamps_within: Option<f64> = time(0.0, 0.1, "from 0 s to 100 ms"), absent("20 us, the latency of an interrupt"),
+            "Bound of the time between a whole second of the stamps and the kernel's stamp of its pulse: it is part of the uncertainty of a sample's time.";
     }
 }
 

@@ -19,6 +19,21 @@ pub struct Instrument {
     pub axes: Axes,
     /// Longest wait for a reading, s.
     pub silence_s: f64,
+    /// Pulses at the whole seconds of its stamps, if it has them.
+    pub pulses: Option<UnitPulses>,
+}
+
+/// Pulses at the whole seconds of a unit's stamps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitPulses {
+    /// Device, or file in its place, as written.
+    pub device: String,
+    /// True if the second begins at the clear edge.
+    pub at_clear: bool,
+    /// Longest time without a pulse, s.
+    pub silence_s: f64,
+    /// Bound of the time between a whole second of the stamps and the kernel's stamp of its pulse, s.
+    pub within_s: f64,
 }
 
 /// The bytes that an instrument sent, as a file.

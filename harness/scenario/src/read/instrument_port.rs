@@ -4,12 +4,17 @@
 use crate::choices::DESCRIBED;
 use crate::error::Problem;
 use crate::keys::{At, SourceKeys};
-use crate::model::{DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks};
+use crate::model::{
+    DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks, UnitPulses,
+};
 use octant_base::names::suggestion;
 use octant_instruments::description::READY;
 use octant_instruments::novatel::CountScale;
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
+
+/// Time that the kernel may take to stamp a pulse, s: the latency of its interrupt.
+const PULSE_WITHIN_S: f64 = 20e-6;
 
 /// Reads a port and `[source.live]`.
 pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
@@ -43,7 +48,13 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
     };
     let count = count_scale("live", [&live.gyro_count, &live.accel_count], &speaks)?;
     let axes = mounting(&live.axes)?;
-    Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence })
+    let pulses = live.pps.as_ref().map(|device| UnitPulses {
+        device: device.clone(),
+        at_clear: live.pps_edge,
+        silence_s: live.pps_silence,
+        within_s: live.stamps_within.unwrap_or(PULSE_WITHIN_S),
+    });
+    Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence, pulses })
 }
 
 /// Reads the bytes that an instrument sent, from a file and `[source.log]`.

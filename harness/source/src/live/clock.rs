@@ -1,7 +1,10 @@
 //! Relates the instrument's clock to the host's.
 
+use super::arrival::Arrival;
+use super::dates::Dates;
+use super::pulses::Pulses;
 use octant_instruments::align::ClockAlignment;
-use octant_recorder::event::BenchClock;
+use octant_recorder::event::{BenchClock, BenchTime};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Host time at which the alignment starts, ns: an hour above zero, so that slightly earlier events
@@ -14,33 +17,77 @@ pub(super) struct Clock {
     base: Instant,
     utc: SystemTime,
     alignment: ClockAlignment,
+    pulses: Option<Pulses>,
+    dates: Dates,
 }
 
 impl Clock {
-    pub(super) fn new() -> Self {
-        Self { base: Instant::now(), utc: SystemTime::now(), alignment: ClockAlignment::new() }
+    pub(super) fn new(pulses: Option<Pulses>) -> Self {
+        Self {
+            base: Instant::now(),
+            utc: SystemTime::now(),
+            alignment: ClockAlignment::new(),
+            pulses,
+            dates: Dates::default(),
+        }
     }
 
-    /// Returns when the interval of a reading ended: from its stamp by the estimated clock
-    /// relation, with the least delay of the line; without a stamp, the time of arrival.
-    pub(super) fn when(&mut self, stamp_ns: Option<u64>, came: Instant) -> Instant {
-        let Some(stamp_ns) = stamp_ns else { return came };
-        let since = came.saturating_duration_since(self.base).as_nanos();
-        self.alignment
-            .add(stamp_ns, BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX)));
-        let Some(estimate) = self.alignment.estimate() else { return came };
-        let since_ns = estimate.host_ns(stamp_ns) - BASE_NS as f64;
+    /// Returns when the interval of a reading ended: from its stamp by the clock relation of pulses,
+    /// or by that of arrivals, with the least delay of the line; without a stamp, the time of arrival.
+    /// `None`: there are too few pulses yet.
+    pub(super) fn when(
+        &mut self,
+        stamp_ns: Option<u64>,
+        came: Arrival,
+    ) -> Result<Option<Instant>, String> {
+        self.dates.came(came);
+        let Some(stamp_ns) = stamp_ns else {
+            return match &self.pulses {
+                None => Ok(Some(came.at)),
+                Some(_) => {
+                    Err("found a reading without a stamp, expected stamps, whose whole seconds \
+                     the pulses of source.live.pps mark"
+                        .to_owned())
+                }
+            };
+        };
+        let base = self.base;
+        let host_ns = |at: Instant| {
+            let since = at.saturating_duration_since(base).as_nanos();
+            BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX))
+        };
+        self.alignment.add(stamp_ns, host_ns(came.at));
+        let Some(arrivals) = self.alignment.estimate() else { return Ok(Some(came.at)) };
+        let Some(pulses) = &mut self.pulses else {
+            // A reading can't be made after it arrived.
+            let when = self.instant(arrivals.host_ns(stamp_ns));
+            return Ok(Some(when.map_or(came.at, |when| when.min(came.at))));
+        };
+        let Some(line) = pulses.take(&arrivals, came.at, host_ns)? else { return Ok(None) };
+        let at_ns = line.host_ns(stamp_ns);
+        let within_ns = line.within_ns(stamp_ns) + pulses.within().as_secs_f64() * 1e9;
+        self.dates.dated(host_ns(came.at) as f64 - at_ns, within_ns);
+        Ok(Some(self.instant(at_ns).unwrap_or(came.at)))
+    }
+
+    /// Instant of a host time.
+    fn instant(&self, host_ns: f64) -> Option<Instant> {
+        let since_ns = host_ns - BASE_NS as f64;
         if !since_ns.is_finite() {
-            return came;
+            return None;
         }
         let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
-        let when = if since_ns < 0.0 {
-            self.base.checked_sub(since)
-        } else {
-            self.base.checked_add(since)
-        };
-        // A reading can't be made after it arrived.
-        when.map_or(came, |when| when.min(came))
+        if since_ns < 0.0 { self.base.checked_sub(since) } else { self.base.checked_add(since) }
+    }
+
+    /// Describes origin and uncertainty of the times in words and figures, at a turning rate and with
+    /// looks of the table within so much.
+    pub(super) fn dated(
+        &self,
+        rate_degps: Option<f64>,
+        looks_ms: Option<f64>,
+    ) -> (String, BenchTime) {
+        self.dates.told(self.pulses.as_ref().map(Pulses::told), rate_degps, looks_ms)
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.
@@ -77,17 +124,20 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use octant_realtime::host_clocks::HostClocks;
+    use octant_scenario::UnitPulses;
 
     /// The clock of this instrument is slow by 100 ppm. One reading in four comes without delay,
     /// the others come 2 ms later; each must be dated as if it had come without delay.
     #[test]
     fn a_reading_that_came_late_was_made_when_it_was_made() {
-        let mut clock = Clock::new();
+        let mut clock = Clock::new(None);
         let mut worst = Duration::ZERO;
         for number in 0..2000u64 {
             let true_at = clock.base + Duration::from_nanos(7_000_000 + number * 5_000_500);
             let late = Duration::from_millis(if number % 4 == 0 { 0 } else { 2 });
-            let when = clock.when(Some(90_000 + number * 5_000_000), true_at + late);
+            let came = Arrival::read(true_at + late);
+            let when = clock.when(Some(90_000 + number * 5_000_000), came).unwrap().unwrap();
             if number > 100 {
                 worst = worst.max(when.max(true_at) - when.min(true_at));
             }
@@ -100,11 +150,63 @@ mod tests {
         assert!(words.starts_with("host faster by +100.0"), "{words}");
     }
 
+    /// A unit that is slow by 50 ppm, on a line that delays each reading by 23 ms, with pulses in a file
+    /// of the kernel's form: by arrivals its readings would be dated 23 ms late.
+    #[test]
+    fn by_pulses_a_reading_was_made_without_the_delay_of_the_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("assert");
+        let pulse = |at: Instant, sequence: u64| {
+            let clocks = HostClocks::read();
+            let ns = clocks.realtime_ns - (clocks.monotonic - at).as_nanos() as i128;
+            let line = format!("{}.{:09}#{sequence}\n", ns / 1_000_000_000, ns % 1_000_000_000);
+            std::fs::write(file.with_extension("next"), line).unwrap();
+            std::fs::rename(file.with_extension("next"), &file).unwrap();
+        };
+        pulse(Instant::now(), 0);
+        let plan = UnitPulses {
+            device: "assert".to_owned(),
+            at_clear: false,
+            silence_s: 60.0,
+            within_s: 20e-6,
+        };
+        let mut clock = Clock::new(Some(Pulses::open(&plan, folder.path()).unwrap()));
+        let delay = Duration::from_millis(23);
+        let (start, first_ns) = (clock.base, 1_000_100_000_000u64);
+        let made = |number: u64| start + Duration::from_nanos(number * 5_000_250);
+        let (mut dated, mut worst) = (0, Duration::ZERO);
+        for number in 0..1000u64 {
+            let at = made(number);
+            std::thread::sleep((at + delay).saturating_duration_since(Instant::now()));
+            let stamp_ns = first_ns + number * 5_000_000;
+            if stamp_ns.is_multiple_of(1_000_000_000) {
+                pulse(at, number);
+            }
+            if let Some(when) = clock.when(Some(stamp_ns), Arrival::read(at + delay)).unwrap() {
+                dated += 1;
+                worst = worst.max(when.max(at) - when.min(at));
+            }
+        }
+        let (words, figures) = clock.dated(Some(10.0), None);
+        assert!(dated > 200, "{words}");
+        let within_us = figures.within_us.unwrap();
+        assert!(within_us >= 20.0 && worst.as_secs_f64() * 1e6 < within_us, "{worst:?} {words}");
+        let line = figures.line_delay.unwrap();
+        assert!((line.least_ms - 23.0).abs() * 1e3 < within_us, "{words}");
+        assert_eq!((line.early, figures.origin.as_str()), (0, "pulses"));
+        // 36 arcseconds a millisecond.
+        let angle = figures.angle_within_arcsec.unwrap();
+        assert!((angle - 0.036 * within_us).abs() < 1e-9, "{words}");
+        assert!(words.starts_with("by 5 pulses at assert, 0 missing, 0 off"), "{words}");
+        let error = clock.when(None, Arrival::read(Instant::now())).unwrap_err();
+        assert!(error.contains("a reading without a stamp"), "{error}");
+    }
+
     #[test]
     fn without_a_stamp_it_is_when_it_came() {
-        let mut clock = Clock::new();
+        let mut clock = Clock::new(None);
         let came = clock.base + Duration::from_millis(3);
-        assert_eq!(clock.when(None, came), came);
+        assert_eq!(clock.when(None, Arrival::read(came)), Ok(Some(came)));
         assert!(clock.told().is_none());
     }
 }

@@ -1,5 +1,6 @@
 //! Readings from a port, with their times of arrival.
 
+use super::arrival::{Arrival, ArrivalClock};
 use super::bus::Bus;
 use crate::SourceError;
 use crate::described::decoder;
@@ -9,7 +10,8 @@ use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::EndRole;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use std::time::Instant;
 
 /// Decoder of an instrument's port.
 #[derive(Debug)]
@@ -30,7 +32,8 @@ pub(super) struct Line {
     /// Range of the buffer that is not decoded yet.
     rest: std::ops::Range<usize>,
     /// Time at which the buffer was received.
-    came: Instant,
+    came: Arrival,
+    clock: ArrivalClock,
 }
 
 impl Feed {
@@ -47,7 +50,11 @@ impl Feed {
         let decoder = decoder.ok_or_else(|| gone("it speaks no protocol of a line".to_owned()))?;
         // The port waits for a sender, as a device does.
         let port = match port::open(uri, EndRole::Device) {
-            Ok(Port::Bytes(port)) => port,
+            Ok(Port::Bytes(mut port)) => {
+                // Without stamps of the kernel an arrival is the return of the read, which is told.
+                port.stamp_arrivals();
+                port
+            }
             Ok(Port::Frames(_)) => {
                 return Err(gone(
                     "the port carries no bytes, expected a serial line or UDP".to_owned(),
@@ -61,7 +68,8 @@ impl Feed {
             unread: None,
             buffer: [0; 4096],
             rest: 0..0,
-            came: Instant::now(),
+            came: Arrival::read(Instant::now()),
+            clock: ArrivalClock::default(),
         })))
     }
 
@@ -74,10 +82,10 @@ impl Feed {
     }
 
     /// Returns the next reading in the received data, with its time of arrival.
-    pub(super) fn reading(&mut self) -> Option<(Reading, Instant)> {
+    pub(super) fn reading(&mut self) -> Option<(Reading, Arrival)> {
         match self {
             Self::Line(line) => line.reading(),
-            Self::Bus(bus) => bus.reading(),
+            Self::Bus(bus) => bus.reading().map(|(reading, came)| (reading, Arrival::read(came))),
         }
     }
 
@@ -86,8 +94,8 @@ impl Feed {
         match self {
             Self::Line(line) => {
                 let came = line.port.receive(&mut line.buffer, wait);
-                line.came = Instant::now();
                 line.rest = 0..came.map_err(|error| error.to_string())?;
+                line.came = line.clock.arrival(line.port.arrived());
                 Ok(!line.rest.is_empty())
             }
             Self::Bus(bus) => bus.receive(wait),
@@ -114,7 +122,7 @@ impl Feed {
 }
 
 impl Line {
-    fn reading(&mut self) -> Option<(Reading, Instant)> {
+    fn reading(&mut self) -> Option<(Reading, Arrival)> {
         loop {
             let mut bytes = &self.buffer[self.rest.clone()];
             let event = self.decoder.next(&mut bytes);

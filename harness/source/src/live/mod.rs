@@ -5,17 +5,21 @@
 //! core's gimbal command; its angles are put into samples whose instrument has no valid angles of
 //! its own.
 
+mod arrival;
 #[cfg(feature = "can")]
 mod bus;
 #[cfg(not(feature = "can"))]
 #[path = "no_bus.rs"]
 mod bus;
 mod clock;
+mod dates;
 mod feed;
+mod pulses;
 mod table;
 
 use self::clock::Clock;
 use self::feed::Feed;
+use self::pulses::Pulses;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
 use crate::described::decoder;
@@ -40,6 +44,8 @@ pub struct LiveSource {
     rate: RateCheck,
     clock: Clock,
     table: Option<Table>,
+    /// Turning rate of the procedure, rad/s.
+    turning_radps: Option<f64>,
     total: u64,
     delivered: u64,
 }
@@ -52,6 +58,7 @@ impl LiveSource {
     pub fn of(scenario: &Scenario, instrument: &Instrument) -> Result<Self, SourceError> {
         let (period_ns, samples) = (scenario.sample_period_ns, scenario.samples());
         let mut source = Self::open(instrument, &scenario.folder, period_ns, samples)?;
+        source.turning_radps = Some(scenario.turntable.rate_radps);
         if let Some(drive) = &scenario.drive {
             source.table = Some(Table::start(drive, &scenario.folder)?);
             source.forget()?;
@@ -89,13 +96,18 @@ impl LiveSource {
     ) -> Result<Self, SourceError> {
         let feed = Feed::open(instrument, folder)?;
         let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
+        let pulses = instrument.pulses.as_ref().map(|pulses| Pulses::open(pulses, folder));
+        let pulses = pulses
+            .transpose()
+            .map_err(|reason| SourceError::Gone { uri: instrument.uri.to_string(), reason })?;
         Ok(Self {
             feed,
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
             rate: RateCheck::new(sample_period_ns),
-            clock: Clock::new(),
+            clock: Clock::new(pulses),
             table: None,
+            turning_radps: None,
             total: samples.unwrap_or(u64::MAX),
             delivered: 0,
         })
@@ -142,12 +154,18 @@ impl Source for LiveSource {
         if let Some(table) = &mut self.table {
             table.command(command)?;
         }
-        let until = Instant::now() + Duration::from_secs_f64(self.instrument.silence_s);
+        let silence = Duration::from_secs_f64(self.instrument.silence_s);
+        let mut until = Instant::now() + silence;
         loop {
             while let Some((mut reading, came)) = self.feed.reading() {
                 self.rate.reading(&reading).map_err(|reason| self.gone(reason))?;
                 let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
-                let when = self.clock.when(stamp_ns, came);
+                let when = self.clock.when(stamp_ns, came).map_err(|reason| self.gone(reason))?;
+                let Some(when) = when else {
+                    // The run begins once there are pulses enough to date a sample.
+                    until = Instant::now() + silence;
+                    continue;
+                };
                 let has_own =
                     reading.gimbal.is_some() && !reading.status.contains(Status::GIMBAL_INVALID);
                 if !has_own && let Some(table) = &mut self.table {
@@ -204,6 +222,9 @@ impl Source for LiveSource {
         let counters = self.sampler.counters();
         let protocol = self.instrument.speaks.told();
         let (instruments_clock, clock) = self.clock.told().unzip();
+        let looks_ms = told.as_ref().map(|told| told.figures.angles.time_within_ms);
+        let (samples_times, time) =
+            self.clock.dated(self.turning_radps.map(f64::to_degrees), looks_ms);
         let (table, tables_angles, turntable) = match told {
             Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
             None => (None, None, None),
@@ -218,8 +239,10 @@ impl Source for LiveSource {
                 missing: counters.missing,
                 samples: counters.samples,
             },
+            samples_times: Some(samples_times),
             table,
             tables_angles,
+            time: Some(time),
             turntable,
         };
         (Some(Box::new(bench)), ended)
@@ -259,7 +282,8 @@ pub(crate) mod tests {
     ) -> (LiveSource, UdpSocket) {
         let uri = "udp:127.0.0.1:0".parse().unwrap();
         let speaks = Speaks::Bytes(protocol);
-        let instrument = Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3 };
+        let instrument =
+            Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3, pulses: None };
         let source =
             LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
         let address = source.reached_at();
@@ -301,6 +325,7 @@ pub(crate) mod tests {
             count: None,
             axes: Axes::SAME,
             silence_s: 0.3,
+            pulses: None,
         };
         let mut source = LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(2)).unwrap();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();

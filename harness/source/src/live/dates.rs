@@ -1,0 +1,144 @@
+//! Origin and uncertainty of the samples' times, as a run reports them.
+
+use super::arrival::Arrival;
+use octant_base::number::counted;
+use octant_recorder::event::{BenchDelay, BenchPulses, BenchTime};
+use std::time::Duration;
+
+/// Arcseconds that a rate of a degree a second turns in a second.
+const ARCSEC_PER_DEG: f64 = 3600.0;
+
+/// Counts of arrivals and delays.
+#[derive(Debug, Default)]
+pub(super) struct Dates {
+    by_kernel: u64,
+    by_read: u64,
+    converted_within: Duration,
+    /// Delays of readings after their time, ns: number, sum, sum of squares, least and largest.
+    delays: u64,
+    sum_ns: f64,
+    sum_ns2: f64,
+    least_ns: f64,
+    largest_ns: f64,
+    early: u64,
+    within_ns: f64,
+}
+
+impl Dates {
+    /// Notes the arrival of a reading.
+    pub(super) fn came(&mut self, came: Arrival) {
+        match came.by_kernel {
+            Some(within) => {
+                self.by_kernel += 1;
+                self.converted_within = self.converted_within.max(within);
+            }
+            None => self.by_read += 1,
+        }
+    }
+
+    /// Notes a time that doesn't rest on its arrival, which came so much later.
+    pub(super) fn dated(&mut self, delay_ns: f64, within_ns: f64) {
+        let first = self.delays == 0;
+        self.delays += 1;
+        self.sum_ns += delay_ns;
+        self.sum_ns2 += delay_ns * delay_ns;
+        self.least_ns = if first { delay_ns } else { self.least_ns.min(delay_ns) };
+        self.largest_ns = if first { delay_ns } else { self.largest_ns.max(delay_ns) };
+        self.early += u64::from(delay_ns < -within_ns);
+        self.within_ns = self.within_ns.max(within_ns);
+    }
+
+    fn delay(&self) -> Option<BenchDelay> {
+        let count = (self.delays > 0).then_some(self.delays as f64)?;
+        let mean_ns = self.sum_ns / count;
+        let variance = (self.sum_ns2 / count - mean_ns * mean_ns).max(0.0);
+        Some(BenchDelay {
+            early: self.early,
+            largest_ms: self.largest_ns * 1e-6,
+            least_ms: self.least_ns * 1e-6,
+            mean_ms: mean_ns * 1e-6,
+            sigma_ms: variance.sqrt() * 1e-6,
+        })
+    }
+
+    /// Summarises the run, in words and figures. The table's looks, if it has one, are within
+    /// `looks_ms` of their times.
+    pub(super) fn told(
+        &self,
+        pulses: Option<BenchPulses>,
+        rate_degps: Option<f64>,
+        looks_ms: Option<f64>,
+    ) -> (String, BenchTime) {
+        let line_delay = self.delay();
+        let by_pulses = pulses.is_some();
+        let within_us = (by_pulses && self.delays > 0).then_some(self.within_ns * 1e-3);
+        let arcsec = |ms: f64| rate_degps.map(|rate| rate * ms * 1e-3 * ARCSEC_PER_DEG);
+        let within_ms = within_us.map(|us| us * 1e-3);
+        let angle_within_arcsec =
+            within_ms.and_then(|ms| arcsec(ms + looks_ms.unwrap_or_default()));
+        let origin = match (by_pulses, self.by_kernel > self.by_read) {
+            (true, _) => "pulses",
+            (false, true) => "arrivals by the kernel",
+            (false, false) => "arrivals by the read",
+        };
+        let figures = BenchTime {
+            angle_within_arcsec,
+            arrivals_by_kernel: self.by_kernel,
+            arrivals_by_read: self.by_read,
+            arrivals_within_us: self.converted_within.as_secs_f64() * 1e6,
+            line_delay,
+            origin: origin.to_owned(),
+            pulses,
+            rate_degps,
+            within_us,
+        };
+        (words(&figures, looks_ms, arcsec(1.0)), figures)
+    }
+}
+
+fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) -> String {
+    let rate = time.rate_degps.unwrap_or_default();
+    let (Some(within_us), Some(pulses)) = (time.within_us, &time.pulses) else {
+        let angle = arcsec_per_ms.map_or_else(String::new, |arcsec| {
+            format!("; each millisecond of it is {arcsec:.1}″ at {rate} °/s")
+        });
+        return format!(
+            "by {}, without a bound: later than the sample by the least delay of the line, which isn't \
+             known{angle}",
+            time.origin
+        );
+    };
+    let angle = match (time.angle_within_arcsec, looks_ms) {
+        (None, _) => String::new(),
+        (Some(arcsec), None) => format!(", {arcsec:.1}″ at {rate} °/s"),
+        (Some(arcsec), Some(looks_ms)) => {
+            format!(
+                ", with the looks at the table within {looks_ms:.1} ms {arcsec:.1}″ at {rate} °/s"
+            )
+        }
+    };
+    let delay = time.line_delay.map_or_else(String::new, |delay| {
+        format!(
+            "; delay of the line from {:.3} ms, mean {:.3} ms, 1σ {:.3} ms, {} early",
+            delay.least_ms,
+            delay.mean_ms,
+            delay.sigma_ms,
+            counted(delay.early, "reading", "readings"),
+        )
+    });
+    let steps = match pulses.clock_steps {
+        0 => String::new(),
+        steps => format!(
+            "; {} of the host's realtime clock, the largest {:+.3} ms",
+            counted(steps, "step", "steps"),
+            pulses.clock_step_largest_ms
+        ),
+    };
+    format!(
+        "by {} at {}, {} missing, {} off: within {within_us:.1} µs{angle}{delay}{steps}",
+        counted(pulses.taken, "pulse", "pulses"),
+        pulses.device,
+        pulses.missing,
+        pulses.off,
+    )
+}
