@@ -1,4 +1,5 @@
 //! Integration tests of clocks and pacing, in one program.
+#![allow(clippy::unwrap_used)]
 
 mod host;
 mod latency;
