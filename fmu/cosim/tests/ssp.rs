@@ -32,7 +32,10 @@ fn package(structure: &str, files: &[(&str, &str)]) -> (tempfile::TempDir, Packa
     (folder, package)
 }
 
-pub fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure, Flat), String> {
+pub(crate) fn read(
+    structure: &str,
+    files: &[(&str, &str)],
+) -> Result<(SystemStructure, Flat), String> {
     let (folder, package) = package(structure, files);
     let shorter = |error: octant_cosim::ssp::SspError| {
         error.to_string().replace(&format!("{}/", folder.path().display()), "")
@@ -42,15 +45,17 @@ pub fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure,
     Ok((structure, flat))
 }
 
-pub fn component(name: &str, connectors: &str, more: &str) -> String {
+pub(crate) fn component(name: &str, connectors: &str, more: &str) -> String {
     format!(
         r#"<Component name="{name}" source="resources/{name}.fmu">
              <Connectors>{connectors}</Connectors>{more}</Component>"#
     )
 }
 
-pub const IN: &str = r#"<Connector name="u" kind="input"><ssc:Real unit="deg"/></Connector>"#;
-pub const OUT: &str = r#"<Connector name="y" kind="output"><ssc:Real unit="rad"/></Connector>"#;
+pub(crate) const IN: &str =
+    r#"<Connector name="u" kind="input"><ssc:Real unit="deg"/></Connector>"#;
+pub(crate) const OUT: &str =
+    r#"<Connector name="y" kind="output"><ssc:Real unit="rad"/></Connector>"#;
 
 /// Builds a system with a and b, and further content after its elements.
 fn two(rest: &str) -> String {
