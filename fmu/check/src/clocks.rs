@@ -24,7 +24,7 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
             model.broken(findings, &CLOCK_CAUSALITY, declared, found, expected);
         }
         interval(model, declared, &clock, findings);
-        if model.description.scheduled_execution
+        if model.description.scheduled_execution.is_some()
             && variable.causality == Causality::Input
             && clock.priority.is_none()
         {

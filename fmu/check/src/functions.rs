@@ -54,7 +54,7 @@ pub(super) fn is_of_interface(description: &Description, function: &str) -> bool
     match interface_of(function) {
         Some(OneInterface::ModelExchange) => description.model_exchange.is_some(),
         Some(OneInterface::CoSimulation) => description.co_simulation.is_some(),
-        Some(OneInterface::ScheduledExecution) => description.scheduled_execution,
+        Some(OneInterface::ScheduledExecution) => description.scheduled_execution.is_some(),
         None => true,
     }
 }

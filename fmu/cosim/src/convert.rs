@@ -1,6 +1,6 @@
 //! Converts a value on a wire: units, transformations, and the type at its end.
 
-use super::flat::Hop;
+use super::flat::{Hop, HopEntry};
 use super::ssp::parameters::{SystemEnumeration, Transformation};
 use super::values::{fits, is_float, is_numeric, kind_name, rounded};
 use octant_fmu_host::description::units::{UnitConversion, candidates, dimension, known, meant};
@@ -13,6 +13,8 @@ enum Step {
     Linear(f64, f64),
     /// Table from value to value.
     Map(Vec<(f64, f64)>),
+    /// Passage through an entry of a signal dictionary, which has a type.
+    Entry(HopEntry),
 }
 
 /// Operations on a value on its way to a variable.
@@ -111,6 +113,16 @@ pub enum WireConversionError {
         /// Its value.
         value: i64,
     },
+    /// Values can't get into an entry of a signal dictionary, or out of it.
+    #[error("{direction} {entry}: {reason}")]
+    Entry {
+        /// `into`, or `out of`.
+        direction: &'static str,
+        /// The entry.
+        entry: Box<HopEntry>,
+        /// Why not.
+        reason: Box<Self>,
+    },
 }
 
 impl WireUnit {
@@ -203,43 +215,40 @@ impl WireConversion {
         units: &[(String, BaseUnit)],
     ) -> Result<Self, WireConversionError> {
         let mut steps = Vec::new();
-        let mut unit = from.unit.clone();
-        let mut mapped = false;
-        for (index, hop) in hops.iter().enumerate() {
-            let end = if index + 1 == hops.len() {
-                to.unit.clone()
-            } else {
-                hop.unit.as_ref().map(|name| WireUnit::named(name, units))
+        let mut from = from.clone();
+        let mut last: Option<&HopEntry> = None;
+        let mut rest = hops;
+        // A value has the type of each entry on its way, one after the other.
+        while let Some((at, entry)) =
+            rest.iter().enumerate().find_map(|(at, hop)| Some((at, hop.entry.as_ref()?)))
+        {
+            let (leg, after) = rest.split_at(at + 1);
+            let into = Terminal {
+                kind: entry.kind,
+                unit: leg[at].meant(units),
+                items: &entry.items,
+                enumeration: None,
             };
-            if hop.suppress_unit_conversion {
-                // Without unit conversion the value is taken to be in the unit of this end,
-                // whatever it was.
-                unit = end;
-            } else {
-                if let (Some(unit), Some(end)) = (&unit, &end) {
-                    let conversion = unit.to(end)?;
-                    if !conversion.is_identity() {
-                        if !is_float(from.kind) && !is_float(to.kind) {
-                            return Err(WireConversionError::WholeNumbers {
-                                from_kind: kind_name(from.kind),
-                                to_kind: kind_name(to.kind),
-                                from: unit.name.clone(),
-                                to: end.name.clone(),
-                            });
-                        }
-                        steps.push(Step::Linear(conversion.factor, conversion.offset));
-                    }
+            let (more, unit, _) = self::leg(&from, &into, leg, units).map_err(|reason| {
+                WireConversionError::Entry {
+                    direction: "into",
+                    entry: Box::new(entry.clone()),
+                    reason: Box::new(reason),
                 }
-                unit = end.or(unit);
-            }
-            if let Some(transformation) = &hop.transformation {
-                mapped |= !matches!(transformation, Transformation::Linear { .. });
-                if let Some(step) = step(transformation, from, to)? {
-                    steps.push(step);
-                }
-            }
+            })?;
+            steps.extend(more);
+            steps.push(Step::Entry(entry.clone()));
+            (from, last, rest) = (Terminal { unit, ..into }, Some(entry), after);
         }
-        let total = check_types(from, to, mapped, !steps.is_empty())?;
+        let (more, _, total) = self::leg(&from, to, rest, units).map_err(|reason| match last {
+            Some(entry) => WireConversionError::Entry {
+                direction: "out of",
+                entry: Box::new(entry.clone()),
+                reason: Box::new(reason),
+            },
+            None => reason,
+        })?;
+        steps.extend(more);
         let items = match to.kind {
             VariableType::Enumeration => to.items.iter().map(|(value, _)| *value as f64).collect(),
             _ => Vec::new(),
@@ -251,6 +260,25 @@ impl WireConversion {
     #[must_use]
     pub const fn kind(&self) -> VariableType {
         self.kind
+    }
+
+    /// Returns why a value can't be carried: the first entry of a dictionary that doesn't have it,
+    /// else the type at the end.
+    #[must_use]
+    pub fn misfit(&self, value: f64) -> String {
+        for (count, step) in self.steps.iter().enumerate() {
+            let Step::Entry(entry) = step else { continue };
+            let upto = Self {
+                steps: self.steps[..=count].to_vec(),
+                kind: VariableType::Float64,
+                items: Vec::new(),
+                total: true,
+            };
+            if upto.apply(value).is_none() {
+                return format!("{entry} is a {} and has no such value", kind_name(entry.kind));
+            }
+        }
+        format!("the input is a {} and has no such value", kind_name(self.kind))
     }
 
     /// Returns a value as it is at the end of its way; `None`: the type there has no such value, or
@@ -267,6 +295,7 @@ impl WireConversion {
                 Step::Map(entries) => {
                     entries.iter().find(|(source, _)| *source == value).map(|(_, to)| *to)?
                 }
+                Step::Entry(entry) => entry.passed(value)?,
             };
         }
         if self.total || is_float(self.kind) {
@@ -275,6 +304,77 @@ impl WireConversion {
         let known = self.items.is_empty() || self.items.contains(&value);
         (known && fits(value, self.kind)).then_some(value)
     }
+}
+
+impl Hop {
+    /// Returns the unit at the end of the connection.
+    fn meant(&self, units: &[(String, BaseUnit)]) -> Option<WireUnit> {
+        let name = self.unit.as_ref()?;
+        match &self.entry {
+            // Units of a dictionary are those of its file.
+            Some(entry) => {
+                let own = entry.meaning.map(|base| (name.clone(), base));
+                Some(WireUnit::named(name, own.as_slice()))
+            }
+            None => Some(WireUnit::named(name, units)),
+        }
+    }
+}
+
+impl HopEntry {
+    /// Returns a value as the entry's type has it.
+    fn passed(&self, value: f64) -> Option<f64> {
+        if is_float(self.kind) {
+            return Some(rounded(value, self.kind));
+        }
+        let known = self.items.is_empty() || self.items.iter().any(|item| item.0 as f64 == value);
+        (known && fits(value, self.kind)).then_some(value)
+    }
+}
+
+/// Returns the operations on a value between two types, the unit that it has after them, and
+/// whether every value fits.
+fn leg(
+    from: &Terminal<'_>,
+    to: &Terminal<'_>,
+    hops: &[Hop],
+    units: &[(String, BaseUnit)],
+) -> Result<(Vec<Step>, Option<WireUnit>, bool), WireConversionError> {
+    let mut steps = Vec::new();
+    let mut unit = from.unit.clone();
+    let mut mapped = false;
+    for (index, hop) in hops.iter().enumerate() {
+        let end = if index + 1 == hops.len() { to.unit.clone() } else { hop.meant(units) };
+        if hop.suppress_unit_conversion {
+            // Without unit conversion the value is taken to be in the unit of this end, whatever
+            // it was.
+            unit = end;
+        } else {
+            if let (Some(unit), Some(end)) = (&unit, &end) {
+                let conversion = unit.to(end)?;
+                if !conversion.is_identity() {
+                    if !is_float(from.kind) && !is_float(to.kind) {
+                        return Err(WireConversionError::WholeNumbers {
+                            from_kind: kind_name(from.kind),
+                            to_kind: kind_name(to.kind),
+                            from: unit.name.clone(),
+                            to: end.name.clone(),
+                        });
+                    }
+                    steps.push(Step::Linear(conversion.factor, conversion.offset));
+                }
+            }
+            unit = end.or(unit);
+        }
+        if let Some(transformation) = &hop.transformation {
+            mapped |= !matches!(transformation, Transformation::Linear { .. });
+            if let Some(step) = step(transformation, from, to)? {
+                steps.push(step);
+            }
+        }
+    }
+    let total = check_types(from, to, mapped, !steps.is_empty())?;
+    Ok((steps, unit, total))
 }
 
 /// Converts a transformation into a step; `None` if it does nothing.

@@ -1,103 +1,38 @@
 //! Flattens a structure into FMUs, wires from FMU to FMU, and parameters of FMUs.
 
+mod dictionaries;
+mod parts;
+
+pub use parts::{
+    Flat, FlatComponent, FlatParameter, FlatReference, FlatWire, FmuConnector, Hop, HopEntry,
+};
+
 use super::ssp::SspError;
-use super::ssp::parameters::{Literal, Transformation};
 use super::ssp::structure::{
-    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, Implementation, SspSystem,
+    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, SignalDictionary, SspSystem,
     SystemComponent, SystemElement, SystemStructure,
 };
 use octant_base::names::suggestion;
+use parts::Direction;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-
-/// System of FMUs without nested systems.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Flat {
-    /// The FMUs.
-    pub components: Vec<FlatComponent>,
-    /// Wires from connector to connector.
-    pub wires: Vec<FlatWire>,
-    /// Warnings.
-    pub warnings: Vec<String>,
-}
-
-/// An FMU.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlatComponent {
-    /// Name: `plant`, within a system `ship.plant`.
-    pub name: String,
-    /// The FMU.
-    pub file: PathBuf,
-    /// The FMU as the structure names it.
-    pub source: String,
-    /// Interface to use.
-    pub implementation: Implementation,
-    /// Connectors that the structure names.
-    pub connectors: Vec<Connector>,
-    /// Values for variables of the FMU; the last of a name counts.
-    pub parameters: Vec<FlatParameter>,
-    /// Line of the structure.
-    pub line: u32,
-}
-
-/// A value for a variable of an FMU.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlatParameter {
-    /// The variable.
-    pub name: String,
-    /// The value.
-    pub value: Literal,
-    /// Connections that the value passes on its way.
-    pub hops: Vec<Hop>,
-    /// File that contains it.
-    pub file: String,
-    /// Line in that file.
-    pub line: u32,
-}
-
-/// A connector of an FMU.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct FmuConnector {
-    /// Number of the FMU.
-    pub component: usize,
-    /// The connector.
-    pub connector: String,
-}
-
-/// A connection from FMU to FMU.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlatWire {
-    /// Source of the values.
-    pub from: FmuConnector,
-    /// Kind of that connector.
-    pub from_kind: ConnectorKind,
-    /// Destination of the values.
-    pub to: FmuConnector,
-    /// Kind of that connector.
-    pub to_kind: ConnectorKind,
-    /// Operations on values on their way, one for each connection.
-    pub hops: Vec<Hop>,
-    /// Line of the last connection.
-    pub line: u32,
-}
-
-/// One connection on the way.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Hop {
-    /// True if units are not converted.
-    pub suppress_unit_conversion: bool,
-    /// Transformation of the values.
-    pub transformation: Option<Transformation>,
-    /// Unit of the system's connector at the end of the connection, if there is one and the
-    /// structure states it.
-    pub unit: Option<String>,
-}
 
 /// Element of the whole structure, with its path.
 struct Element<'a> {
     path: String,
     connectors: &'a [Connector],
     component: Option<usize>,
+    role: Role<'a>,
+}
+
+/// What an element is besides an FMU or a system.
+#[derive(Clone, Copy)]
+enum Role<'a> {
+    /// An FMU or a system.
+    Plain,
+    /// A signal dictionary: its connectors are its entries.
+    Dictionary(&'a SignalDictionary),
+    /// Reference to the dictionary with this number.
+    Reference(usize),
 }
 
 /// Connector of an element: element, name.
@@ -119,6 +54,9 @@ struct Flattener<'a> {
     into: BTreeMap<Place, Edge>,
     /// Values given to connectors of systems.
     boundary: BTreeMap<Place, FlatParameter>,
+    /// Dictionaries of the system and of those around it, the innermost last: name, number.
+    scopes: Vec<(&'a str, usize)>,
+    references: Vec<FlatReference>,
     warnings: Vec<String>,
 }
 
@@ -134,6 +72,8 @@ impl Flat {
             components: Vec::new(),
             into: BTreeMap::new(),
             boundary: BTreeMap::new(),
+            scopes: Vec::new(),
+            references: Vec::new(),
             warnings: Vec::new(),
         };
         flattener.system(&structure.system, "")?;
@@ -141,7 +81,8 @@ impl Flat {
             return Err(SspError::of_file(&structure.file, "the system has no FMU"));
         }
         let wires = flattener.wires()?;
-        Ok(Self { components: flattener.components, wires, warnings: flattener.warnings })
+        let Flattener { components, references, warnings, .. } = flattener;
+        Ok(Self { components, wires, references, warnings })
     }
 }
 
@@ -159,13 +100,17 @@ impl<'a> Flattener<'a> {
     fn system(&mut self, system: &'a SspSystem, path: &str) -> Result<usize, SspError> {
         let number = self.elements.len();
         let connectors = &system.connectors;
-        self.elements.push(Element { path: path.to_owned(), connectors, component: None });
+        let role = Role::Plain;
+        self.elements.push(Element { path: path.to_owned(), connectors, component: None, role });
+        let around = self.scopes.len();
+        self.dictionaries(system, path);
         let mut parts: Vec<(&str, usize)> = Vec::new();
         for part in &system.elements {
             let inner = join(path, part.name());
             let element = match part {
                 SystemElement::System(system) => self.system(system, &inner)?,
                 SystemElement::Component(component) => self.component(component, inner),
+                SystemElement::Dictionary(reference) => self.reference(reference, inner)?,
             };
             parts.push((part.name(), element));
         }
@@ -178,6 +123,7 @@ impl<'a> Flattener<'a> {
                 self.give(number, &parts, parameter);
             }
         }
+        self.scopes.truncate(around);
         Ok(number)
     }
 
@@ -188,6 +134,7 @@ impl<'a> Flattener<'a> {
             path: path.clone(),
             connectors: &component.connectors,
             component: Some(self.components.len()),
+            role: Role::Plain,
         });
         self.components.push(FlatComponent {
             name: path,
@@ -228,6 +175,7 @@ impl<'a> Flattener<'a> {
                         suppress_unit_conversion: entry.suppress_unit_conversion,
                         transformation: entry.transformation.clone(),
                         unit: None,
+                        entry: None,
                     };
                     give(entry.target.clone(), vec![hop]);
                 }
@@ -256,7 +204,7 @@ impl<'a> Flattener<'a> {
     /// Gives a value of a system's binding to its connector, or to an element inside it.
     fn give(&mut self, system: usize, parts: &[(&str, usize)], mut parameter: FlatParameter) {
         if self.elements[system].connectors.iter().any(|c| c.name == parameter.name) {
-            self.boundary.insert((system, parameter.name.clone()), parameter);
+            self.boundary.insert(self.meant((system, parameter.name.clone())), parameter);
             return;
         }
         // The longest match, because names of elements may contain dots.
@@ -283,8 +231,11 @@ impl<'a> Flattener<'a> {
                 let path = format!("{}.", self.elements[element].path);
                 let parts: Vec<(String, usize)> = (0..self.elements.len())
                     .filter_map(|inner| {
-                        let name = self.elements[inner].path.strip_prefix(&path)?;
-                        Some((name.to_owned(), inner))
+                        let element = &self.elements[inner];
+                        let name = element.path.strip_prefix(&path)?;
+                        // Dictionaries have no place of their own among the elements.
+                        let is_part = !matches!(element.role, Role::Dictionary(_));
+                        is_part.then(|| (name.to_owned(), inner))
                     })
                     .collect();
                 let parts: Vec<(&str, usize)> =
@@ -300,22 +251,17 @@ impl<'a> Flattener<'a> {
         system: usize,
         parts: &[(&str, usize)],
     ) -> Result<(), SspError> {
-        let (start, start_gives) = self.end(connection, &connection.start, system, parts)?;
-        let (end, end_gives) = self.end(connection, &connection.end, system, parts)?;
-        let (from, to) = match (start_gives, end_gives) {
-            (true, false) => (start, end),
-            (false, true) => (end, start),
-            (both, _) => {
-                let what =
-                    if both { "give values and none takes" } else { "take values and none gives" };
-                let message = format!(
-                    "{} and {} both {what} them: an output is connected with an input, or a \
-                     system's connector with one of the same kind in it",
-                    connection.start, connection.end
-                );
-                return Err(self.error(connection.line, "Connection", message));
-            }
-        };
+        let (start, start_is) = self.end(connection, &connection.start, system, parts)?;
+        let (end, end_is) = self.end(connection, &connection.end, system, parts)?;
+        let forward = Direction::forward(start_is, end_is).map_err(|reason| {
+            let message = format!("{} and {} {reason}", connection.start, connection.end);
+            self.error(connection.line, "Connection", message)
+        })?;
+        let (from, to) = if forward { (start, end) } else { (end, start) };
+        if from == to {
+            let message = format!("{} is connected with itself", self.named(&from));
+            return Err(self.error(connection.line, "Connection", message));
+        }
         let hop = Hop {
             suppress_unit_conversion: connection.suppress_unit_conversion,
             transformation: connection.transformation.clone(),
@@ -325,13 +271,22 @@ impl<'a> Flattener<'a> {
                     .connector(&to)
                     .and_then(|connector| connector.of_type.as_ref()?.unit.clone()),
             },
+            entry: self.entry(&to),
         };
         if let Some(other) = self.into.get(&to) {
-            let message = format!(
-                "{} gets its values from the connection in line {} already",
-                if connection.end.connector == to.1 { &connection.end } else { &connection.start },
-                other.line
-            );
+            let message = match hop.entry {
+                Some(entry) => format!(
+                    "{entry} is written by {}, and by {} in line {} already: expected one writer",
+                    self.named(&from),
+                    self.named(&other.from),
+                    other.line
+                ),
+                None => format!(
+                    "{} gets its values from the connection in line {} already",
+                    if forward { &connection.end } else { &connection.start },
+                    other.line
+                ),
+            };
             return Err(self.error(connection.line, "Connection", message));
         }
         let number = self.into.len();
@@ -343,14 +298,14 @@ impl<'a> Flattener<'a> {
         self.elements[*element].connectors.iter().find(|connector| connector.name == *name)
     }
 
-    /// Resolves an end of a connection; true if values come out of it, seen from within the system.
+    /// Resolves an end of a connection, with the direction of values seen from within the system.
     fn end(
         &self,
         connection: &Connection,
         end: &ConnectionEnd,
         system: usize,
         parts: &[(&str, usize)],
-    ) -> Result<(Place, bool), SspError> {
+    ) -> Result<(Place, Direction), SspError> {
         let element = match &end.element {
             None => system,
             Some(name) => {
@@ -374,8 +329,12 @@ impl<'a> Flattener<'a> {
             );
             return Err(self.error(connection.line, "Connection", message));
         };
-        let gives = connector.kind.gives() != (element == system);
-        Ok((place, gives))
+        let direction = match connector.kind {
+            ConnectorKind::Inout => Direction::Either,
+            kind if kind.gives() != (element == system) => Direction::Gives,
+            _ => Direction::Takes,
+        };
+        Ok((self.meant(place), direction))
     }
 
     /// Follows connections back through systems to the FMUs.
@@ -399,12 +358,21 @@ impl<'a> Flattener<'a> {
                 hops.insert(0, edge.hop.clone());
                 at = &edge.from;
                 if hops.len() > self.into.len() {
-                    let message = "connections of systems' own connectors form a circle".to_owned();
+                    let message = "connections of systems' own connectors, or of entries of \
+                                   signal dictionaries, form a circle"
+                        .to_owned();
                     return Err(self.error(edge.line, "Connection", message));
                 }
             };
             let Some(source) = source else {
                 // No connection ends here: a value of a binding is the start value.
+                if let Some(entry) = self.entry(at) {
+                    self.warnings.push(format!(
+                        "{entry} has a reader, {}, and no writer: expected a connection into the \
+                         entry; the input keeps its start value",
+                        self.named(sink)
+                    ));
+                }
                 if let Some(value) = self.boundary.get(at) {
                     let mut value = value.clone();
                     value.name.clone_from(&sink.1);

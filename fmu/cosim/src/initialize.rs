@@ -256,13 +256,12 @@ impl NumberPath {
 
     #[cold]
     fn misfit(&self, value: f64, time_s: f64) -> MasterError {
-        let kind = super::values::kind_name(self.conversion.kind());
         MasterError::Value {
             source_name: self.source.clone(),
             target: self.target.clone(),
             value,
             time_s,
-            reason: format!("the input is a {kind} and has no such value"),
+            reason: self.conversion.misfit(value),
         }
     }
 }

@@ -7,6 +7,7 @@
 //! | [`flat`] | a structure without its systems: FMUs and wires |
 //! | [`order`] | order in which FMUs step, and the values they step from |
 //! | [`graph`], [`solve`] | dependencies, and the solution of loops |
+//! | [`references`] | connectors of references to signal dictionaries against their entries |
 //! | [`convert`] | conversion of a value on a wire: units, transformations, types |
 //! | [`values`] | values on their way between types |
 //! | `open` | the FMUs opened |
@@ -26,6 +27,7 @@ mod open;
 pub mod order;
 pub mod parameters;
 pub mod record;
+pub mod references;
 pub mod requirements;
 pub mod run;
 pub mod simulation;

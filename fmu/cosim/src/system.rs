@@ -6,6 +6,7 @@ pub use super::elements::{element_names, index_of, position};
 use super::convert::{Terminal, WireConversion, WireUnit};
 use super::elements::{Found, element_name, find};
 use super::flat::{Flat, FlatComponent, FlatWire, FmuConnector};
+use super::references;
 use super::ssp::SspError;
 use super::ssp::structure::{Connector, ConnectorKind, SystemStructure};
 use super::values::{is_numeric, kind_name};
@@ -105,6 +106,7 @@ impl System {
         descriptions: &[&Description],
         also: &[(usize, String)],
     ) -> Result<Self, SspError> {
+        references::check(structure, flat)?;
         let builder = Builder { structure, flat, descriptions };
         for (number, component) in flat.components.iter().enumerate() {
             for connector in &component.connectors {
@@ -234,6 +236,8 @@ impl<'a> Builder<'a> {
             Of::StructuralParameter => variable.causality == Causality::StructuralParameter,
             Of::Constant => variable.variability == Variability::Constant,
             Of::Local => variable.causality == Causality::Local,
+            // The reader takes this kind at references to signal dictionaries alone.
+            Of::Inout => false,
         };
         if !fits {
             return Err(error(format!(
@@ -338,6 +342,7 @@ impl<'a> Builder<'a> {
                 from.count, to.count
             )));
         }
+        references::sizes(&wire.hops, from.count).map_err(&error)?;
         let (a, b) = (self.terminal(&wire.from, &from), self.terminal(&wire.to, &to));
         let conversion = WireConversion::of(&a, &b, &wire.hops, &self.structure.units)
             .map_err(|reason| error(reason.to_string()))?;

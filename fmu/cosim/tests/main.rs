@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod convert;
+mod dictionaries;
 mod elements;
 mod graph;
 mod order;

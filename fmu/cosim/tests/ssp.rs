@@ -32,7 +32,10 @@ fn package(structure: &str, files: &[(&str, &str)]) -> (tempfile::TempDir, Packa
     (folder, package)
 }
 
-fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure, Flat), String> {
+pub(crate) fn read(
+    structure: &str,
+    files: &[(&str, &str)],
+) -> Result<(SystemStructure, Flat), String> {
     let (folder, package) = package(structure, files);
     let shorter = |error: octant_cosim::ssp::SspError| {
         error.to_string().replace(&format!("{}/", folder.path().display()), "")
@@ -42,15 +45,17 @@ fn read(structure: &str, files: &[(&str, &str)]) -> Result<(SystemStructure, Fla
     Ok((structure, flat))
 }
 
-fn component(name: &str, connectors: &str, more: &str) -> String {
+pub(crate) fn component(name: &str, connectors: &str, more: &str) -> String {
     format!(
         r#"<Component name="{name}" source="resources/{name}.fmu">
              <Connectors>{connectors}</Connectors>{more}</Component>"#
     )
 }
 
-const IN: &str = r#"<Connector name="u" kind="input"><ssc:Real unit="deg"/></Connector>"#;
-const OUT: &str = r#"<Connector name="y" kind="output"><ssc:Real unit="rad"/></Connector>"#;
+pub(crate) const IN: &str =
+    r#"<Connector name="u" kind="input"><ssc:Real unit="deg"/></Connector>"#;
+pub(crate) const OUT: &str =
+    r#"<Connector name="y" kind="output"><ssc:Real unit="rad"/></Connector>"#;
 
 /// Builds a system with a and b, and further content after its elements.
 fn two(rest: &str) -> String {
@@ -221,12 +226,12 @@ fn what_is_wrong_is_told_with_file_line_and_element() {
         |attributes: &str| two(&format!("<Connections><Connection {attributes}/></Connections>"));
     let y_to_u = r#"startElement="a" startConnector="y" endElement="b" endConnector="u""#;
     for (structure, expected) in [
-        (two("<SignalDictionaries/>"), "signal dictionaries are not part of this version"),
         (
             r#"<System name="s"><Elements><SignalDictionaryReference name="d" dictionary="x"/>
                </Elements></System>"#
                 .to_owned(),
-            "SystemStructure.ssd:7: SignalDictionaryReference \"d\": signal dictionaries",
+            "SystemStructure.ssd:7: SignalDictionaryReference \"d\": found the dictionary \"x\", \
+             expected one of this system or of those around it",
         ),
         (r#"<System name="s"/>"#.to_owned(), "the system has no FMU"),
         (

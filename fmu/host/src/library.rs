@@ -155,10 +155,12 @@ impl Library {
             ),
             Functions::Fmi3(f) => {
                 let either = f.fmi3InstantiateCoSimulation.is_some()
-                    || f.fmi3InstantiateModelExchange.is_some();
+                    || f.fmi3InstantiateModelExchange.is_some()
+                    || f.fmi3InstantiateScheduledExecution.is_some();
                 let mut needed = needed!(f: fmi3FreeInstance fmi3EnterInitializationMode
                     fmi3ExitInitializationMode);
-                let name = "fmi3InstantiateCoSimulation or fmi3InstantiateModelExchange";
+                let name = "fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange or \
+                            fmi3InstantiateScheduledExecution";
                 needed.insert(0, (name, either));
                 (needed, f.fmi3GetVersion, "3.")
             }

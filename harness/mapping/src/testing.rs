@@ -82,7 +82,7 @@ pub fn description(name: &str, variables: Vec<Variable>) -> Description {
         structured_names: true,
         co_simulation: Some(Interface::default()),
         model_exchange: None,
-        scheduled_execution: false,
+        scheduled_execution: None,
         log_categories: Vec::new(),
         default_experiment: DefaultExperiment::default(),
         units: Vec::new(),

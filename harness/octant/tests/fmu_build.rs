@@ -75,7 +75,7 @@ fn descriptions_say_what_the_tables_say() {
         let interface = description.co_simulation.as_ref().unwrap();
         assert!(interface.state && interface.serialized_state);
         assert_eq!(interface.variable_step, model.is_event_driven());
-        assert!(description.model_exchange.is_none() && !description.scheduled_execution);
+        assert!(description.model_exchange.is_none() && description.scheduled_execution.is_none());
         let categories = octant_fmu::c::CATEGORIES.map(|(name, _)| name);
         assert_eq!(description.log_categories, categories);
         assert_eq!(description.default_experiment.step_s, Some(0.005));

@@ -60,6 +60,7 @@ mod fmu_plant;
 #[cfg(target_os = "linux")]
 mod fmu_process;
 #[cfg(target_os = "linux")]
+mod fmu_scheduled;
 mod fmu_source;
 mod formats;
 mod further_states;

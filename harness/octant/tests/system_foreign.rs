@@ -122,6 +122,59 @@ fn model_exchange_and_co_simulation_run_together() {
     }
 }
 
+/// An entry of a dictionary between two FMUs takes no time, and alters no value of its own type.
+#[test]
+fn a_signal_dictionary_carries_what_a_connection_carries() {
+    let direct = ball();
+    let file = direct.path().join("SystemStructure.ssd");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let through = ball();
+    let reference = "<SignalDictionaryReference name=\"bus\" dictionary=\"can\"><Connectors>\
+                     <Connector name=\"speed\" kind=\"inout\"/></Connectors>\
+                     </SignalDictionaryReference></Elements>";
+    let dictionary = "</Connections><SignalDictionaries><SignalDictionary name=\"can\" \
+                      source=\"resources/can.ssb\"/></SignalDictionaries>";
+    let wires = connection("ball.v", "bus.speed") + &connection("bus.speed", "sum.u");
+    let text = text
+        .replace("</Elements>", reference)
+        .replace(&connection("ball.v", "sum.u"), &wires)
+        .replace("</Connections>", dictionary);
+    std::fs::write(through.path().join("SystemStructure.ssd"), text).unwrap();
+    let entries = |of_type: &str| {
+        format!(
+            "<SignalDictionary version=\"1.0\" \
+             xmlns=\"http://ssp-standard.org/SSP1/SystemStructureSignalDictionary\" \
+             xmlns:ssc=\"http://ssp-standard.org/SSP1/SystemStructureCommon\">\
+             <DictionaryEntry name=\"speed\">{of_type}</DictionaryEntry></SignalDictionary>"
+        )
+    };
+    let ssb = through.path().join("resources/can.ssb");
+    let values = |folder: &Path, name: &str| {
+        let out = folder.join(name);
+        let ran = run(folder, &out, &["--stop", "0.4 s", "--csv"]);
+        (ran.status.code(), error(&ran), std::fs::read(out.join("values.csv")).unwrap_or_default())
+    };
+    let (code, said, expected) = values(direct.path(), "run");
+    assert_eq!(code, Some(0), "{said}");
+    std::fs::write(&ssb, entries("<ssc:Real/>")).unwrap();
+    let (code, said, found) = values(through.path(), "real");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(found == expected, "the values differ");
+    // A whole number has no value for the speed after the first step.
+    std::fs::write(&ssb, entries("<ssc:Int16/>")).unwrap();
+    let (code, said, _) = values(through.path(), "whole");
+    assert_eq!(code, Some(4), "{said}");
+    assert!(
+        said.contains("the entry \"speed\" of the signal dictionary can (")
+            && said.contains("is a Int16 and has no such value"),
+        "{said}"
+    );
+    std::fs::write(&ssb, entries("<ssc:String/>")).unwrap();
+    let (code, said, _) = values(through.path(), "text");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("a Float64 can't become a String"), "{said}");
+}
+
 /// Makes an integrator beside an FMU that causes trouble in its step from 0.5 s on.
 fn trouble(what: &str) -> tempfile::TempDir {
     let number = |number: &str| format!("<ssv:Integer value=\"{number}\"/>");

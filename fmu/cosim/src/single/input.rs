@@ -275,6 +275,14 @@ impl Inputs {
 }
 
 impl Inputs {
+    /// Returns the time of the next row at which a clock ticks, s, of those that [`Self::ticks`] hasn't
+    /// told yet.
+    #[must_use]
+    pub fn next_tick_s(&self) -> Option<f64> {
+        let ticks = |row: &usize| self.clocks.iter().any(|clock| clock.ticks[*row]);
+        (self.ticked..self.time_s.len()).find(ticks).map(|row| self.time_s[row])
+    }
+
     /// Returns the clocks that tick at the last requested time: those of each row since the last call.
     pub fn ticks(&mut self) -> Option<VariableGroup> {
         let (first, end) = (self.ticked, self.reached);

@@ -1,10 +1,11 @@
 //! Steps any FMU with inputs from a file, and writes its outputs row by row: `octant fmu run`.
 //!
 //! Row 0 is the state after initialization. A row follows each communication step, with the inputs
-//! of the step's start, as FMPy records.
+//! of the step's start, as FMPy records. By [`scheduled`] execution a row follows each tick.
 
 pub mod input;
 pub mod output;
+pub mod scheduled;
 
 use input::Inputs;
 use octant_base::control::Control;
@@ -112,6 +113,24 @@ pub enum SimulateError {
         step_s: f64,
         /// Message that the FMU logged, after a colon; else empty.
         said: String,
+    },
+    /// A clock has no time at which it could tick.
+    #[error("the clock {clock} of {fmu} can't tick after {time_s} s: {reason}")]
+    Clock {
+        /// Name of the clock.
+        clock: String,
+        /// Name of the FMU.
+        fmu: String,
+        /// Time of the last tick, or of the start, s.
+        time_s: f64,
+        /// Found and expected.
+        reason: String,
+    },
+    /// The FMU has nothing to be activated.
+    #[error("{fmu} has no input clock, expected one for each model partition")]
+    NoPartition {
+        /// Name of the FMU.
+        fmu: String,
     },
     /// The outputs can't be written.
     #[error("write the outputs: {0}")]

@@ -5,6 +5,8 @@
 //! |---|---|
 //! | [`package`] | the folder of a structure: unpacked from an `.ssp`, or a plain folder |
 //! | [`structure`] | `SystemStructure.ssd`: systems, components, connectors, connections, bindings |
+//! | `connectors` | connectors, and the types of these and of entries of dictionaries |
+//! | `dictionary` | signal dictionaries (`.ssb`), inline or in files |
 //! | [`parameters`] | parameter sets (`.ssv`) and parameter mappings (`.ssm`), inline or in files |
 //! | [`annotation`] | settings of a structure for this program alone |
 //! | `warnings` | deviations that are read with a warning |
@@ -13,6 +15,8 @@
 //! The FMUs aren't read here: that is done when the system is [built](super::system).
 
 pub mod annotation;
+mod connectors;
+mod dictionary;
 pub mod package;
 pub mod parameters;
 mod parts;

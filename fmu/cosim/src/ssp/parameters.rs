@@ -143,7 +143,8 @@ pub(super) fn version(root: &Element<'_>) -> Result<(), SspError> {
     }
 }
 
-const TOP: [&str; 8] = [
+/// Attributes of the root of a file that is no structure.
+pub(super) const TOP: [&str; 8] = [
     "version",
     "name",
     "author",

@@ -1,7 +1,8 @@
-//! Parts of a system structure: systems, components, connectors, connections and bindings.
+//! Parts of a system structure: systems, components, signal dictionaries, connectors, connections
+//! and bindings.
 
-use super::parameters::{ParameterMapping, ParameterSet, Transformation};
-use octant_fmu_host::description::VariableType;
+use super::parameters::{ParameterMapping, ParameterSet, SystemEnumeration, Transformation};
+use octant_fmu_host::description::{BaseUnit, VariableType};
 use std::path::PathBuf;
 
 /// System: elements and their connections.
@@ -17,6 +18,38 @@ pub struct SspSystem {
     pub connections: Vec<Connection>,
     /// Parameter bindings of the system.
     pub bindings: Vec<Binding>,
+    /// Signal dictionaries for references in this system, and in systems within it.
+    pub dictionaries: Vec<SignalDictionary>,
+    /// Line of the file.
+    pub line: u32,
+}
+
+/// Collection of signals that systems at any level read and write by their names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalDictionary {
+    /// Name by which references find it.
+    pub name: String,
+    /// File that contains its entries: that of the structure, or an `.ssb`.
+    pub file: String,
+    /// Its signals: connectors of kind inout, with a type each.
+    pub entries: Vec<Connector>,
+    /// Units that it defines.
+    pub units: Vec<(String, BaseUnit)>,
+    /// Enumerations that it defines.
+    pub enumerations: Vec<SystemEnumeration>,
+}
+
+/// Place of a signal dictionary in a system: its connectors are entries of the dictionary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DictionaryReference {
+    /// Name.
+    pub name: String,
+    /// Name of the dictionary in this system or one around it.
+    pub dictionary: String,
+    /// Entries that connections of this system use.
+    pub connectors: Vec<Connector>,
+    /// Parameter bindings: start values of entries that nothing writes.
+    pub bindings: Vec<Binding>,
     /// Line of the file.
     pub line: u32,
 }
@@ -28,6 +61,8 @@ pub enum SystemElement {
     Component(SystemComponent),
     /// Nested system.
     System(SspSystem),
+    /// Reference to a signal dictionary.
+    Dictionary(DictionaryReference),
 }
 
 impl SystemElement {
@@ -37,6 +72,7 @@ impl SystemElement {
         match self {
             Self::Component(component) => &component.name,
             Self::System(system) => &system.name,
+            Self::Dictionary(reference) => &reference.name,
         }
     }
 
@@ -46,6 +82,7 @@ impl SystemElement {
         match self {
             Self::Component(component) => &component.connectors,
             Self::System(system) => &system.connectors,
+            Self::Dictionary(reference) => &reference.connectors,
         }
     }
 }
@@ -92,6 +129,7 @@ pub enum ConnectorKind {
     StructuralParameter,
     Constant,
     Local,
+    Inout,
 }
 
 impl ConnectorKind {
@@ -106,6 +144,7 @@ impl ConnectorKind {
             Self::StructuralParameter => "structuralParameter",
             Self::Constant => "constant",
             Self::Local => "local",
+            Self::Inout => "inout",
         }
     }
 

@@ -1,16 +1,19 @@
 //! `SystemStructure.ssd`: systems, components, connectors, connections and parameter bindings.
 
 pub use super::parts::{
-    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, ConnectorType, Implementation,
-    SspSystem, SystemComponent, SystemElement,
+    Binding, Connection, ConnectionEnd, Connector, ConnectorKind, ConnectorType,
+    DictionaryReference, Implementation, SignalDictionary, SspSystem, SystemComponent,
+    SystemElement,
 };
 
 use super::SspError;
 use super::annotation::{self, CoSimulation};
+use super::connectors::connectors;
+use super::dictionary;
 use super::package::Package;
-use super::parameters::{self, SystemEnumeration, TRANSFORMATIONS, kind_named};
-use super::xml::{self, Element, SSC, SSD};
-use octant_fmu_host::description::{BaseUnit, VariableType};
+use super::parameters::{self, SystemEnumeration, TRANSFORMATIONS};
+use super::xml::{self, Element, SSB, SSD};
+use octant_fmu_host::description::BaseUnit;
 
 /// Maximum nesting depth of systems: far more than any design has.
 const DEPTH_MAX: usize = 64;
@@ -117,17 +120,13 @@ impl Reader<'_> {
         let mut elements = ELEMENT.to_vec();
         elements.extend([(SSD, "Elements"), (SSD, "Connections"), (SSD, "SignalDictionaries")]);
         element.only(&["name"], &elements)?;
-        if let Some(dictionaries) = element.child(SSD, "SignalDictionaries")? {
-            return Err(dictionaries.error(
-                "signal dictionaries are not part of this version: connect the FMUs directly",
-            ));
-        }
         let mut system = SspSystem {
             name: element.optional("name").unwrap_or_default().to_owned(),
-            connectors: connectors(element, self.units)?,
+            connectors: connectors(element, self.units, false)?,
             elements: Vec::new(),
             connections: Vec::new(),
             bindings: self.bindings(element, None)?,
+            dictionaries: self.dictionaries(element)?,
             line: element.line(),
         };
         if let Some(parts) = element.child(SSD, "Elements")? {
@@ -143,10 +142,7 @@ impl Reader<'_> {
                         SystemElement::System(self.system(&part, depth + 1)?)
                     }
                     "SignalDictionaryReference" => {
-                        return Err(part.error(
-                            "signal dictionaries are not part of this version: connect the FMUs \
-                             directly",
-                        ));
+                        SystemElement::Dictionary(self.reference(&part)?)
                     }
                     _ => continue,
                 };
@@ -166,6 +162,43 @@ impl Reader<'_> {
             }
         }
         Ok(system)
+    }
+
+    /// Reads the dictionaries that a system defines.
+    fn dictionaries(&self, system: &Element<'_>) -> Result<Vec<SignalDictionary>, SspError> {
+        let mut dictionaries: Vec<SignalDictionary> = Vec::new();
+        let Some(list) = system.child(SSD, "SignalDictionaries")? else {
+            return Ok(dictionaries);
+        };
+        list.only(&[], &[(SSD, "SignalDictionary")])?;
+        for element in list.children().filter(|child| child.is(SSD, "SignalDictionary")) {
+            element.only(&["name", "type", "source"], &[(SSB, "SignalDictionary")])?;
+            let name = element.required("name")?;
+            if dictionaries.iter().any(|known| known.name == name) {
+                return Err(element.error("found a second time, expected unique names"));
+            }
+            let mut dictionary = self.part(
+                &element,
+                Some(element),
+                ("SignalDictionary", "application/x-ssp-signal-dictionary"),
+                None,
+                dictionary::dictionary,
+            )?;
+            name.clone_into(&mut dictionary.name);
+            dictionaries.push(dictionary);
+        }
+        Ok(dictionaries)
+    }
+
+    fn reference(&self, element: &Element<'_>) -> Result<DictionaryReference, SspError> {
+        element.only(&["name", "dictionary"], &ELEMENT)?;
+        Ok(DictionaryReference {
+            name: element.required("name")?.to_owned(),
+            dictionary: element.required("dictionary")?.to_owned(),
+            connectors: connectors(element, self.units, true)?,
+            bindings: self.bindings(element, None)?,
+            line: element.line(),
+        })
     }
 
     fn component(&self, element: &Element<'_>) -> Result<SystemComponent, SspError> {
@@ -204,7 +237,7 @@ impl Reader<'_> {
             name: element.required("name")?.to_owned(),
             source: source.to_owned(),
             implementation,
-            connectors: connectors(element, self.units)?,
+            connectors: connectors(element, self.units, false)?,
             bindings: self.bindings(element, Some(source))?,
             line: element.line(),
             file,
@@ -306,83 +339,6 @@ impl Reader<'_> {
         let warnings = &self.package.warnings;
         read(&Element { node: document.root_element(), file: &file, warnings })
     }
-}
-
-fn connectors(
-    element: &Element<'_>,
-    units: &[(String, BaseUnit)],
-) -> Result<Vec<Connector>, SspError> {
-    let Some(list) = element.child(SSD, "Connectors")? else { return Ok(Vec::new()) };
-    list.only(&[], &[(SSD, "Connector")])?;
-    let mut connectors: Vec<Connector> = Vec::new();
-    for element in list.children().filter(|child| child.is(SSD, "Connector")) {
-        let read = connector(&element, units)?;
-        if connectors.iter().any(|known| known.name == read.name) {
-            return Err(element.error("found a second time, expected unique names"));
-        }
-        connectors.push(read);
-    }
-    Ok(connectors)
-}
-
-fn connector(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Connector, SspError> {
-    let name = element.required("name")?;
-    let kind = match element.required("kind")? {
-        "input" => ConnectorKind::Input,
-        "output" => ConnectorKind::Output,
-        "parameter" => ConnectorKind::Parameter,
-        "calculatedParameter" => ConnectorKind::CalculatedParameter,
-        "structuralParameter" => ConnectorKind::StructuralParameter,
-        "constant" => ConnectorKind::Constant,
-        "local" => ConnectorKind::Local,
-        other => {
-            return Err(element.error(format!(
-                "the kind {other:?} was found, expected input, output, parameter, \
-                 calculatedParameter, structuralParameter, constant or local"
-            )));
-        }
-    };
-    let mut connector = Connector {
-        name: name.to_owned(),
-        kind,
-        of_type: None,
-        dimensions: Vec::new(),
-        line: element.line(),
-    };
-    for child in element.children() {
-        if child.name() == "Clock" {
-            return Err(child.error("clocks are not part of this version"));
-        }
-        if child.is(SSC, "Dimension") {
-            child.only(&["size", "sizeConnector"], &[])?;
-            let size = child.integer("size")?;
-            connector.dimensions.push(size.and_then(|size| u64::try_from(size).ok()));
-            continue;
-        }
-        let Some(kind) = kind_named(child.name()).filter(|_| child.is(SSC, child.name())) else {
-            // Geometry and the like; anything else is refused below.
-            continue;
-        };
-        child.only(&["unit", "name", "mime-type"], &[])?;
-        if connector.of_type.is_some() {
-            return Err(child.error("found a second type, expected one"));
-        }
-        let enumeration = child.optional("name").map(str::to_owned);
-        if kind == VariableType::Enumeration && enumeration.is_none() {
-            return Err(child.error("the attribute \"name\" is missing"));
-        }
-        connector.of_type = Some(ConnectorType {
-            name: child.name().to_owned(),
-            kind,
-            unit: child.unit(units).map(|(name, _)| name.to_owned()),
-            enumeration,
-        });
-    }
-    let mut known: Vec<(&str, &str)> = vec![(SSC, "Dimension")];
-    let types: Vec<&str> = element.children().map(|child| child.name()).collect();
-    known.extend(types.iter().filter(|name| kind_named(name).is_some()).map(|name| (SSC, *name)));
-    element.only(&["name", "kind"], &known)?;
-    Ok(connector)
 }
 
 fn connection(element: &Element<'_>) -> Result<Connection, SspError> {

@@ -12,6 +12,8 @@ pub(super) const SSC: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon
 pub(super) const SSV: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 pub(super) const SSM: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterMapping";
 
+pub(super) const SSB: &str = "http://ssp-standard.org/SSP1/SystemStructureSignalDictionary";
+
 /// Maximum number of elements in a file.
 const NODES_MAX: u32 = 4_000_000;
 

@@ -43,7 +43,9 @@ pub(super) fn read<'a, 't: 'a>(
         interface.completed_step_needed = element.boolean("needsCompletedIntegratorStep")?;
         description.model_exchange = Some(interface);
     }
-    description.scheduled_execution = root.child("ScheduledExecution").is_some();
+    if let Some(element) = root.child("ScheduledExecution") {
+        description.scheduled_execution = Some(common(element)?);
+    }
     let types = types(root, description)?;
     let Some(list) = root.child("ModelVariables") else {
         return Err(root.error(None, "no ModelVariables", "the variables, at least time"));

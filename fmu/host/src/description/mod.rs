@@ -103,8 +103,8 @@ pub struct Description {
     pub co_simulation: Option<Interface>,
     /// Capabilities in model exchange; `None`: not available.
     pub model_exchange: Option<Interface>,
-    /// True if scheduled execution is available.
-    pub scheduled_execution: bool,
+    /// Capabilities in scheduled execution (FMI 3.0); `None`: not available.
+    pub scheduled_execution: Option<Interface>,
     /// Names of the log categories.
     pub log_categories: Vec<String>,
     /// Start, stop, tolerance and step, as far as given.

@@ -61,7 +61,7 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
             .unwrap_or(false),
         co_simulation: None,
         model_exchange: None,
-        scheduled_execution: false,
+        scheduled_execution: None,
         log_categories: Vec::new(),
         default_experiment: DefaultExperiment::default(),
         units: Vec::new(),
@@ -101,7 +101,7 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
     }
     if description.co_simulation.is_none()
         && description.model_exchange.is_none()
-        && !description.scheduled_execution
+        && description.scheduled_execution.is_none()
     {
         let expected = match standard {
             Standard::Fmi2 => "CoSimulation or ModelExchange",

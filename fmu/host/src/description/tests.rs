@@ -215,7 +215,8 @@ fn a_description_of_fmi_3_is_read_in_full() {
         }
     );
     assert!(found.model_exchange.as_ref().expect("model exchange").completed_step_needed);
-    assert!(found.scheduled_execution);
+    let scheduled = found.scheduled_execution.as_ref().unwrap();
+    assert_eq!(scheduled.model_identifier, "ship");
     let m = found.variable("m").expect("m");
     assert_eq!(m.dimensions, [ArrayDimension::Fixed(2), ArrayDimension::Of(1)]);
     assert_eq!((found.elements(m), m.start.len()), (Ok(6), 6));

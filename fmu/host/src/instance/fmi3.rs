@@ -7,11 +7,12 @@ use super::call::{
     Answer, Base, Condition, NOWHERE, UNLOADING, ask, call, free_on_drop, function_number,
     functions_of_both,
 };
+use super::clock_update::{RunningActivation, WatchedClocks, clock_update, preemption};
 use super::message::{Log, log_message, text};
 use super::scratch::{Scratch3, get_through, set_through};
 use super::setup::{Setup, c_text};
-use super::unit::{Interval, RawState, Steps, Unit};
-use super::{InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
+use super::unit::{Interval, Partitions, RawState, Steps, Unit};
+use super::{ClockNews, InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
 use octant_fmi::{fmi3, fmi3_types};
 use std::ffi::{CString, c_char};
 use std::ptr;
@@ -47,6 +48,7 @@ pub(crate) enum Use {
         expect(dead_code, reason = "only the solver needs it")
     )]
     ModelExchange,
+    ScheduledExecution,
 }
 
 impl Component {
@@ -107,6 +109,29 @@ impl Component {
                         logging,
                         environment,
                         Some(log_message),
+                    )
+                };
+                (function, instance)
+            }
+            Use::ScheduledExecution => {
+                let function = "fmi3InstantiateScheduledExecution";
+                let instantiate = functions
+                    .fmi3InstantiateScheduledExecution
+                    .ok_or_else(|| base.missing(function))?;
+                base.mark.set(function_number("fmi3InstantiateScheduledExecution"));
+                // SAFETY: as above; the callbacks need nothing that ends before the instance.
+                let instance = unsafe {
+                    instantiate(
+                        name.as_ptr(),
+                        token.as_ptr(),
+                        resources.as_ptr(),
+                        0,
+                        logging,
+                        environment,
+                        Some(log_message),
+                        Some(clock_update),
+                        Some(preemption),
+                        Some(preemption),
                     )
                 };
                 (function, instance)
@@ -382,6 +407,28 @@ impl Steps for Component {
 
     fn activate(&mut self, clock: u32) -> Result<(), InstanceError> {
         call!(self.fmi3SetClock(&clock, 1, &1))
+    }
+}
+
+impl Partitions for Component {
+    fn activate_partition(
+        &mut self,
+        clock: u32,
+        time_s: f64,
+        watched: &Arc<WatchedClocks>,
+    ) -> Result<ClockNews, InstanceError> {
+        RunningActivation::begin(self.functions, self.instance, watched);
+        let activated = call!(self.fmi3ActivateModelPartition(clock, time_s));
+        let news = RunningActivation::end();
+        activated?;
+        match news {
+            Ok(news) => Ok(news),
+            Err((function, None)) => Err(self.base.missing(function)),
+            Err((function, Some(status))) => {
+                self.base.check(function, status)?;
+                Ok(ClockNews::default())
+            }
+        }
     }
 }
 

@@ -18,8 +18,11 @@
 //! | `clocks` | ticks of time-based clocks |
 //! | `common` | the part that co-simulation and model exchange have in common |
 //! | `co_simulation` | co-simulation in the order of calls that the standards require |
+//! | `scheduled` | scheduled execution: model partitions that the caller activates |
+//! | `clock_update` | callbacks of scheduled execution |
 
 pub(super) mod call;
+mod clock_update;
 mod clocks;
 pub(super) mod co_simulation;
 pub(super) mod common;
@@ -33,11 +36,13 @@ mod number;
 pub(super) mod once;
 pub mod open;
 pub mod options;
+mod scheduled;
 mod scratch;
 pub(super) mod setup;
 pub(super) mod states;
 pub(super) mod unit;
 
+pub use clock_update::ClockNews;
 pub use error::InstanceError;
 pub use group::{Access, AccessPlan, VariableGroup};
 pub use message::FmuMessage;
@@ -90,6 +95,8 @@ pub struct Update {
 /// Largest number of early returns within one exchange, and of updates of the discrete states at
 /// one event, before they count as endless.
 pub const REPEATS_MAX: usize = 1000;
+
+const NOT_SCHEDULED: &str = "it isn't run by scheduled execution";
 
 /// Operations on one FMU, in this process or in another.
 pub trait Instance: Send {
@@ -273,6 +280,28 @@ pub trait Instance: Send {
     /// # Errors
     /// If the FMU fails or isn't in event mode.
     fn leave_event_mode(&mut self) -> Result<(), InstanceError>;
+
+    /// Activates the model partition of an input clock (scheduled execution), and returns what the
+    /// FMU said about other clocks meanwhile. Times of one clock increase.
+    ///
+    /// # Errors
+    /// If the FMU fails, or isn't run by scheduled execution.
+    fn activate_partition(
+        &mut self,
+        _clock: u32,
+        _time_s: f64,
+    ) -> Result<ClockNews, InstanceError> {
+        Err(InstanceError::unsupported(self.name(), "activate a model partition", NOT_SCHEDULED))
+    }
+
+    /// Returns the interval of an input clock, s (scheduled execution); `None`: the FMU doesn't know
+    /// it yet.
+    ///
+    /// # Errors
+    /// As [`Self::activate_partition`].
+    fn partition_interval_s(&mut self, _clock: u32) -> Result<Option<f64>, InstanceError> {
+        Err(InstanceError::unsupported(self.name(), "tell a clock's interval", NOT_SCHEDULED))
+    }
 
     /// Stores the state of the FMU and returns its number.
     ///

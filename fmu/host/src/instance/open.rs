@@ -13,6 +13,7 @@ use super::clocks::Clocks;
 use super::co_simulation::CoSimulation;
 use super::once::Once;
 use super::options::{InterfaceKind, OpenOptions, ProcessPlace};
+use super::scheduled::ScheduledExecution;
 use super::setup::Setup;
 use super::{Instance, InstanceError, fmi2, fmi3};
 use std::path::Path;
@@ -110,7 +111,8 @@ pub(crate) fn open_here(
     options: &OpenOptions,
     mark: Mark,
 ) -> Result<Box<dyn Instance>, InstanceError> {
-    let (exchange, interface) = interface(name, &description, options.interface)?;
+    let (purpose, interface) = interface(name, &description, options.interface)?;
+    let exchange = purpose == fmi3::Use::ModelExchange;
     if exchange && cfg!(not(feature = "model-exchange")) {
         return Err(InstanceError::unsupported(
             name,
@@ -131,7 +133,8 @@ pub(crate) fn open_here(
         return Err(InstanceError::unsupported(name, "be run", reason));
     }
     let clocks = description.variables.iter().any(|variable| variable.kind == VariableType::Clock);
-    if !exchange && clocks && !(options.event_mode && interface.event_mode) {
+    let steps = purpose == fmi3::Use::CoSimulation;
+    if steps && clocks && !(options.event_mode && interface.event_mode) {
         return Err(InstanceError::unsupported(
             name,
             "run without event mode",
@@ -175,17 +178,20 @@ pub(crate) fn open_here(
     if exchange {
         return exchanged(library, &setup);
     }
+    if purpose == fmi3::Use::ScheduledExecution {
+        return Ok(Box::new(ScheduledExecution::new(fmi3::Component::new(
+            library, &setup, purpose,
+        )?)));
+    }
     Ok(match setup.description.standard {
         Standard::Fmi2 => Box::new(CoSimulation::new(fmi2::Component::new(
             library,
             &setup,
             octant_fmi::fmi2::CO_SIMULATION,
         )?)),
-        Standard::Fmi3 => Box::new(CoSimulation::new(fmi3::Component::new(
-            library,
-            &setup,
-            fmi3::Use::CoSimulation,
-        )?)),
+        Standard::Fmi3 => {
+            Box::new(CoSimulation::new(fmi3::Component::new(library, &setup, purpose)?))
+        }
     })
 }
 
@@ -205,31 +211,41 @@ fn exchanged(library: Arc<Library>, setup: &Setup) -> Result<Box<dyn Instance>, 
     })
 }
 
-/// Chooses the interface; returns true for model exchange.
+/// Chooses the interface.
 fn interface(
     name: &str,
     description: &Description,
     kind: InterfaceKind,
-) -> Result<(bool, Interface), InstanceError> {
-    let co_simulation = description.co_simulation.clone().map(|interface| (false, interface));
-    let exchange = description.model_exchange.clone().map(|interface| (true, interface));
+) -> Result<(fmi3::Use, Interface), InstanceError> {
+    let with = |interface: &Option<Interface>, purpose| {
+        interface.clone().map(|interface| (purpose, interface))
+    };
+    let co_simulation = with(&description.co_simulation, fmi3::Use::CoSimulation);
+    let exchange = with(&description.model_exchange, fmi3::Use::ModelExchange);
+    let scheduled = with(&description.scheduled_execution, fmi3::Use::ScheduledExecution);
     let (found, wanted) = match kind {
         InterfaceKind::Any => (co_simulation.or(exchange), "co-simulation or model exchange"),
         InterfaceKind::CoSimulation => (co_simulation, "co-simulation"),
         InterfaceKind::ModelExchange => (exchange, "model exchange"),
+        InterfaceKind::ScheduledExecution => (scheduled, "scheduled execution"),
     };
     found.ok_or_else(|| {
         let mut has = Vec::new();
         for (there, what) in [
             (description.co_simulation.is_some(), "co-simulation"),
             (description.model_exchange.is_some(), "model exchange"),
-            (description.scheduled_execution, "scheduled execution"),
+            (description.scheduled_execution.is_some(), "scheduled execution"),
         ] {
             if there {
                 has.push(what);
             }
         }
+        let only = has == ["scheduled execution"];
         let has = if has.is_empty() { "no interface".into() } else { has.join(" and ") };
-        InstanceError::unsupported(name, format!("run by {wanted}"), format!("it has {has}"))
+        let hint = match only {
+            true => ", by which octant fmu run --interface scheduled-execution runs it",
+            false => "",
+        };
+        InstanceError::unsupported(name, format!("run by {wanted}"), format!("it has {has}{hint}"))
     })
 }

@@ -14,6 +14,8 @@ pub enum InterfaceKind {
     CoSimulation,
     /// Model exchange, with Octant's solver.
     ModelExchange,
+    /// Scheduled execution (FMI 3.0): the caller activates each model partition.
+    ScheduledExecution,
 }
 
 /// Process in which the code of an FMU runs.

@@ -2,8 +2,10 @@
 //! where the other needs one; the user of the trait is responsible for the order of calls.
 
 use super::call::Base;
-use super::{InstanceError, Stepped, Update, VariableGroup};
+use super::clock_update::WatchedClocks;
+use super::{ClockNews, InstanceError, Stepped, Update, VariableGroup};
 use std::ffi::c_void;
+use std::sync::Arc;
 
 /// A state as returned by the FMU.
 pub(crate) type RawState = *mut c_void;
@@ -60,6 +62,18 @@ pub(crate) trait Steps: Unit {
     fn interval(&mut self, clock: u32) -> Result<Interval, InstanceError>;
     /// Activates a clock.
     fn activate(&mut self, clock: u32) -> Result<(), InstanceError>;
+}
+
+/// Scheduled execution.
+pub(crate) trait Partitions: Steps {
+    /// Activates the model partition of an input clock. When the FMU calls back meanwhile, the
+    /// watched clocks are asked.
+    fn activate_partition(
+        &mut self,
+        clock: u32,
+        time_s: f64,
+        watched: &Arc<WatchedClocks>,
+    ) -> Result<ClockNews, InstanceError>;
 }
 
 /// Answer of an FMU on a clock's interval.

@@ -249,6 +249,12 @@ impl Host {
             Request::EnterEventMode => Answer::Done(instance.enter_event_mode()?),
             Request::UpdateDiscreteStates => Answer::Update(instance.update_discrete_states()?),
             Request::LeaveEventMode => Answer::Done(instance.leave_event_mode()?),
+            Request::ActivatePartition { clock, time_s } => {
+                Answer::ClockNews(instance.activate_partition(clock, time_s)?)
+            }
+            Request::PartitionInterval(clock) => {
+                Answer::Interval(instance.partition_interval_s(clock)?)
+            }
             Request::KeepState => Answer::Number(instance.keep_state()?),
             Request::RestoreState(state) => Answer::Done(instance.restore_state(state)?),
             Request::ForgetState(state) => Answer::Done(instance.forget_state(state)?),

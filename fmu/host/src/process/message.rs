@@ -2,14 +2,14 @@
 //! zero only wakes the other process.
 
 use super::super::instance::{
-    FmuMessage, InstanceError, OpenOptions, Stepped, Update, VariableGroup,
+    ClockNews, FmuMessage, InstanceError, OpenOptions, Stepped, Update, VariableGroup,
 };
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 
 /// Version of the protocol: both are the same program, otherwise they refuse.
-pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 1");
+pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 2");
 
 /// Largest length of a message, bytes.
 const LENGTH_MAX: u32 = 1 << 31;
@@ -65,6 +65,11 @@ pub(super) enum Request {
     EnterEventMode,
     UpdateDiscreteStates,
     LeaveEventMode,
+    ActivatePartition {
+        clock: u32,
+        time_s: f64,
+    },
+    PartitionInterval(u32),
     KeepState,
     RestoreState(u64),
     ForgetState(u64),
@@ -89,6 +94,8 @@ pub(super) enum Answer {
     Bytes(Vec<u8>),
     Stepped(Stepped),
     Update(Update),
+    ClockNews(ClockNews),
+    Interval(Option<f64>),
     Messages(Vec<FmuMessage>),
 }
 

@@ -3,7 +3,8 @@
 use super::super::archive::Unpacked;
 use super::super::description::Description;
 use super::super::instance::{
-    FmuMessage, Instance, InstanceError, OpenOptions, StepOutcome, Stepped, Update, VariableGroup,
+    ClockNews, FmuMessage, Instance, InstanceError, OpenOptions, StepOutcome, Stepped, Update,
+    VariableGroup,
 };
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::shared::{Shared, Spin, Word, put, take};
@@ -144,7 +145,7 @@ impl Remote {
             Request::EnterInitialization { .. } | Request::ExitInitialization | Request::Reset => {
                 ("the initialization", self.start_limit)
             }
-            Request::Step { .. } => ("a step", self.time_limit),
+            Request::Step { .. } | Request::ActivatePartition { .. } => ("a step", self.time_limit),
             Request::Quit => ("the end", self.time_limit),
             _ => ("a call", self.time_limit),
         };
@@ -356,6 +357,14 @@ impl Instance for Remote {
 
     fn leave_event_mode(&mut self) -> Result<(), InstanceError> {
         ask!(self, Request::LeaveEventMode => Done)
+    }
+
+    fn activate_partition(&mut self, clock: u32, time_s: f64) -> Result<ClockNews, InstanceError> {
+        ask!(self, Request::ActivatePartition { clock, time_s } => ClockNews)
+    }
+
+    fn partition_interval_s(&mut self, clock: u32) -> Result<Option<f64>, InstanceError> {
+        ask!(self, Request::PartitionInterval(clock) => Interval)
     }
 
     fn keep_state(&mut self) -> Result<u64, InstanceError> {

@@ -68,6 +68,9 @@ pub(super) enum Interface {
     /// Model exchange: its equations are integrated here.
     #[value(name = "me", alias = "model-exchange")]
     ModelExchange,
+    /// Scheduled execution: its model partitions are activated at the ticks of their clocks.
+    #[value(name = "se", alias = "scheduled-execution")]
+    ScheduledExecution,
 }
 
 /// Where an FMU runs.

@@ -10,6 +10,7 @@ use octant_base::control::Control;
 use octant_base::number::counted;
 use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink};
+use octant_cosim::single::scheduled::simulate_scheduled;
 use octant_cosim::single::{Finished, SimulateError, Span, simulate};
 use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::instance::{
@@ -33,7 +34,8 @@ struct Told {
     process: &'static str,
     start_s: f64,
     stop_s: f64,
-    step_s: f64,
+    /// `None` in scheduled execution.
+    step_s: Option<f64>,
     steps: u64,
     reached_s: f64,
     terminated: bool,
@@ -44,8 +46,32 @@ struct Told {
     out: Option<PathBuf>,
 }
 
+/// A way to run an FMU.
+type Simulation = fn(
+    &mut dyn Instance,
+    &Starts,
+    Option<&mut Inputs>,
+    &Outputs,
+    &Span,
+    &mut Sink,
+    &Control,
+) -> Result<Finished, SimulateError>;
+
 /// Runs the command.
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let scheduled = arguments.interface == Some(Interface::ScheduledExecution);
+    if scheduled && arguments.source.is_some() {
+        return Err(Failure::input(
+            "--source: found with --interface scheduled-execution, expected co-simulation or model \
+             exchange: a core makes a step for each sample",
+        ));
+    }
+    if let (true, Some(step)) = (scheduled, &arguments.step) {
+        return Err(Failure::input(format!(
+            "--step: found {step:?} with --interface scheduled-execution, expected none: the clocks of \
+             the FMU set the times"
+        )));
+    }
     if let Some(scenario) = &arguments.source {
         return super::run_source::command(arguments, scenario);
     }
@@ -73,10 +99,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     };
     let control = Control::default();
     let one = std::slice::from_ref(&control);
-    let (finished, wall_s) = with_progress(one, Some(steps), span.step_s, || {
+    // How often the clocks tick isn't known before.
+    let (planned, run): (_, Simulation) =
+        if scheduled { (None, simulate_scheduled) } else { (Some(steps), simulate) };
+    let (finished, wall_s) = with_progress(one, planned, span.step_s, || {
         let began = Instant::now();
         let inputs = inputs.as_mut();
-        let finished = simulate(instance, &starts, inputs, &outputs, &span, &mut sink, &control);
+        let finished = run(instance, &starts, inputs, &outputs, &span, &mut sink, &control);
         (finished, began.elapsed().as_secs_f64())
     });
     // Data written before a failure is kept.
@@ -125,6 +154,7 @@ fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
             None => InterfaceKind::Any,
             Some(Interface::CoSimulation) => InterfaceKind::CoSimulation,
             Some(Interface::ModelExchange) => InterfaceKind::ModelExchange,
+            Some(Interface::ScheduledExecution) => InterfaceKind::ScheduledExecution,
         },
         place: match arguments.process {
             Process::Own => ProcessPlace::OwnProcess,
@@ -210,6 +240,7 @@ fn tell(
     wall_s: f64,
     outputs: Outputs,
 ) -> Result<(), Failure> {
+    let scheduled = arguments.interface == Some(Interface::ScheduledExecution);
     let exchange = arguments.interface == Some(Interface::ModelExchange)
         || description.co_simulation.is_none();
     let told = Told {
@@ -217,14 +248,18 @@ fn tell(
         model: description.model_name.clone(),
         fmi: description.fmi_version.clone(),
         generation_tool: description.generation_tool.clone(),
-        interface: if exchange { "model exchange" } else { "co-simulation" },
+        interface: match exchange {
+            _ if scheduled => "scheduled execution",
+            true => "model exchange",
+            false => "co-simulation",
+        },
         process: match arguments.process {
             Process::Own => "own",
             Process::Shared => "shared",
         },
         start_s: span.start_s,
         stop_s: span.stop_s,
-        step_s: span.step_s,
+        step_s: (!scheduled).then_some(span.step_s),
         steps: finished.steps,
         reached_s: finished.time_s,
         terminated: finished.terminated,
@@ -241,21 +276,19 @@ fn tell(
         "" => String::new(),
         tool => format!(", made by {tool}"),
     };
+    let steps = match told.step_s {
+        Some(step_s) => format!("{} of {step_s} s", counted(told.steps, "step", "steps")),
+        None => counted(told.steps, "time of ticks", "times of ticks"),
+    };
     let mut text = format!(
-        "{}: {}, FMI {}, {}{tool}\n{} of {} s from {} s to {} s",
-        told.fmu,
-        told.model,
-        told.fmi,
-        told.interface,
-        counted(told.steps, "step", "steps"),
-        told.step_s,
-        told.start_s,
-        told.reached_s
+        "{}: {}, FMI {}, {}{tool}\n{steps} from {} s to {} s",
+        told.fmu, told.model, told.fmi, told.interface, told.start_s, told.reached_s
     );
     if told.steps > 0 {
         text += &format!(
-            ", {:.3} µs per step in {} process",
+            ", {:.3} µs per {} in {} process",
             1e6 * told.wall_s / told.steps as f64,
+            if scheduled { "time" } else { "step" },
             if told.process == "own" { "its own" } else { "this" }
         );
     }

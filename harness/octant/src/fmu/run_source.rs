@@ -113,7 +113,8 @@ fn overrides(arguments: &Arguments) -> Result<Vec<String>, Failure> {
         all.push("endpoint.fmu.allow_tool=true".to_owned());
     }
     match arguments.interface {
-        None => {}
+        // The caller has refused scheduled execution.
+        None | Some(Interface::ScheduledExecution) => {}
         Some(Interface::CoSimulation) => {
             all.push("endpoint.fmu.interface=co-simulation".to_owned());
         }
