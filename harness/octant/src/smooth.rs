@@ -1,6 +1,5 @@
 //! `octant smooth`: what a whole calibration knows, and whether its constants are constant.
 
-mod doubts;
 mod history;
 
 use crate::failure::Failure;
@@ -8,7 +7,6 @@ use crate::run_folder::recording_of;
 use crate::score::scenario_of;
 use crate::terminal::{print, print_json};
 use clap::Args;
-use doubts::Doubts;
 use octant_base::number::{counted, significant};
 use octant_calibration::config::{Calibration, Estimator};
 use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
@@ -17,6 +15,7 @@ use octant_observe::covariance::state_name;
 use octant_observe::ensemble::state_unit;
 use octant_requirements::Verdict;
 use octant_run::smoothed::repeat_calibration;
+use octant_run::smoothing_doubts::SmoothingDoubts;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_smoother::backward::SmoothedCalibration;
 use octant_smoother::constancy::{self, ConstancyFinding, NODES_MAX, ParameterChange};
@@ -107,7 +106,7 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
         return Err(bad(&SmootherError::NoFilter { found: "none" }));
     };
     let (tested, changes) = changes(&smoothed, repeated.history.prior());
-    let doubts = Doubts::of(&config, kalman, &repeated, &smoothed, &tested);
+    let doubts = SmoothingDoubts::of(&config, kalman, &repeated, &smoothed, &tested);
     let history = &repeated.history;
     let report = Report {
         method: scenario.method_label(method),

@@ -46,6 +46,7 @@ pub mod rotation;
 pub mod scores_text;
 pub mod side_by_side;
 pub mod smoothed;
+pub mod smoothing_doubts;
 mod solution;
 pub mod stem;
 pub mod stepped;

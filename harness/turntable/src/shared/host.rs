@@ -1,5 +1,6 @@
 //! The end of the run that drives the table.
 
+use super::ends::GuestEnd;
 use super::monotonic::Monotonic;
 use super::words::{GuestWord, HostWord, SharedAxis, SharedLook, VERSION, line};
 use crate::{TableAxis, TableStatus};
@@ -10,17 +11,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Longest line of a guest, bytes.
 const LONGEST: usize = 4096;
-
-/// How a guest's run ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum GuestEnd {
-    /// It is still going on.
-    Open,
-    /// It had all its samples.
-    Done,
-    /// It left, or was lost, for this reason.
-    Left(String),
-}
 
 #[derive(Debug)]
 struct Guest {

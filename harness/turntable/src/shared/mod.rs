@@ -6,19 +6,29 @@
 //! set point, if the table was stopped, or if the driving run is gone. Times cross between the processes as the host's
 //! monotonic time, which they share.
 
+mod ends;
 #[cfg(target_os = "linux")]
 mod guest;
-#[cfg(not(target_os = "linux"))]
-#[path = "no_guest.rs"]
-mod guest;
+#[cfg(unix)]
 mod host;
 #[cfg(target_os = "linux")]
 mod monotonic;
 #[cfg(all(unix, not(target_os = "linux")))]
 #[path = "no_monotonic.rs"]
 mod monotonic;
+#[cfg(not(target_os = "linux"))]
+mod no_guest;
+#[cfg(not(unix))]
+mod no_host;
 #[cfg(unix)]
 mod words;
 
+pub use ends::GuestEnd;
+#[cfg(target_os = "linux")]
 pub use guest::TableGuest;
-pub use host::{GuestEnd, TableHost};
+#[cfg(unix)]
+pub use host::TableHost;
+#[cfg(not(target_os = "linux"))]
+pub use no_guest::NoTableGuest as TableGuest;
+#[cfg(not(unix))]
+pub use no_host::NoTableHost as TableHost;

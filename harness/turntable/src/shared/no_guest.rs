@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 /// A guest at a table, which doesn't exist on this system.
 #[derive(Debug)]
-pub enum TableGuest {}
+pub enum NoTableGuest {}
 
-impl TableGuest {
+impl NoTableGuest {
     /// Refuses.
     ///
     /// # Errors

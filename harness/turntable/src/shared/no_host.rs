@@ -1,26 +1,16 @@
 //! The end of the run that drives the table, on systems where nobody can join it.
 
+use super::ends::GuestEnd;
 use crate::TableStatus;
 use octant_sample::GimbalAngles;
 
-/// How a guest's run ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum GuestEnd {
-    /// It is still going on.
-    Open,
-    /// It had all its samples.
-    Done,
-    /// It left, or was lost, for this reason.
-    Left(String),
-}
-
 /// Takes no guests.
 #[derive(Clone, Debug)]
-pub struct TableHost {
+pub struct NoTableHost {
     units: usize,
 }
 
-impl TableHost {
+impl NoTableHost {
     /// Makes a host for so many runs, its own among them.
     #[must_use]
     pub fn new(units: usize) -> Self {

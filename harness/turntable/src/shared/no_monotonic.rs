@@ -4,9 +4,9 @@ use std::time::Instant;
 
 /// The host's monotonic time, which isn't available here.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Monotonic;
+pub(super) struct NoMonotonic;
 
-impl Monotonic {
+impl NoMonotonic {
     /// Makes the relation.
     pub(super) fn now() -> Self {
         Self
@@ -17,3 +17,5 @@ impl Monotonic {
         None
     }
 }
+
+pub(super) use NoMonotonic as Monotonic;

@@ -1,8 +1,9 @@
 //! Reasons why the tests of a smoothed calibration say nothing, or not enough.
 
+use super::smoothed::RepeatedCalibration;
 use octant_calibration::CoreConfig;
 use octant_calibration::config::{Base, Kalman};
-use octant_run::smoothed::RepeatedCalibration;
+
 use octant_sample::Mode;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_smoother::backward::SmoothedCalibration;
@@ -14,15 +15,17 @@ const LEFT_OUT: f64 = 0.1;
 
 /// Reasons against a verdict.
 #[derive(Debug, Default)]
-pub(super) struct Doubts {
+pub struct SmoothingDoubts {
     /// The tests aren't normal here: neither their silence nor what they find counts.
-    pub(super) invalid: Vec<String>,
+    pub invalid: Vec<String>,
     /// The tests hold, but not for all of the calibration: their silence doesn't count.
-    pub(super) incomplete: Vec<String>,
+    pub incomplete: Vec<String>,
 }
 
-impl Doubts {
-    pub(super) fn of(
+impl SmoothingDoubts {
+    /// Reasons against the tests of a calibration that was made again; `tested` are the parameters that were tested.
+    #[must_use]
+    pub fn of(
         config: &CoreConfig,
         kalman: &Kalman,
         repeated: &RepeatedCalibration,
