@@ -142,10 +142,10 @@ impl Following {
             let follows = of_table.follows.load(Ordering::Acquire);
             let target = follows.then(|| unpacked(of_table.target.load(Ordering::Acquire)));
             of_guests.look(status, target);
-            if let Some(target) = target {
-                if follower.command(driver, &GimbalCommand { target })? {
-                    of_table.commands.fetch_add(1, Ordering::Relaxed);
-                }
+            if let Some(target) = target
+                && follower.command(driver, &GimbalCommand { target })?
+            {
+                of_table.commands.fetch_add(1, Ordering::Relaxed);
             }
             Ok(())
         };
