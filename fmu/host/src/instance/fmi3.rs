@@ -43,10 +43,6 @@ unsafe impl Send for Component {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     CoSimulation,
-    #[cfg_attr(
-        not(feature = "model-exchange"),
-        expect(dead_code, reason = "only the solver needs it")
-    )]
     ModelExchange,
     ScheduledExecution,
 }
