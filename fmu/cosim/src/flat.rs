@@ -24,7 +24,7 @@ struct Element<'a> {
     role: Role<'a>,
 }
 
-/// What an element is besides an FMU or a system.
+/// Kind of an element that is neither an FMU nor a system.
 #[derive(Clone, Copy)]
 enum Role<'a> {
     /// An FMU or a system.

@@ -202,7 +202,7 @@ impl PulseAlignment {
         }
         self.counts.off += 1;
         if self.estimate.is_none() {
-            // Of so few pulses the first may have been the stray one.
+            // With so few pulses the first may have been the stray one.
             self.held = 0;
             self.take(stamp_ns, host_ns);
             return Ok(PulseUse::Off);

@@ -155,7 +155,7 @@ fn who_does_not_come_is_told() {
     let (status, said) = alone.run(&[]).wait();
     assert_ne!(status, Some(0));
     assert!(said.contains("no run on this host drives it within 1s"), "{said}");
-    // Who waits can be interrupted.
+    // A run that waits can be interrupted.
     let waits = pair.guest(20);
     let waiting = waits.run(&[]);
     wait_for("the run", || waits.out().is_dir());

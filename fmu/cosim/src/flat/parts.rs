@@ -170,7 +170,7 @@ pub(crate) enum Direction {
     Gives,
     /// Values go in.
     Takes,
-    /// That of the other end: kind inout.
+    /// Direction of the other end of the connection (kind inout).
     Either,
 }
 

@@ -295,7 +295,7 @@ impl Partition {
         now_s: f64,
         interval_s: f64,
     ) -> Result<(), SimulateError> {
-        // Of zero: the partition is active at this time too, unless it was already.
+        // A countdown of zero makes the partition active at this time too, unless it was already.
         if !(interval_s >= 0.0 && interval_s.is_finite()) {
             let reason =
                 format!("found the interval {interval_s:?} s, expected 0 or a time above it");

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// What an FMU said about its clocks while a model partition was active.
+/// Ticks and countdowns that an FMU reported while a model partition was active.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClockNews {
     /// Output clocks that ticked.

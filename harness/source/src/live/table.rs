@@ -263,7 +263,7 @@ impl Table {
         let following = match self.turns {
             Turns::Driven(following) => following,
             Turns::Elsewhere(guest) => {
-                // What ended with the last sample is reported too.
+                // A stop that came with the last sample is reported too.
                 let stopped = if broken.is_none() { guest.stopped() } else { None };
                 guest.leave(broken.or(stopped.as_deref()));
                 return match stopped {
