@@ -1,8 +1,6 @@
 //! Two units on one table: one run drives it, the other gets its angles, and each has its own verdict.
 
-use crate::common::table::{Bench, Instrument, Running, Stage, wait_for};
-use octant_sample::{GimbalCommand, Status};
-use octant_source::{Replay, Source};
+use crate::common::table::{Bench, Felt, Instrument, Running, Stage, wait_for};
 use octant_turntable::TableAxis;
 use std::sync::Arc;
 
@@ -31,24 +29,6 @@ impl Pair {
     }
 }
 
-/// Largest difference of the roll in the samples to that which the gyros felt, deg, and the share without angles.
-fn compared(bench: &Bench) -> (f64, f64) {
-    let mut recording = Replay::open(&bench.out().join("recording.mcap"), None).unwrap();
-    let (mut felt_rad, mut samples, mut without, mut worst) = (0.0, 0u32, 0u32, 0.0f64);
-    let mut epoch = octant_source::Epoch::default();
-    while recording.next(&GimbalCommand::default(), &mut epoch).unwrap() {
-        samples += 1;
-        felt_rad += f64::from(epoch.sample.delta_theta[0]) * 2f64.powi(-36);
-        if epoch.sample.status.contains(Status::GIMBAL_INVALID) {
-            without += 1;
-        } else {
-            worst = worst.max((epoch.sample.gimbal.roll_rad() - felt_rad).abs().to_degrees());
-        }
-    }
-    assert_eq!(samples, 3200);
-    (worst, f64::from(without) / f64::from(samples))
-}
-
 #[test]
 fn two_units_on_one_table_have_its_angles_and_each_its_verdict() {
     let pair = Pair::new();
@@ -60,8 +40,9 @@ fn two_units_on_one_table_have_its_angles_and_each_its_verdict() {
     for (bench, running) in [(&host, first), (&guest, second)] {
         let (status, said) = running.wait();
         assert!(matches!(status, Some(0 | 1 | 3)), "{status:?}: {said}");
-        let (worst, without) = compared(bench);
-        assert!(worst < 2.0 && without < 0.25, "{worst} {without}");
+        let felt = Felt::of(bench);
+        assert_eq!(felt.samples, 3200);
+        assert!(felt.worst_deg < 2.0 && felt.without < 800, "{} {}", felt.worst_deg, felt.without);
     }
     assert!((pair.stage.angle(TableAxis::Roll) - 20.0).abs() < 1e-4 && pair.stage.rests());
     let table = |bench: &Bench| bench.json("manifest.json")["bench"]["table"].clone();
@@ -108,6 +89,22 @@ fn a_driving_run_that_is_killed_ends_the_other_one() {
     let [(host, _), (guest, why)] = ended(|_, host, _| host.signal("-KILL"));
     assert_eq!((host, guest), (None, Some(4)), "{why}");
     assert!(why.contains("the run that drives it is gone"), "{why}");
+}
+
+#[test]
+fn a_driving_run_that_is_interrupted_or_hangs_ends_the_other_one() {
+    let [(host, said), (guest, why)] = ended(|_, host, _| host.signal("-INT"));
+    assert_eq!((host, guest), (Some(3), Some(4)), "{said} {why}");
+    assert!(why.contains("the run that drives it stopped it: the run was interrupted"), "{why}");
+    let [_, (guest, why)] = ended(|pair, host, _| {
+        host.signal("-STOP");
+        // Its guard stops the table.
+        wait_for("rest", || pair.stage.rests());
+        std::thread::sleep(std::time::Duration::from_secs(3));
+        host.signal("-KILL");
+    });
+    assert_eq!(guest, Some(4), "{why}");
+    assert!(why.contains("the run that drives it said nothing for 2s"), "{why}");
 }
 
 #[test]

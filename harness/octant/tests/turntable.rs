@@ -2,9 +2,7 @@
 //! angles are in the samples, and every end of the run stops it.
 
 use crate::common::program::OCTANT;
-use crate::common::table::{Bench, Running, Stage, wait_for};
-use octant_sample::{GimbalCommand, Status};
-use octant_source::{Replay, Source};
+use crate::common::table::{Bench, Felt, Running, Stage, wait_for};
 use octant_turntable::TableAxis;
 use octant_turntable::simulate::ControllerBehaviour;
 use serde_json::Value;
@@ -28,19 +26,7 @@ fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
     );
 
     // The gyros of the instrument on the table agree with the angles: 0.5° are 50 ms.
-    let mut recording = Replay::open(&bench.out().join("recording.mcap"), None).unwrap();
-    let (mut felt_rad, mut samples, mut without, mut worst) = (0.0, 0u32, 0u32, 0.0f64);
-    let mut epoch = octant_source::Epoch::default();
-    while recording.next(&GimbalCommand::default(), &mut epoch).unwrap() {
-        samples += 1;
-        felt_rad += f64::from(epoch.sample.delta_theta[0]) * 2f64.powi(-36);
-        if epoch.sample.status.contains(Status::GIMBAL_INVALID) {
-            without += 1;
-            continue;
-        }
-        let roll = epoch.sample.gimbal.roll_rad();
-        worst = worst.max((roll - felt_rad).abs().to_degrees());
-    }
+    let Felt { samples, without, felt_rad, worst_deg: worst } = Felt::of(&bench);
     assert_eq!(samples, 3200);
     // A machine that stalls for a moment leaves samples without angles.
     assert!(without < 800, "{without}");

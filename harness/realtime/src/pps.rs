@@ -94,6 +94,16 @@ pub struct PulseLooks {
     pub unread: u64,
 }
 
+/// A file has no pulses.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {reason}", path.display())]
+pub struct PulseFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Reason.
+    pub reason: String,
+}
+
 /// Reads pulses from their file. Only a change of the file is a pulse.
 #[derive(Clone, Debug)]
 pub struct PulseReader {
@@ -110,14 +120,14 @@ impl PulseReader {
     ///
     /// # Errors
     /// If there is no such file, or it has another form.
-    pub fn open(device: &str, edge: PulseEdge) -> Result<Self, String> {
+    pub fn open(device: &str, edge: PulseEdge) -> Result<Self, PulseFileError> {
         let path = pulse_file(Path::new(device), edge);
         match look(&path) {
             Ok(last) => {
                 let (clocks, looks) = (HostClocks::read(), PulseLooks::default());
                 Ok(Self { path, last, clocks, looks, unread: None })
             }
-            Err(reason) => Err(format!("{}: {reason}", path.display())),
+            Err(reason) => Err(PulseFileError { path, reason }),
         }
     }
 

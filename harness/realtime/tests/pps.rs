@@ -53,10 +53,11 @@ fn a_line_of_the_kernel_is_read() {
 
 #[test]
 fn a_file_that_is_none_is_refused() {
-    let error = PulseReader::open("/dev/pps9876", PulseEdge::Clear).unwrap_err();
+    let error = PulseReader::open("/dev/pps9876", PulseEdge::Clear).unwrap_err().to_string();
     assert!(error.starts_with("/sys/class/pps/pps9876/clear: "), "{error}");
     let file = PulseFile::new("garbage", "12:30\n");
-    let error = PulseReader::open(file.0.to_str().unwrap(), PulseEdge::Assert).unwrap_err();
+    let error =
+        PulseReader::open(file.0.to_str().unwrap(), PulseEdge::Assert).unwrap_err().to_string();
     assert!(
         error.ends_with("found \"12:30\\n\", expected SECONDS.NANOSECONDS#SEQUENCE"),
         "{error}"

@@ -9,6 +9,7 @@ use octant_realtime::host_clocks::HostClocks;
 use octant_sample::{GimbalAngles, GimbalCommand, Status};
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
+use octant_source::{Replay, Source};
 use octant_turntable::simulate::{Controller, SimulatedServer};
 use octant_turntable::{Dialect, TableAxis};
 use serde_json::Value;
@@ -254,5 +255,36 @@ impl Running {
     pub fn wait(self) -> (Option<i32>, String) {
         let output = self.0.wait_with_output().unwrap();
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    }
+}
+
+/// Roll in the samples of a run, and roll that its gyros felt.
+pub struct Felt {
+    pub samples: u32,
+    /// Samples without angles.
+    pub without: u32,
+    /// Turn of the gyros, rad.
+    pub felt_rad: f64,
+    /// Largest difference of both, deg.
+    pub worst_deg: f64,
+}
+
+impl Felt {
+    /// Reads the recording of a run.
+    pub fn of(bench: &Bench) -> Self {
+        let mut recording = Replay::open(&bench.out().join("recording.mcap"), None).unwrap();
+        let mut felt = Self { samples: 0, without: 0, felt_rad: 0.0, worst_deg: 0.0 };
+        let mut epoch = octant_source::Epoch::default();
+        while recording.next(&GimbalCommand::default(), &mut epoch).unwrap() {
+            felt.samples += 1;
+            felt.felt_rad += f64::from(epoch.sample.delta_theta[0]) * 2f64.powi(-36);
+            if epoch.sample.status.contains(Status::GIMBAL_INVALID) {
+                felt.without += 1;
+                continue;
+            }
+            let off_rad = epoch.sample.gimbal.roll_rad() - felt.felt_rad;
+            felt.worst_deg = felt.worst_deg.max(off_rad.abs().to_degrees());
+        }
+        felt
     }
 }

@@ -71,7 +71,9 @@ impl Dates {
     ) -> (String, BenchTime) {
         let line_delay = self.delay();
         let by_pulses = pulses.is_some();
-        let within_us = (by_pulses && self.delays > 0).then_some(self.within_ns * 1e-3);
+        // A reading that came before its time contradicts the bound: then there is none.
+        let is_bounded = by_pulses && self.delays > 0 && self.early == 0;
+        let within_us = is_bounded.then_some(self.within_ns * 1e-3);
         let arcsec = |ms: f64| rate_degps.map(|rate| rate * ms * 1e-3 * ARCSEC_PER_DEG);
         let within_ms = within_us.map(|us| us * 1e-3);
         let angle_within_arcsec =
@@ -98,6 +100,15 @@ impl Dates {
 
 fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) -> String {
     let rate = time.rate_degps.unwrap_or_default();
+    if let Some(delay) = time.line_delay.filter(|delay| delay.early > 0) {
+        return format!(
+            "by {}, without a bound: {} came before their time by more than it, expected none; the least delay of \
+             the line is {:+.3} ms",
+            time.origin,
+            counted(delay.early, "reading", "readings"),
+            delay.least_ms
+        );
+    }
     let (Some(within_us), Some(pulses)) = (time.within_us, &time.pulses) else {
         let angle = arcsec_per_ms.map_or_else(String::new, |arcsec| {
             format!("; each millisecond of it is {arcsec:.1}″ at {rate} °/s")
@@ -119,11 +130,8 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
     };
     let delay = time.line_delay.map_or_else(String::new, |delay| {
         format!(
-            "; delay of the line from {:.3} ms, mean {:.3} ms, 1σ {:.3} ms, {} early",
-            delay.least_ms,
-            delay.mean_ms,
-            delay.sigma_ms,
-            counted(delay.early, "reading", "readings"),
+            "; delay of the line from {:.3} ms, mean {:.3} ms, 1σ {:.3} ms",
+            delay.least_ms, delay.mean_ms, delay.sigma_ms,
         )
     });
     let steps = match pulses.clock_steps {
@@ -141,4 +149,42 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
         pulses.missing,
         pulses.off,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pulses() -> BenchPulses {
+        BenchPulses {
+            clock_steps: 0,
+            clock_step_largest_ms: 0.0,
+            device: "/dev/pps0".to_owned(),
+            off: 0,
+            missing: 0,
+            repeated: 0,
+            residual_us: Some(5.0),
+            sigma_us: Some(2.0),
+            skew_ppm: Some(0.0),
+            taken: 9,
+            unread: 0,
+            untimely: 0,
+        }
+    }
+
+    #[test]
+    fn a_reading_before_its_time_takes_the_bound_away() {
+        let mut dates = Dates::default();
+        dates.dated(3e6, 25e3);
+        dates.dated(-20e3, 25e3);
+        let (words, told) = dates.told(Some(pulses()), Some(10.0), Some(1.0));
+        assert_eq!((told.within_us, told.line_delay.unwrap().early), (Some(25.0), 0));
+        // 10 °/s for 1.025 ms.
+        assert!((told.angle_within_arcsec.unwrap() - 36.9).abs() < 1e-9);
+        assert!(words.contains("within 25.0 µs"), "{words}");
+        dates.dated(-30e3, 25e3);
+        let (words, told) = dates.told(Some(pulses()), Some(10.0), Some(1.0));
+        assert_eq!((told.within_us, told.angle_within_arcsec), (None, None));
+        assert!(words.contains("without a bound: 1 reading came before"), "{words}");
+    }
 }
