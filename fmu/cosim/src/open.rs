@@ -39,7 +39,7 @@ pub(super) fn open_all(
             file: structure.file.clone(),
             line: Some(component.line),
             element: format!("Component {:?}", component.name),
-            message: format!("failed to {error}"),
+            message: format!("failed to open the FMU: {error}"),
         })?;
         let description = opened.description();
         let interfaces = [&description.co_simulation, &description.model_exchange];

@@ -298,7 +298,7 @@ fn what_is_wrong_with_a_dictionary_is_told_with_file_and_line() {
             "SignalDictionaryReference \"here\": found the dictionary \"bus\", expected one of this \
              system or of those around it",
         ),
-        (ssd("bus.ssb", "none.ssb"), same.clone(), "there is no such file"),
+        (ssd("bus.ssb", "none.ssb"), same.clone(), "there is none of this name"),
         (ssd("source=\"bus.ssb\"", ""), same.clone(), "neither a source nor a <SignalDictionary>"),
         (
             ssd("source=\"bus.ssb\"", "source=\"bus.ssb\" type=\"text/plain\""),

@@ -272,7 +272,10 @@ fn what_is_wrong_is_told_with_file_line_and_element() {
             "LinearTransformation: factor is \"x\", expected a number",
         ),
         (two("").replace("a.fmu", "../x.fmu"), "leads out of the package"),
-        (two("").replace("a.fmu", "x.fmu"), "Component \"a\": the source \"resources/x.fmu\""),
+        (
+            two("").replace("a.fmu", "x.fmu"),
+            "Component \"a\": found the source \"resources/x.fmu\"",
+        ),
         (two("").replace("name=\"b\"", "name=\"a\""), "the name is taken"),
         (two("").replace("ssc:Real unit=\"deg\"", "ssc:Clock"), "clocks are not part"),
         (two("").replace("kind=\"input\"", "kind=\"inout\""), "the kind \"inout\" was found"),

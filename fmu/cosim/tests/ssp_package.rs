@@ -21,7 +21,7 @@ fn sources_stay_within_the_package() {
         ("https://example.com/x.fmu", "expected a file of the package"),
         ("resources\\x.fmu", "expected a file of the package"),
         ("resources/x%2.fmu", "% signs"),
-        ("resources/absent.fmu", "no such file"),
+        ("resources/absent.fmu", "there is none of this name"),
         ("#other", "parts of other files"),
     ] {
         let error = package.resolve(source).unwrap_err().to_string();

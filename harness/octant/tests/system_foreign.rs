@@ -269,7 +269,7 @@ fn a_packed_system_is_run_and_what_is_none_is_refused() {
         assert_eq!(left.len(), 1, "no folder of a run is left");
     };
     refused(&fmus, "failed to find SystemStructure.ssd in it");
-    refused(&[whole[0], fmus[0]], "there is no such file in");
+    refused(&[whole[0], fmus[0]], "there is none of this name");
     refused(&[("../evil", b"x"), whole[0]], "system.ssp: entry \"../evil\"");
     refused(&[("SystemStructure.ssd", b"<x/>")], "SystemStructure.ssd:1: x: found <x>");
     refused(

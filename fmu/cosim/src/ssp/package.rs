@@ -15,7 +15,9 @@ const TEXT_MAX: u64 = 256 << 20;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PackageSourceError {
     /// It is a part of another file.
-    #[error("the source {found:?} was found: parts of other files are not part of this version")]
+    #[error(
+        "found the source {found:?}, expected a file of the package: parts of other files are not part of this version"
+    )]
     Part {
         /// Source found.
         found: String,
@@ -45,7 +47,7 @@ pub enum PackageSourceError {
         found: String,
     },
     /// The file is missing.
-    #[error("the source {found:?} was found: there is no such file in {package}")]
+    #[error("found the source {found:?}, expected a file of {package}: there is none of this name")]
     Missing {
         /// Source found.
         found: String,
