@@ -109,6 +109,10 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
             delay.least_ms
         );
     }
+    if let (Some(pulses), None) = (&time.pulses, time.line_delay) {
+        let came = counted(pulses.taken, "pulse", "pulses");
+        return format!("none: no sample got its time, after {came} at {}", pulses.device);
+    }
     let (Some(within_us), Some(pulses)) = (time.within_us, &time.pulses) else {
         let angle = arcsec_per_ms.map_or_else(String::new, |arcsec| {
             format!("; each millisecond of it is {arcsec:.1}″ at {rate} °/s")
@@ -175,6 +179,9 @@ mod tests {
     #[test]
     fn a_reading_before_its_time_takes_the_bound_away() {
         let mut dates = Dates::default();
+        let (words, told) = dates.told(Some(pulses()), Some(10.0), None);
+        assert_eq!(told.within_us, None);
+        assert_eq!(words, "none: no sample got its time, after 9 pulses at /dev/pps0");
         dates.dated(3e6, 25e3);
         dates.dated(-20e3, 25e3);
         let (words, told) = dates.told(Some(pulses()), Some(10.0), Some(1.0));
