@@ -5,11 +5,11 @@ use super::drift::{BlockMeans, RampEstimate};
 use super::error::CharacteriseError;
 use super::fit::{NoiseFitter, RandomTermsFit};
 use super::freedom::{VarianceKind, degrees_of_freedom, interval};
-pub use super::names::NAMES;
 use super::recording::RestingRecording;
 use super::spectrum::{SpectrumLine, WelchSpectrum};
 use super::survey::RestSurvey;
 use super::temperature::correction::TemperatureCorrection;
+pub use octant_scenario::file_names::NAMES;
 use serde::Serialize;
 
 /// Values of a channel that are kept for its histogram.

@@ -16,8 +16,8 @@
 //! A sample costs the 12 averaging times of the lowest level and twice the 2 of an upper one on average,
 //! whatever the length of the record; a level has 25 kB.
 
-/// RateChannels: three gyros, three accelerometers.
-pub const CHANNELS: usize = 6;
+pub use octant_scenario::file_names::CHANNELS;
+
 /// One value of each channel.
 pub type RateChannels = [f64; CHANNELS];
 

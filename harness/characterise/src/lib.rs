@@ -10,7 +10,6 @@
 //! - [`temperature`] has the biases' dependence on temperature
 //! - [`earth_rate`] checks several attitudes against Earth's rate
 //! - [`instrument`] writes the `[imu]` section of a scenario, [`twin`] simulates it and compares
-//! - [`names`] has the file's names of the channels
 //! - [`result`] is all of it, [`text`] and [`page`] are its terminal and HTML forms
 
 pub mod analysis;
@@ -22,7 +21,6 @@ pub mod fit;
 pub mod freedom;
 pub mod instrument;
 pub mod kernel;
-pub mod names;
 pub mod page;
 pub mod recording;
 pub mod result;

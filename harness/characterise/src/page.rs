@@ -3,13 +3,13 @@
 use super::analysis::ChannelAnalysis;
 use super::fit::variance_of;
 use super::kernel::{DifferenceOrder, RandomTerm};
-use super::names::FileNames;
 use super::result::Characterisation;
 use super::text::{estimate, title, unit};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
 use octant_report::chart::{Band, Chart, ChartLine, ChartRole};
 use octant_report::page::{PageSection, page, sections};
+use octant_scenario::file_names::FileNames;
 
 mod temperature;
 

@@ -2,10 +2,10 @@
 
 use super::deviations::{CHANNELS, RateChannels};
 use super::error::CharacteriseError;
-use super::names::FileNames;
 use octant_recorder::reader::Recording;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
+use octant_scenario::file_names::FileNames;
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
 use octant_source::{AnySource, Epoch, Source};

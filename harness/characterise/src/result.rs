@@ -4,11 +4,11 @@ use super::analysis::{RestAnalysis, analyse};
 use super::earth_rate::{EarthRateCheck, check};
 use super::error::CharacteriseError;
 use super::instrument::instrument_file;
-use super::names::FileNames;
 use super::recording::RestingRecording;
 use super::survey::{RestStretch, survey};
 use super::temperature::{self, TemperatureDependence};
 use super::twin::{InstrumentTwin, compare, simulate};
+use octant_scenario::file_names::FileNames;
 use serde::Serialize;
 
 /// Version of the layout of the JSON.
@@ -24,6 +24,7 @@ pub struct Characterisation {
     /// Recording.
     pub recording: String,
     /// Names that its file has for the channels, in the order of the analysis; `null` where it names none.
+    #[serde(serialize_with = "in_order")]
     pub names_in_file: FileNames,
     /// Words for the times of a recording that has no stamps; `null` where it has them.
     pub assumed_time: Option<String>,
@@ -107,4 +108,8 @@ pub fn characterise(
         left_out: imu.left_out,
         twin,
     })
+}
+
+fn in_order<S: serde::Serializer>(names: &FileNames, serializer: S) -> Result<S::Ok, S::Error> {
+    names.0.serialize(serializer)
 }

@@ -75,6 +75,12 @@ impl Axes {
         Ok(Self { from })
     }
 
+    /// Axis of the unit, and whether it is reversed, for each axis of the body.
+    #[must_use]
+    pub fn names(&self) -> [(&'static str, bool); 3] {
+        self.from.map(|(axis, opposite)| (["x", "y", "z"][axis], opposite))
+    }
+
     /// Converts a vector from axes of the unit to axes of the body.
     #[must_use]
     #[inline]

@@ -46,6 +46,7 @@ pub mod own;
 pub mod pulses;
 pub mod rollover;
 pub mod sbg;
+mod stamp_scale;
 pub mod vectornav;
 pub mod xsens;
 
@@ -66,3 +67,4 @@ pub use facts::ProtocolFacts;
 pub use framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
 pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};
+pub use stamp_scale::StampScale;

@@ -20,3 +20,4 @@ mod pulses;
 mod rollover;
 mod round_trip;
 mod sampler;
+mod stamp_scale;

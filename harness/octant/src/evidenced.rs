@@ -19,7 +19,7 @@ use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
 use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
-use octant_scenario::{FilePlaces, Method, Scenario};
+use octant_scenario::{FilePlaces, Method, Scenario, SourceSpec};
 use octant_score::junit::junit;
 use octant_source::configure::configurations;
 use serde_json::Value;
@@ -296,7 +296,8 @@ impl Asked {
             ..RunFacts::between(started, ended)
         };
         let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
-        let (verdict, printed) = write_results(folder.path(), run, &facts).map_err(failed)?;
+        let (verdict, printed) =
+            write_results(folder.path(), run, &facts, &scenario.source).map_err(failed)?;
         let folder = if interrupted {
             // An unfinished run keeps the name of a partial folder.
             folder.path().to_owned()
@@ -364,6 +365,7 @@ fn write_results(
     folder: &Path,
     mut run: Run,
     facts: &RunFacts,
+    source: &SourceSpec,
 ) -> Result<(Verdict, Printed), Failure> {
     let summary = &run.summary;
     let text_json = summary
@@ -375,7 +377,7 @@ fn write_results(
     write(&folder.join("junit.xml"), xml)?;
     let mut human = text(summary, &run.report.units);
     if run.report.truth.is_none() {
-        human += &parameter_text(summary);
+        human += &parameter_text(summary, source);
     }
     run.report.provenance = crate::report::provenance(&Manifest::of(facts));
     write(&folder.join("report.html"), report::run::render(&run.report))?;

@@ -22,6 +22,7 @@ use octant_run::filtered::FilteredSeries;
 use octant_run::{Watcher, unit};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
+use octant_scenario::file_names::FileNames;
 use octant_scenario::{Method, Scenario};
 use octant_score::numerics::differs;
 use octant_score::rederive;
@@ -101,6 +102,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let data = ReportData {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
+        axes_of_file: FileNames::of(&scenario.source).line(),
         events: watcher.events(),
         navigation_start_h: watcher.navigation_start_h(),
         solution: watcher.solution,

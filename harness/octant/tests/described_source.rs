@@ -232,7 +232,7 @@ fn a_described_unit_is_characterised() {
         .args([&table, &folder.path().join("unit.bin")])
         .status();
     assert!(made.unwrap().success());
-    std::fs::write(&scenario, long).unwrap();
+    std::fs::write(&scenario, &long).unwrap();
     let told = |of: &str| {
         let (out, _) = ends(&["characterise", of, "--no-twin", "--json"], 0);
         serde_json::from_str::<serde_json::Value>(&out).unwrap()
@@ -247,4 +247,9 @@ fn a_described_unit_is_characterised() {
         assert!((a / b - 1.0).abs() < 1e-4, "channel {c}: {a} {b}");
     }
     assert_eq!(of_log["names_in_file"], serde_json::Value::Null);
+    std::fs::write(&scenario, format!("{long}axes = \"y -x z\"\n")).unwrap();
+    let of_log = told(scenario.to_str().unwrap());
+    let axes = ["y of the unit", "−x of the unit", "z of the unit"];
+    let names = serde_json::json!([axes, axes].concat());
+    assert_eq!(of_log["names_in_file"], names);
 }

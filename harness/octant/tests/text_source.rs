@@ -3,6 +3,7 @@
 use crate::common::program::{ends, json};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
+use octant_scenario::file_names::FileNames;
 use octant_scenario::recorded::{
     AxisColumn, Delimiter, GimbalColumns, RecordedColumn, RecordedQuantity, TemperatureColumn,
     TemperatureUnit, TextFiles, TextMapping, TimeColumn, TimeUnit,
@@ -75,6 +76,9 @@ fn rates_become_counts_over_the_real_intervals() {
 
 #[test]
 fn names_signs_order_increments_and_gimbals() {
+    let file_names = |mapping: &TextMapping| {
+        FileNames::of(&octant_scenario::SourceSpec::Text(mapping.clone())).line().unwrap()
+    };
     let text = "t_ms;wz;wy;wx;az;ay;ax;azimuth;roll\n5;1e-6;2e-6;3e-6;1e-3;2e-3;3e-3;90;-45\n";
     let epochs = read(text, |mapping| {
         let named = |name: &str, scale| AxisColumn {
@@ -93,6 +97,8 @@ fn names_signs_order_increments_and_gimbals() {
         let degree = std::f64::consts::PI / 180.0;
         mapping.gimbal =
             Some(GimbalColumns { azimuth: named("azimuth", degree), roll: named("roll", degree) });
+        let told = "gyro x, y, z: wx, −wy, wz; accelerometer x, y, z: ax, ay, −az";
+        assert_eq!(file_names(mapping), told);
     })
     .unwrap();
     let sample = epochs[0].sample;

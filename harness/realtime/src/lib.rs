@@ -9,7 +9,9 @@
 //! | [`pace`] | the frame clock: waits for a deadline and measures the lateness |
 //! | [`lateness`] | the histogram of the lateness |
 //! | [`host_clocks`] | the realtime clock against the monotonic one |
+//! | [`hardware_clock`] | clocks of network cards that PTP sets |
 //! | [`pps`] | pulses that the kernel stamps |
+//! | [`kernel_clock`] | what the kernel knows of its realtime clock |
 //! | [`schedule`] | real-time scheduling and locked memory, as far as the host permits them |
 //! | [`latency`] | wake-up latency of this host |
 //! | [`host`] | properties of a host that matter for all this, and advice |
@@ -22,8 +24,10 @@
 //! functions are reported as not granted.
 
 pub mod clock;
+pub mod hardware_clock;
 pub mod host;
 pub mod host_clocks;
+pub mod kernel_clock;
 pub mod latency;
 pub mod lateness;
 pub mod pace;

@@ -178,7 +178,7 @@ impl PulseReader {
             looks.about_steps += 1;
             return None;
         }
-        let age_ns = clocks.realtime_ns - pulse.realtime_ns;
+        let age_ns = clocks.other_ns - pulse.realtime_ns;
         let at = clocks.at(pulse.realtime_ns);
         match at.filter(|_| (-(clocks.within.as_nanos() as i128)..=AGE_MOST_NS).contains(&age_ns)) {
             Some(at) => Some(HostPulse { at, within: clocks.within }),

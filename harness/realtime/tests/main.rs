@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod host;
+mod host_clock;
 mod latency;
 mod lateness;
 mod no_allocation;

@@ -76,7 +76,7 @@ fn pulses_of_a_file_that_is_rewritten_are_those_of_its_thread() {
             for sequence in 1..=20 {
                 std::thread::sleep(Duration::from_millis(20));
                 let clocks = HostClocks::read();
-                std::fs::write(&file.0, line(clocks.realtime_ns, sequence)).unwrap();
+                std::fs::write(&file.0, line(clocks.other_ns, sequence)).unwrap();
                 came.push(clocks.monotonic);
             }
             ends.store(true, Ordering::SeqCst);
@@ -116,7 +116,7 @@ fn judged(name: &str) -> (PulseFile, PulseReader, HostClocks) {
 fn later(clocks: &HostClocks, after: Duration, step_ns: i128) -> HostClocks {
     HostClocks {
         monotonic: clocks.monotonic + after,
-        realtime_ns: clocks.realtime_ns + after.as_nanos() as i128 + step_ns,
+        other_ns: clocks.other_ns + after.as_nanos() as i128 + step_ns,
         within: clocks.within,
     }
 }
@@ -126,7 +126,7 @@ fn a_sequence_that_stands_gaps_and_wraps_is_counted() {
     let (_file, mut reader, clocks) = judged("sequence");
     let now = later(&clocks, Duration::from_secs(1), 0);
     let mut pulse = |before_ns: i128, sequence: u32| {
-        let realtime_ns = now.realtime_ns - before_ns;
+        let realtime_ns = now.other_ns - before_ns;
         reader.found(Ok(StampedPulse { realtime_ns, sequence }), now)
     };
     let first = pulse(1000, 6).unwrap();
@@ -143,12 +143,12 @@ fn a_sequence_that_stands_gaps_and_wraps_is_counted() {
         PulseLooks { seen: 4, skipped: 2, repeated: 2, untimely: 2, ..PulseLooks::default() };
     assert_eq!(reader.looks(), expected);
     let wrapped = |last| {
-        let realtime_ns = now.realtime_ns - 1;
+        let realtime_ns = now.other_ns - 1;
         let mut reader = reader.clone();
         reader.found(Ok(StampedPulse { realtime_ns, sequence: u32::MAX / 3 }), now).unwrap();
         reader.found(Ok(StampedPulse { realtime_ns, sequence: u32::MAX / 3 * 2 }), now).unwrap();
         reader.found(Ok(StampedPulse { realtime_ns, sequence: u32::MAX }), now).unwrap();
-        reader.found(Ok(StampedPulse { realtime_ns: now.realtime_ns, sequence: last }), now)
+        reader.found(Ok(StampedPulse { realtime_ns: now.other_ns, sequence: last }), now)
     };
     assert!(wrapped(0).is_some() && wrapped(3).is_some());
 }
@@ -160,7 +160,7 @@ fn a_step_of_the_clock_costs_one_pulse() {
     let (_file, mut reader, clocks) = judged("step");
     let mut pulse = |after_ms: u64, sequence: u32, step_ns: i128| {
         let now = later(&clocks, Duration::from_millis(after_ms), step_ns);
-        let realtime_ns = now.realtime_ns - 7_000;
+        let realtime_ns = now.other_ns - 7_000;
         (reader.found(Ok(StampedPulse { realtime_ns, sequence }), now), now.monotonic)
     };
     assert!(pulse(1000, 6, 0).0.is_some());

@@ -17,6 +17,7 @@ use octant_requirements::Verdict;
 use octant_requirements::decision::{DecisionRule, NavigationContext, TimeDoubt};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
+use octant_scenario::file_names::FileNames;
 use octant_scenario::{MotionSpec, Scenario, SourceSpec};
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
@@ -199,6 +200,7 @@ pub fn assemble_with(
         covariance: primary.table.as_ref().map(|table| Box::new(table.covariance)),
         requirement_texts: requirement_texts(scenario),
         summary: summary.clone(),
+        axes_of_file: FileNames::of(&scenario.source).line(),
         facts: facts(scenario),
         units: scenario.display,
         truth: primary.truth,
@@ -378,9 +380,14 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
 /// Renders the parameters as a table, for methods without truth. Empty for a refused least-squares
 /// calibration, whose numbers never came about.
 #[must_use]
-pub fn parameter_text(summary: &Summary) -> String {
+pub fn parameter_text(summary: &Summary, source: &SourceSpec) -> String {
     match &summary.calibration {
-        Some(c) if c.refused.is_none() || c.estimator == "kalman" => parameter_lines(&c.parameters),
+        Some(c) if c.refused.is_none() || c.estimator == "kalman" => {
+            let axes = FileNames::of(source).line();
+            let axes =
+                axes.map_or_else(String::new, |axes| format!("  axes in the file: {axes}\n"));
+            axes + &parameter_lines(&c.parameters)
+        }
         _ => String::new(),
     }
 }

@@ -3,6 +3,7 @@
 use octant_calibration::least_squares::raw::{Nominal, RawModel, accelerometer, gyroscope};
 use octant_sample::Parameters;
 use octant_scenario::SourceSpec;
+use octant_scenario::file_names::FileNames;
 
 /// Renders both sensors in raw numbers; empty where samples don't come from a text file.
 #[must_use]
@@ -20,9 +21,12 @@ pub fn text(source: &SourceSpec, parameters: &Parameters) -> String {
     let mut out = String::from(
         "in raw numbers of the file, value = T · K · (raw − bias), T with a unit diagonal\n",
     );
+    // Writing to a String can't fail.
+    if let Some(axes) = FileNames::of(source).line() {
+        let _ = writeln!(out, "  columns        {axes}");
+    }
     for (name, unit, model) in models {
         let Some(RawModel { bias_counts: b, scale: k, cross: t }) = model else { continue };
-        // Writing to a String can't fail.
         let _ = writeln!(out, "  {name:14} bias  {:>14.3} {:>14.3} {:>14.3}", b[0], b[1], b[2]);
         let _ = writeln!(
             out,

@@ -291,8 +291,15 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
         );
     }
     if text(document, "source.live.pps").is_none() {
-        let keys = &["pps_edge", "pps_silence", "stamps_within"];
-        add("source.live", keys, "without effect: source.live.pps names no pulses");
+        let reason = "without effect: source.live.pps names no pulses";
+        add("source.live", &["pps_edge", "pps_silence"], reason);
+    }
+    if text(document, "source.live.stamps").is_none_or(|stamps| stamps == "own") {
+        let reason = "without effect: source.live.stamps is \"own\"";
+        add("source.live", &["host_clock", "host_within", "tai_offset"], reason);
+        if text(document, "source.live.pps").is_none() {
+            add("source.live", &["stamps_within"], reason);
+        }
     }
     for table in ["source.live", "source.log"] {
         if !is(&format!("{table}.protocol"), DESCRIBED) {

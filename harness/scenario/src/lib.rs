@@ -12,8 +12,7 @@ mod choices;
 mod complete;
 mod condition;
 mod derive;
-mod document;
-pub mod error;
+pub mod file_names;
 mod files;
 mod keys;
 mod load;
@@ -30,6 +29,8 @@ mod tour;
 pub mod trajectory;
 mod write;
 
+use octant_document as document;
+
 pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use files::FilePlaces;
@@ -37,10 +38,12 @@ pub use keys::{SCHEMA, fault_dimension};
 pub use model::{
     AlignmentSpec, CalibrationSpec, ChannelElement, Code, DescriptionChoice, DocksideSpec, Drive,
     EndpointSpec, EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InstrumentLog,
-    InterfaceChoice, Live, Made, Mapped, Messages, Method, MotionComponent, MotionSpec,
-    NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec, RequirementSpec, Scenario,
-    Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver, UnitPulses, UnknownFault,
+    InterfaceChoice, KnownStamps, Live, Made, Mapped, Messages, Method, MotionComponent,
+    MotionSpec, NumberedStops, ParameterDistribution, Process, Realtime, RecordSpec,
+    RequirementSpec, Scenario, Set, Setting, ShipSpectrum, SourceSpec, Speaks, TableDriver,
+    UnitPulses, UnknownFault,
 };
+pub use octant_document::error;
 pub use octant_instruments::grades::{FLICKER, GRADES, GradeSheet};
 pub use octant_quantity as quantity;
 pub use ports::setting_argument;

@@ -1,12 +1,12 @@
 //! Biases against temperature on the page.
 
 use crate::analysis::ChannelAnalysis;
-use crate::names::FileNames;
 use crate::temperature::TemperatureDependence;
 use crate::text::{per_k, steadiness, unit, unit_per_k};
 use maud::{Markup, html};
 use octant_base::number::{plain, significant};
 use octant_report::chart::{Chart, ChartLine, ChartRole};
+use octant_scenario::file_names::FileNames;
 
 /// Renders coefficients and plots, or the reason why there are none.
 pub(super) fn section(

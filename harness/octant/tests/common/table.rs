@@ -169,7 +169,7 @@ fn play(
 /// Writes a pulse as the kernel does, whole at once.
 fn mark(file: &Path, due: Instant, sequence: u64) {
     let clocks = HostClocks::read();
-    let ns = clocks.realtime_ns - (clocks.monotonic - due).as_nanos() as i128;
+    let ns = clocks.other_ns - (clocks.monotonic - due).as_nanos() as i128;
     let next = file.with_extension("next");
     let line = format!("{}.{:09}#{sequence}\n", ns / 1_000_000_000, ns % 1_000_000_000);
     std::fs::write(&next, line).unwrap();

@@ -2237,8 +2237,9 @@ class SourceFmu(Section):
 
 class SourceLive(Section):
     """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol, database,
-    mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence, stamps_within.
-    Default: serial, udp, can and slcan: the defaults of its keys."""
+    mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence, stamps,
+    stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, can and slcan: the defaults of
+    its keys."""
 
     accel_count: str
     """Velocity of one accelerometer count, likewise. Takes a velocity such as "1 mm/s". Left out: by the kind of
@@ -2255,6 +2256,12 @@ class SourceLive(Section):
     gyro_count: str
     """Angle of one gyro count of a NovAtel receiver's unit, in place of the table's, for a kind that the table
     lacks; with accel_count. Takes an angle such as "40 arcsec". Left out: by the kind of unit."""
+    host_clock: str
+    """Clock of a network card that PTP keeps at TAI, such as /dev/ptp0, by which the stamps are related to the
+    host's time. Takes a text in quotes. Left out: the host's realtime clock."""
+    host_within: str
+    """Bound of the error of the host's clock, with source.live.stamps. Takes a time such as "12 h". Left out:
+    what the kernel says of its realtime clock, which has to be synchronised."""
     mapping: str
     """Which signals of the database are which channels, a TOML file. Relative to the scenario. Takes a text in
     quotes. Left out: needed by protocol = "dbc"."""
@@ -2272,10 +2279,16 @@ class SourceLive(Section):
     silence: str
     """How long a reading is waited for; then the instrument is gone. Takes a time such as "12 h". Default: "5
     s"."""
+    stamps: Literal["own", "utc", "tai", "gps"]
+    """Time scale of the unit's stamps. By a known one a stamp is the time itself. Takes one of "own", "utc",
+    "tai", "gps". Default: "own"."""
     stamps_within: str
-    """Bound of the time between a whole second of the stamps and the kernel's stamp of its pulse: it is part of
-    the uncertainty of a sample's time. Takes a time such as "12 h". Left out: 20 us, the latency of an
-    interrupt."""
+    """Bound of the error of the stamps; with source.live.pps of the time between a whole second of them and the
+    kernel's stamp of its pulse. It is part of the uncertainty of a sample's time. Takes a time such as "12
+    h". Left out: 20 us with source.live.pps, the latency of an interrupt."""
+    tai_offset: int
+    """Seconds by which TAI is ahead of UTC, for stamps by tai and gps: 37 since 2017. Takes a whole number from
+    10 to 100. Left out: the kernel's."""
 
 class SourceLog(Section):
     """What the instrument spoke whose bytes source.uri names, and how it was mounted. Takes a table with
@@ -2674,7 +2687,8 @@ class Source(Section):
     def live(self) -> SourceLive:
         """What the instrument of source.uri speaks, and how it is mounted. Takes a table with protocol,
         database, mapping, description, axes, gyro_count, accel_count, silence, pps, pps_edge, pps_silence,
-        stamps_within. Default: serial, udp, can and slcan: the defaults of its keys."""
+        stamps, stamps_within, host_clock, host_within, tai_offset. Default: serial, udp, can and slcan: the
+        defaults of its keys."""
     @live.setter
     def live(self, value: SourceLive | Mapping[str, Any]) -> None: ...
     @property

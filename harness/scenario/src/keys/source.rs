@@ -11,6 +11,7 @@ use crate::quantity::UnitDimension;
 use crate::recorded::{
     Delimiter, RecordedColumn, RecordedQuantity, SPLIT_MAX, TemperatureUnit, TimeUnit,
 };
+use octant_instruments::StampScale;
 
 keys! {
     /// `[source]`.
@@ -161,8 +162,21 @@ keys! {
             "Edge of the pulse at which the second begins.";
         pps_silence: f64 = time(2.0, 3600.0, "from 2 s to 1 h"), "10 s",
             "How long a pulse is waited for; then the run ends.";
-        stamps_within: Option<f64> = time(0.0, 0.1, "from 0 s to 100 ms"), absent("20 us, the latency of an interrupt"),
-            "Bound of the time between a whole second of the stamps and the kernel's stamp of its pulse: it is part of the uncertainty of a sample's time.";
+        stamps: At<Option<StampScale>> = choice! {
+                "own" => None, "a clock of the unit's own";
+                "utc" => Some(StampScale::Utc), "UTC since 1970";
+                "tai" => Some(StampScale::Tai), "TAI since 1970, as PTP has it";
+                "gps" => Some(StampScale::Gps), "GPS time since 6 January 1980";
+            }, "own",
+            "Time scale of the unit's stamps. By a known one a stamp is the time itself.";
+        stamps_within: Option<f64> = time(0.0, 0.1, "from 0 s to 100 ms"), absent("20 us with source.live.pps, the latency of an interrupt"),
+            "Bound of the error of the stamps; with source.live.pps of the time between a whole second of them and the kernel's stamp of its pulse. It is part of the uncertainty of a sample's time.";
+        host_clock: Option<String> = text(), absent("the host's realtime clock"),
+            "Clock of a network card that PTP keeps at TAI, such as /dev/ptp0, by which the stamps are related to the host's time.";
+        host_within: Option<f64> = time(0.0, 0.1, "from 0 s to 100 ms"), absent("what the kernel says of its realtime clock, which has to be synchronised"),
+            "Bound of the error of the host's clock, with source.live.stamps.";
+        tai_offset: Option<u32> = integer::<u32>(10, 100), absent("the kernel's"),
+            "Seconds by which TAI is ahead of UTC, for stamps by tai and gps: 37 since 2017.";
     }
 }
 

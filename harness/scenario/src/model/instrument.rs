@@ -3,7 +3,7 @@
 use super::file_name::FileName;
 use crate::choices::DESCRIBED;
 use octant_instruments::novatel::CountScale;
-use octant_instruments::{Axes, Protocol};
+use octant_instruments::{Axes, Protocol, StampScale};
 use octant_link::Uri;
 
 /// An instrument on a port.
@@ -21,6 +21,23 @@ pub struct Instrument {
     pub silence_s: f64,
     /// Pulses at the whole seconds of its stamps, if it has them.
     pub pulses: Option<UnitPulses>,
+    /// Time scale of its stamps, if it is known.
+    pub known_stamps: Option<KnownStamps>,
+}
+
+/// Stamps by a known time scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownStamps {
+    /// The scale.
+    pub scale: StampScale,
+    /// Bound of the error of the stamps, s.
+    pub within_s: f64,
+    /// Clock of a network card that PTP keeps at TAI; `None`: the host's realtime clock.
+    pub host_clock: Option<String>,
+    /// Bound of the error of the host's clock, s; `None`: the kernel's.
+    pub host_within_s: Option<f64>,
+    /// Seconds by which TAI is ahead of UTC; `None`: the kernel's.
+    pub tai_offset_s: Option<u32>,
 }
 
 /// Pulses at the whole seconds of a unit's stamps.

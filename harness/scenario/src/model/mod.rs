@@ -17,7 +17,9 @@ pub use endpoint::{EndpointSpec, Live};
 pub use fault::Fault;
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
-pub use instrument::{DescriptionChoice, Instrument, InstrumentLog, Messages, Speaks, UnitPulses};
+pub use instrument::{
+    DescriptionChoice, Instrument, InstrumentLog, KnownStamps, Messages, Speaks, UnitPulses,
+};
 pub use motion::{DocksideSpec, MotionComponent, MotionSpec, ShipSpectrum};
 pub(crate) use motion::{MOTIONS, case_attitude};
 pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};

@@ -3,14 +3,15 @@
 
 use crate::choices::DESCRIBED;
 use crate::error::Problem;
-use crate::keys::{At, SourceKeys};
+use crate::keys::{At, SourceKeys, SourceLiveKeys};
 use crate::model::{
-    DescriptionChoice, FileName, Instrument, InstrumentLog, Messages, Speaks, UnitPulses,
+    DescriptionChoice, FileName, Instrument, InstrumentLog, KnownStamps, Messages, Speaks,
+    UnitPulses,
 };
 use octant_base::names::suggestion;
 use octant_instruments::description::READY;
 use octant_instruments::novatel::CountScale;
-use octant_instruments::{Axes, Protocol};
+use octant_instruments::{Axes, Protocol, StampScale};
 use octant_link::Uri;
 
 /// Time that the kernel may take to stamp a pulse, s: the latency of its interrupt.
@@ -54,7 +55,35 @@ pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
         silence_s: live.pps_silence,
         within_s: live.stamps_within.unwrap_or(PULSE_WITHIN_S),
     });
-    Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence, pulses })
+    let known_stamps = known_stamps(live)?;
+    Ok(Instrument { uri, speaks, count, axes, silence_s: live.silence, pulses, known_stamps })
+}
+
+/// Reads the time scale of the stamps; `None` of a clock of the unit's own.
+fn known_stamps(live: &SourceLiveKeys) -> Result<Option<KnownStamps>, Problem> {
+    let Some(scale) = *live.stamps else { return Ok(None) };
+    if live.pps.is_some() {
+        let message = "found a time scale beside source.live.pps, expected one of both: pulses are for a \
+                       clock of the unit's own";
+        return Err(live.stamps.problem(message));
+    }
+    let missing = |key: &str, reason: &str| {
+        live.stamps.problem(format!("source.live.{key} is missing, expected {reason}"))
+    };
+    let within_s = live
+        .stamps_within
+        .ok_or_else(|| missing("stamps_within", "the bound of the stamps' error"))?;
+    let host_clock = live.host_clock.clone();
+    if host_clock.is_some() && live.host_within.is_none() {
+        let reason = "the bound of host_clock's error, which only the program knows that sets it";
+        return Err(missing("host_within", reason));
+    }
+    if host_clock.is_some() && scale == StampScale::Utc && live.tai_offset.is_none() {
+        let reason = "how far TAI is ahead: the stamps are UTC, and host_clock is TAI";
+        return Err(missing("tai_offset", reason));
+    }
+    let (host_within_s, tai_offset_s) = (live.host_within, live.tai_offset);
+    Ok(Some(KnownStamps { scale, within_s, host_clock, host_within_s, tai_offset_s }))
 }
 
 /// Reads the bytes that an instrument sent, from a file and `[source.log]`.

@@ -2,7 +2,9 @@
 
 use super::arrival::Arrival;
 use super::dates::Dates;
+use super::known_stamps::KnownClock;
 use super::pulses::Pulses;
+use octant_instruments::Stamp;
 use octant_instruments::align::ClockAlignment;
 use octant_recorder::event::{BenchClock, BenchTime};
 use std::time::{Duration, Instant, SystemTime};
@@ -17,55 +19,73 @@ pub(super) struct Clock {
     base: Instant,
     utc: SystemTime,
     alignment: ClockAlignment,
-    pulses: Option<Pulses>,
+    reference: Reference,
     dates: Dates,
 }
 
+/// What relates stamps to the host's clock, besides arrivals.
+#[derive(Debug)]
+pub(super) enum Reference {
+    /// Nothing.
+    Arrivals,
+    /// Pulses at the whole seconds of the stamps.
+    Pulses(Pulses),
+    /// The time scale of the stamps.
+    Scale(KnownClock),
+}
+
 impl Clock {
-    pub(super) fn new(pulses: Option<Pulses>) -> Self {
+    pub(super) fn new(reference: Reference) -> Self {
         Self {
             base: Instant::now(),
             utc: SystemTime::now(),
             alignment: ClockAlignment::new(),
-            pulses,
+            reference,
             dates: Dates::default(),
         }
     }
 
-    /// Returns when the interval of a reading ended: from its stamp by the clock relation of pulses,
-    /// or by that of arrivals, with the least delay of the line; without a stamp, the time of arrival.
-    /// `None`: there are too few pulses yet.
+    /// Returns when the interval of a reading ended: from its stamp by the time scale, by the clock
+    /// relation of pulses, or by that of arrivals, with the least delay of the line; without a stamp, the
+    /// time of arrival. `None`: there are too few pulses yet.
     pub(super) fn when(
         &mut self,
-        stamp_ns: Option<u64>,
+        stamp: Option<Stamp>,
         came: Arrival,
     ) -> Result<Option<Instant>, String> {
         self.dates.came(came);
-        let Some(stamp_ns) = stamp_ns else {
-            return match &self.pulses {
-                None => Ok(Some(came.at)),
-                Some(_) => {
-                    Err("found a reading without a stamp, expected stamps, whose whole seconds \
-                     the pulses of source.live.pps mark"
-                        .to_owned())
-                }
+        let Some(stamp) = stamp else {
+            let needed = match &self.reference {
+                Reference::Arrivals => return Ok(Some(came.at)),
+                Reference::Pulses(_) => "source.live.pps",
+                Reference::Scale(_) => "source.live.stamps",
             };
+            return Err(format!(
+                "found a reading without a stamp, expected one on each: {needed} dates readings by their \
+                 stamps"
+            ));
         };
         let base = self.base;
         let host_ns = |at: Instant| {
             let since = at.saturating_duration_since(base).as_nanos();
             BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX))
         };
-        self.alignment.add(stamp_ns, host_ns(came.at));
+        self.alignment.add(stamp.ns, host_ns(came.at));
+        if let Reference::Scale(known) = &mut self.reference {
+            let time = known.when(stamp, came)?;
+            let delay_ns = host_ns(came.at) as f64 - host_ns(time.at) as f64;
+            self.dates.dated(delay_ns, time.within.as_secs_f64() * 1e9);
+            return Ok(Some(time.at));
+        }
         let Some(arrivals) = self.alignment.estimate() else { return Ok(Some(came.at)) };
-        let Some(pulses) = &mut self.pulses else {
+        let Reference::Pulses(pulses) = &mut self.reference else {
             // A reading can't be made after it arrived.
-            let when = self.instant(arrivals.host_ns(stamp_ns));
+            let when = self.instant(arrivals.host_ns(stamp.ns));
             return Ok(Some(when.map_or(came.at, |when| when.min(came.at))));
         };
         let Some(line) = pulses.take(&arrivals, came.at, host_ns)? else { return Ok(None) };
-        let at_ns = line.host_ns(stamp_ns);
-        let within_ns = line.within_ns(stamp_ns) + pulses.within().as_secs_f64() * 1e9;
+        let at_ns = line.host_ns(stamp.ns);
+        let within_ns = line.within_ns(stamp.ns) + pulses.within().as_secs_f64() * 1e9;
         self.dates.dated(host_ns(came.at) as f64 - at_ns, within_ns);
         Ok(Some(self.instant(at_ns).unwrap_or(came.at)))
     }
@@ -87,7 +107,12 @@ impl Clock {
         rate_degps: Option<f64>,
         looks_ms: Option<f64>,
     ) -> (String, BenchTime) {
-        self.dates.told(self.pulses.as_ref().map(Pulses::told), rate_degps, looks_ms)
+        let (pulses, scale) = match &self.reference {
+            Reference::Arrivals => (None, None),
+            Reference::Pulses(pulses) => (Some(pulses.told()), None),
+            Reference::Scale(known) => (None, Some(known.told())),
+        };
+        self.dates.told(pulses, scale, rate_degps, looks_ms)
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.
@@ -124,20 +149,25 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use octant_instruments::StampClock;
     use octant_realtime::host_clocks::HostClocks;
     use octant_scenario::UnitPulses;
+
+    fn stamp(ns: u64) -> Option<Stamp> {
+        Some(Stamp { ns, clock: StampClock::Startup })
+    }
 
     /// The clock of this instrument is slow by 100 ppm. One reading in four comes without delay,
     /// the others come 2 ms later; each must be dated as if it had come without delay.
     #[test]
     fn a_reading_that_came_late_was_made_when_it_was_made() {
-        let mut clock = Clock::new(None);
+        let mut clock = Clock::new(Reference::Arrivals);
         let mut worst = Duration::ZERO;
         for number in 0..2000u64 {
             let true_at = clock.base + Duration::from_nanos(7_000_000 + number * 5_000_500);
             let late = Duration::from_millis(if number % 4 == 0 { 0 } else { 2 });
             let came = Arrival::read(true_at + late);
-            let when = clock.when(Some(90_000 + number * 5_000_000), came).unwrap().unwrap();
+            let when = clock.when(stamp(90_000 + number * 5_000_000), came).unwrap().unwrap();
             if number > 100 {
                 worst = worst.max(when.max(true_at) - when.min(true_at));
             }
@@ -158,7 +188,7 @@ mod tests {
         let file = folder.path().join("assert");
         let pulse = |at: Instant, sequence: u64| {
             let clocks = HostClocks::read();
-            let ns = clocks.realtime_ns - (clocks.monotonic - at).as_nanos() as i128;
+            let ns = clocks.other_ns - (clocks.monotonic - at).as_nanos() as i128;
             let line = format!("{}.{:09}#{sequence}\n", ns / 1_000_000_000, ns % 1_000_000_000);
             std::fs::write(file.with_extension("next"), line).unwrap();
             std::fs::rename(file.with_extension("next"), &file).unwrap();
@@ -170,7 +200,7 @@ mod tests {
             silence_s: 60.0,
             within_s: 20e-6,
         };
-        let mut clock = Clock::new(Some(Pulses::open(&plan, folder.path()).unwrap()));
+        let mut clock = Clock::new(Reference::Pulses(Pulses::open(&plan, folder.path()).unwrap()));
         let delay = Duration::from_millis(23);
         let (start, first_ns) = (clock.base, 1_000_100_000_000u64);
         let made = |number: u64| start + Duration::from_nanos(number * 5_000_250);
@@ -182,7 +212,7 @@ mod tests {
             if stamp_ns.is_multiple_of(1_000_000_000) {
                 pulse(at, number);
             }
-            if let Some(when) = clock.when(Some(stamp_ns), Arrival::read(at + delay)).unwrap() {
+            if let Some(when) = clock.when(stamp(stamp_ns), Arrival::read(at + delay)).unwrap() {
                 dated += 1;
                 worst = worst.max(when.max(at) - when.min(at));
             }
@@ -204,7 +234,7 @@ mod tests {
 
     #[test]
     fn without_a_stamp_it_is_when_it_came() {
-        let mut clock = Clock::new(None);
+        let mut clock = Clock::new(Reference::Arrivals);
         let came = clock.base + Duration::from_millis(3);
         assert_eq!(clock.when(None, Arrival::read(came)), Ok(Some(came)));
         assert!(clock.told().is_none());

@@ -66,22 +66,24 @@ impl Dates {
     pub(super) fn told(
         &self,
         pulses: Option<BenchPulses>,
+        scale: Option<String>,
         rate_degps: Option<f64>,
         looks_ms: Option<f64>,
     ) -> (String, BenchTime) {
         let line_delay = self.delay();
-        let by_pulses = pulses.is_some();
+        let is_known = pulses.is_some() || scale.is_some();
         // A reading that came before its time contradicts the bound: then there is none.
-        let is_bounded = by_pulses && self.delays > 0 && self.early == 0;
+        let is_bounded = is_known && self.delays > 0 && self.early == 0;
         let within_us = is_bounded.then_some(self.within_ns * 1e-3);
         let arcsec = |ms: f64| rate_degps.map(|rate| rate * ms * 1e-3 * ARCSEC_PER_DEG);
         let within_ms = within_us.map(|us| us * 1e-3);
         let angle_within_arcsec =
             within_ms.and_then(|ms| arcsec(ms + looks_ms.unwrap_or_default()));
-        let origin = match (by_pulses, self.by_kernel > self.by_read) {
-            (true, _) => "pulses",
-            (false, true) => "arrivals by the kernel",
-            (false, false) => "arrivals by the read",
+        let origin = match (&pulses, scale) {
+            (Some(_), _) => "pulses".to_owned(),
+            (None, Some(scale)) => format!("stamps by {scale}"),
+            (None, None) if self.by_kernel > self.by_read => "arrivals by the kernel".to_owned(),
+            (None, None) => "arrivals by the read".to_owned(),
         };
         let figures = BenchTime {
             angle_within_arcsec,
@@ -89,7 +91,7 @@ impl Dates {
             arrivals_by_read: self.by_read,
             arrivals_within_us: self.converted_within.as_secs_f64() * 1e6,
             line_delay,
-            origin: origin.to_owned(),
+            origin,
             pulses,
             rate_degps,
             within_us,
@@ -113,7 +115,7 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
         let came = counted(pulses.taken, "pulse", "pulses");
         return format!("none: no sample got its time, after {came} at {}", pulses.device);
     }
-    let (Some(within_us), Some(pulses)) = (time.within_us, &time.pulses) else {
+    let Some(within_us) = time.within_us else {
         let angle = arcsec_per_ms.map_or_else(String::new, |arcsec| {
             format!("; each millisecond of it is {arcsec:.1}″ at {rate} °/s")
         });
@@ -138,21 +140,28 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
             delay.least_ms, delay.mean_ms, delay.sigma_ms,
         )
     });
-    let steps = match pulses.clock_steps {
-        0 => String::new(),
-        steps => format!(
+    let (origin, steps) = time.pulses.as_ref().map_or_else(|| (time.origin.clone(), None), counts);
+    let steps = steps.unwrap_or_default();
+    format!("by {origin}: within {within_us:.1} µs{angle}{delay}{steps}")
+}
+
+/// Counts of pulses in words, and of the clock's steps if there were any.
+fn counts(pulses: &BenchPulses) -> (String, Option<String>) {
+    let steps = (pulses.clock_steps > 0).then(|| {
+        format!(
             "; {} of the host's realtime clock, the largest {:+.3} ms",
-            counted(steps, "step", "steps"),
+            counted(pulses.clock_steps, "step", "steps"),
             pulses.clock_step_largest_ms
-        ),
-    };
-    format!(
-        "by {} at {}, {} missing, {} off: within {within_us:.1} µs{angle}{delay}{steps}",
+        )
+    });
+    let found = format!(
+        "{} at {}, {} missing, {} off",
         counted(pulses.taken, "pulse", "pulses"),
         pulses.device,
         pulses.missing,
         pulses.off,
-    )
+    );
+    (found, steps)
 }
 
 #[cfg(test)]
@@ -179,18 +188,18 @@ mod tests {
     #[test]
     fn a_reading_before_its_time_takes_the_bound_away() {
         let mut dates = Dates::default();
-        let (words, told) = dates.told(Some(pulses()), Some(10.0), None);
+        let (words, told) = dates.told(Some(pulses()), None, Some(10.0), None);
         assert_eq!(told.within_us, None);
         assert_eq!(words, "none: no sample got its time, after 9 pulses at /dev/pps0");
         dates.dated(3e6, 25e3);
         dates.dated(-20e3, 25e3);
-        let (words, told) = dates.told(Some(pulses()), Some(10.0), Some(1.0));
+        let (words, told) = dates.told(Some(pulses()), None, Some(10.0), Some(1.0));
         assert_eq!((told.within_us, told.line_delay.unwrap().early), (Some(25.0), 0));
         // 10 °/s for 1.025 ms.
         assert!((told.angle_within_arcsec.unwrap() - 36.9).abs() < 1e-9);
         assert!(words.contains("within 25.0 µs"), "{words}");
         dates.dated(-30e3, 25e3);
-        let (words, told) = dates.told(Some(pulses()), Some(10.0), Some(1.0));
+        let (words, told) = dates.told(Some(pulses()), None, Some(10.0), Some(1.0));
         assert_eq!((told.within_us, told.angle_within_arcsec), (None, None));
         assert!(words.contains("without a bound: 1 reading came before"), "{words}");
     }

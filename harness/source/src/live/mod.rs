@@ -14,11 +14,13 @@ mod bus;
 mod clock;
 mod dates;
 mod feed;
+mod known_stamps;
 mod pulses;
 mod table;
 
-use self::clock::Clock;
+use self::clock::{Clock, Reference};
 use self::feed::Feed;
+use self::known_stamps::KnownClock;
 use self::pulses::Pulses;
 use self::table::Table;
 use super::{Epoch, Source, SourceError};
@@ -96,16 +98,18 @@ impl LiveSource {
     ) -> Result<Self, SourceError> {
         let feed = Feed::open(instrument, folder)?;
         let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
-        let pulses = instrument.pulses.as_ref().map(|pulses| Pulses::open(pulses, folder));
-        let pulses = pulses
-            .transpose()
-            .map_err(|reason| SourceError::Gone { uri: instrument.uri.to_string(), reason })?;
+        let gone = |reason| SourceError::Gone { uri: instrument.uri.to_string(), reason };
+        let reference = match (&instrument.pulses, &instrument.known_stamps) {
+            (Some(pulses), _) => Reference::Pulses(Pulses::open(pulses, folder).map_err(gone)?),
+            (None, Some(known)) => Reference::Scale(KnownClock::open(known).map_err(gone)?),
+            (None, None) => Reference::Arrivals,
+        };
         Ok(Self {
             feed,
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
             rate: RateCheck::new(sample_period_ns),
-            clock: Clock::new(pulses),
+            clock: Clock::new(reference),
             table: None,
             turning_radps: None,
             total: samples.unwrap_or(u64::MAX),
@@ -159,8 +163,8 @@ impl Source for LiveSource {
         loop {
             while let Some((mut reading, came)) = self.feed.reading() {
                 self.rate.reading(&reading).map_err(|reason| self.gone(reason))?;
-                let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
-                let when = self.clock.when(stamp_ns, came).map_err(|reason| self.gone(reason))?;
+                let when =
+                    self.clock.when(reading.stamp, came).map_err(|reason| self.gone(reason))?;
                 let Some(when) = when else {
                     // The run begins once there are pulses enough to date a sample.
                     until = Instant::now() + silence;
@@ -282,8 +286,15 @@ pub(crate) mod tests {
     ) -> (LiveSource, UdpSocket) {
         let uri = "udp:127.0.0.1:0".parse().unwrap();
         let speaks = Speaks::Bytes(protocol);
-        let instrument =
-            Instrument { uri, speaks, count, axes: Axes::SAME, silence_s: 0.3, pulses: None };
+        let instrument = Instrument {
+            uri,
+            speaks,
+            count,
+            axes: Axes::SAME,
+            silence_s: 0.3,
+            pulses: None,
+            known_stamps: None,
+        };
         let source =
             LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
         let address = source.reached_at();
@@ -326,6 +337,7 @@ pub(crate) mod tests {
             axes: Axes::SAME,
             silence_s: 0.3,
             pulses: None,
+            known_stamps: None,
         };
         let mut source = LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(2)).unwrap();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();

@@ -1,24 +1,26 @@
-//! Names of the channels: the body's axis, and beside it the name that the file of the recording has for it.
+//! Names of the inertial channels: the body's axis, and beside it the name that the file or the unit has for it.
 
-use super::deviations::CHANNELS;
-use octant_scenario::SourceSpec;
-use octant_scenario::recorded::{AxisColumn, MappedField, RecordedColumn};
-use serde::Serialize;
+use crate::model::SourceSpec;
+use crate::recorded::{AxisColumn, MappedField, RecordedColumn};
+use octant_instruments::Axes;
+
+/// Number of inertial channels.
+pub const CHANNELS: usize = 6;
 
 /// Names of the channels.
 pub const NAMES: [&str; CHANNELS] =
     ["gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"];
 
-/// Names that the file has for gyros x, y, z and accelerometers x, y, z of the body; none where it names none.
+/// Names that a file or a unit has for gyros x, y, z and accelerometers x, y, z of the body; none where it has the
+/// body's.
 ///
 /// A minus before a name says that the body's axis is the opposite of the file's. Scale and offset of the mapping are
 /// not in it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FileNames(pub Option<[String; CHANNELS]>);
 
 impl FileNames {
-    /// Names in the columns or fields that a source maps.
+    /// Names of the columns or fields that a source maps, or of a unit's axes that aren't the body's.
     #[must_use]
     pub fn of(source: &SourceSpec) -> Self {
         let signed = |scale: f64, name: String| match scale < 0.0 {
@@ -33,6 +35,12 @@ impl FileNames {
             signed(axis.scale, name)
         };
         let of_mcap = |field: &MappedField| signed(field.scale, field.path.clone());
+        let of_unit = |axes: &Axes| {
+            axes.names().map(|(name, opposite)| match opposite {
+                true => format!("−{name} of the unit"),
+                false => format!("{name} of the unit"),
+            })
+        };
         let [[a, b, c], [d, e, f]] = match source {
             SourceSpec::Text(mapping) => {
                 let accelerometer = mapping.accelerometer.each_ref().map(of_text);
@@ -41,6 +49,12 @@ impl FileNames {
             SourceSpec::Replay { mapping: Some(mapping), .. } => {
                 let accelerometer = mapping.accelerometer.each_ref().map(of_mcap);
                 [mapping.gyro.each_ref().map(of_mcap), accelerometer]
+            }
+            SourceSpec::Log(log) if log.axes != Axes::SAME => {
+                [of_unit(&log.axes), of_unit(&log.axes)]
+            }
+            SourceSpec::Live(unit) if unit.axes != Axes::SAME => {
+                [of_unit(&unit.axes), of_unit(&unit.axes)]
             }
             _ => return Self(None),
         };
@@ -75,5 +89,12 @@ impl FileNames {
     #[must_use]
     pub fn column(&self, triad: usize, axis: usize) -> Option<&str> {
         self.of_file(3 * triad + axis)
+    }
+
+    /// All of them in a line; `None` where the file has the body's.
+    #[must_use]
+    pub fn line(&self) -> Option<String> {
+        let [a, b, c, d, e, f] = self.0.as_ref()?;
+        Some(format!("gyro x, y, z: {a}, {b}, {c}; accelerometer x, y, z: {d}, {e}, {f}"))
     }
 }

@@ -1,6 +1,8 @@
-//! A scenario as it was written: a tree of values with their places.
+//! TOML as it was written: a tree of values with their places, and problems that name a place.
 
-use super::error::{Place, Problem};
+pub mod error;
+
+use self::error::{Place, Problem};
 use std::fmt::Write as _;
 use toml::de::{DeTable, DeValue};
 
@@ -15,7 +17,7 @@ pub struct DocumentNode {
 
 impl DocumentNode {
     /// Texts of an array.
-    pub(crate) fn texts(&self) -> Vec<String> {
+    pub fn texts(&self) -> Vec<String> {
         let DocumentValue::Array(entries) = &self.value else { return Vec::new() };
         let text = |entry: &DocumentNode| match &entry.value {
             DocumentValue::Text(text) => Some(text.clone()),
@@ -142,7 +144,7 @@ impl DocumentTable {
 }
 
 /// Parses TOML text.
-pub(crate) fn parse(text: &str) -> Result<DocumentTable, Vec<Problem>> {
+pub fn parse(text: &str) -> Result<DocumentTable, Vec<Problem>> {
     let lines = Lines::new(text);
     match DeTable::parse(text) {
         Ok(table) => {
@@ -205,7 +207,7 @@ fn control(text: &str, is_name: bool) -> Option<char> {
 }
 
 /// First problem of a control character in the value of an argument.
-pub(crate) fn controls_of_argument(path: &str, node: &DocumentNode) -> Option<Problem> {
+pub fn controls_of_argument(path: &str, node: &DocumentNode) -> Option<Problem> {
     let mut found = Vec::new();
     let name = path.rsplit('.').next().unwrap_or(path);
     controls_of(node, &path.escape_debug().to_string(), NAMES.contains(&name), &mut found);
@@ -213,7 +215,7 @@ pub(crate) fn controls_of_argument(path: &str, node: &DocumentNode) -> Option<Pr
 }
 
 /// Parses the value of a `--set KEY=VALUE`: TOML, or a text without quotes.
-pub(crate) fn parse_argument(value: &str, argument: &str) -> DocumentNode {
+pub fn parse_argument(value: &str, argument: &str) -> DocumentNode {
     let place = Place::Argument(argument.to_owned());
     let value = value.trim();
     let node = match parse_value(value) {
@@ -224,7 +226,7 @@ pub(crate) fn parse_argument(value: &str, argument: &str) -> DocumentNode {
 }
 
 /// Parses a default of the key table.
-pub(crate) fn parse_default(value: &str) -> DocumentNode {
+pub fn parse_default(value: &str) -> DocumentNode {
     let text = DocumentValue::Text(value.to_owned());
     let node = parse_value(value).unwrap_or(DocumentNode { value: text, place: Place::Default });
     replace_places(node, &Place::Default)
@@ -326,7 +328,7 @@ impl<'a> Lines<'a> {
 }
 
 /// Writes a value on one line.
-pub(crate) fn write_value(value: &DocumentValue, out: &mut String) {
+pub fn write_value(value: &DocumentValue, out: &mut String) {
     match value {
         DocumentValue::Text(text) => write_quoted(text, out),
         DocumentValue::Integer(number) => _ = write!(out, "{number}"),
@@ -375,7 +377,7 @@ fn write_key(key: &str, out: &mut String) {
 }
 
 /// Converts a value to JSON.
-pub(crate) fn json(value: &DocumentValue) -> serde_json::Value {
+pub fn json(value: &DocumentValue) -> serde_json::Value {
     match value {
         DocumentValue::Text(text) | DocumentValue::Date(text) => {
             serde_json::Value::from(text.as_str())
@@ -391,7 +393,7 @@ pub(crate) fn json(value: &DocumentValue) -> serde_json::Value {
 }
 
 /// Value of a plain number, whole or not.
-pub(crate) fn number(value: &DocumentValue) -> Option<f64> {
+pub fn number(value: &DocumentValue) -> Option<f64> {
     match value {
         DocumentValue::Integer(number) => Some(*number as f64),
         DocumentValue::Number(number) => Some(*number),
@@ -400,6 +402,6 @@ pub(crate) fn number(value: &DocumentValue) -> Option<f64> {
 }
 
 /// Dotted path of a key.
-pub(crate) fn join(path: &str, key: &str) -> String {
+pub fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
