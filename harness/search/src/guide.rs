@@ -2,9 +2,9 @@
 //!
 //! Both the harm of a fault and its chance to be noticed grow with its size. The largest harm that goes
 //! unnoticed is therefore just below the size at which it is noticed. A line looks for that size: it starts in
-//! the middle, and tries next the size at which the harm, extrapolated, would be worse than all so far, whether it
-//! was noticed or not. Noticed there, it ends; unnoticed, it goes on to the size at which it is noticed. New lines
-//! are begun at random for each kind in turn, near the worst of what was found, or as two of its faults at once.
+//! the middle, and tries next the size at which the harm, extrapolated, would be worse than all so far. Noticed
+//! there, it ends; unnoticed, it goes on to the size at which it is noticed. New lines are begun at random for each kind in turn, near the worst of what was
+//! found, or as two of its faults at once.
 //!
 //! Each proposal depends on the seed and the results before it alone.
 
@@ -12,7 +12,6 @@ use crate::candidate::{FaultCandidate, PlacedFault};
 use crate::space::{KeyValues, SearchSpace};
 use crate::trial::FaultTrial;
 use octant_random::draws::Draws;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Runs of a line, at most.
 const RUNS_MAX: u32 = 10;
@@ -20,8 +19,7 @@ const RUNS_MAX: u32 = 10;
 const RUNS_MAX_NOTICED: u32 = 3;
 /// Ratio of noticed to unnoticed size below which a line has found the edge.
 const EDGE: f64 = 1.15;
-/// Share of new lines that begin at random, once something was found: until every kind was tried, and from then on.
-const EXPLORE_FIRST: f64 = 0.8;
+/// Share of new lines that begin at random, once something was found.
 const EXPLORE: f64 = 0.4;
 /// Faults that new lines begin near.
 const ELITES_MAX: usize = 12;
@@ -52,8 +50,6 @@ pub struct SearchGuide<'a> {
     begun: u64,
     /// Order in which the forms are tried, begun again when all were.
     order: Vec<usize>,
-    /// Kinds that were tried, at most all.
-    tried: usize,
     /// Worst that went unnoticed, worst first.
     elites: Vec<Elite>,
 }
@@ -72,8 +68,8 @@ struct SizeLine {
     key: Option<usize>,
     /// Largest place that went unnoticed, with its harm.
     low: Option<(f64, f64)>,
-    /// Smallest place that was noticed, with its harm.
-    high: Option<(f64, f64)>,
+    /// Smallest place that was noticed.
+    high: Option<f64>,
     runs: u32,
     /// Place that is run next; `None` when the line has ended.
     next: Option<f64>,
@@ -94,7 +90,7 @@ impl<'a> SearchGuide<'a> {
     #[must_use]
     pub fn new(space: &'a SearchSpace, seed: u64, pairs: f64) -> Self {
         let (lines, order, elites) = (Vec::new(), Vec::new(), Vec::new());
-        Self { space, seed, pairs, lines, begun: 0, order, tried: 0, elites }
+        Self { space, seed, pairs, lines, begun: 0, order, elites }
     }
 
     /// Proposes candidates. Their results are taken by [`Self::learn`], in the same order, before the next ones
@@ -146,11 +142,9 @@ impl<'a> SearchGuide<'a> {
         let mut draws = Draws::of(self.seed, "faults search", self.begun);
         self.begun += 1;
         let is_pair = draws.unit() < self.pairs;
-        let share = if self.tried < self.kinds() { EXPLORE_FIRST } else { EXPLORE };
-        let explores = self.elites.is_empty() || draws.unit() < share;
+        let explores = self.elites.is_empty() || draws.unit() < EXPLORE;
         let (mut candidate, start) = if explores {
             let form = self.next_form(&mut draws);
-            self.tried += 1;
             let fault = PlacedFault::random(self.space, form, &mut draws);
             // Not at an end of the range, from which a line goes one way only.
             (FaultCandidate { faults: vec![fault] }, 0.3 + 0.4 * draws.unit())
@@ -175,32 +169,15 @@ impl<'a> SearchGuide<'a> {
         SizeLine { candidate, key, low: None, high: None, runs: 0, next: Some(start) }
     }
 
-    /// The next form in a random order of all: one of each kind, then the second one of each that has one.
+    /// The next form in a random order of all.
     fn next_form(&mut self, draws: &mut Draws) -> usize {
         if self.order.is_empty() {
-            let mut order: Vec<usize> = (0..self.space.forms.len()).collect();
-            for last in (1..order.len()).rev() {
-                order.swap(last, draws.below(last + 1));
+            self.order = (0..self.space.forms.len()).collect();
+            for last in (1..self.order.len()).rev() {
+                self.order.swap(last, draws.below(last + 1));
             }
-            let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-            let turn_of = |form: &usize| {
-                let turns = seen.entry(self.space.forms[*form].kind.name).or_default();
-                *turns += 1;
-                *turns
-            };
-            let mut turns: Vec<(usize, usize)> =
-                order.iter().map(turn_of).zip(order.clone()).collect();
-            // Stable: within a turn the order stays random. Taken from the end.
-            turns.sort_by_key(|(turn, _)| std::cmp::Reverse(*turn));
-            self.order = turns.into_iter().map(|(_, form)| form).collect();
         }
         self.order.pop().unwrap_or(0)
-    }
-
-    /// Number of kinds.
-    fn kinds(&self) -> usize {
-        let names: BTreeSet<&str> = self.space.forms.iter().map(|form| form.kind.name).collect();
-        names.len()
     }
 
     /// Index of something found; the worst are taken more often.
@@ -244,8 +221,8 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
         if line.low.is_none_or(|(low, _)| place >= low) {
             line.low = Some((place, effect.harm()));
         }
-    } else if line.high.is_none_or(|(high, _)| place < high) {
-        line.high = Some((place, effect.harm()));
+    } else if line.high.is_none_or(|high| place < high) {
+        line.high = Some(place);
     }
     let runs_max = if line.low.is_none() { RUNS_MAX_NOTICED } else { RUNS_MAX };
     if line.runs >= runs_max {
@@ -257,22 +234,15 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
         return;
     };
     let Some((low, harm)) = line.low else {
-        line.next = line.high.filter(|(high, _)| *high > 0.0).and_then(|(high, harm)| {
-            if harm < HARMLESS {
-                // It isn't known what was harmful: what is noticed at one size may not be at a tenth of it.
-                return Some((high - decade).max(0.0));
-            }
-            // Down to the size of the harm that is aimed at. Noticed below it, larger ones are too.
-            let down = range.distance_of(harm / (BEYOND * worst))?;
-            (down > edge).then(|| (high - down).max(0.0))
-        });
+        // What is noticed at one size may be harmless at a tenth of it.
+        line.next = line.high.filter(|high| *high > 0.0).map(|high| (high - decade).max(0.0));
         return;
     };
     let up = |distance: f64| (low < 1.0).then(|| (low + distance).min(1.0));
     let next = if harm > worst {
         // The worst so far: on to the edge.
         match line.high {
-            Some((high, _)) => (high - low > edge).then_some(0.5 * (low + high)),
+            Some(high) => (high - low > edge).then_some(0.5 * (low + high)),
             None => range.distance_of(CLIMB).and_then(up),
         }
     } else if harm < HARMLESS {
@@ -281,7 +251,7 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
     } else {
         range.distance_of(BEYOND * worst / harm).and_then(|jump| up(jump.min(JUMP_MAX * decade)))
     };
-    line.next = next.filter(|next| line.high.is_none_or(|(high, _)| *next < high));
+    line.next = next.filter(|next| line.high.is_none_or(|high| *next < high));
 }
 
 #[cfg(test)]

@@ -15,9 +15,14 @@
 #include <time.h>
 #include <unistd.h>
 
+// Sleeps until so long after the last time that this was called for.
 static void sleep_ms(long ms) {
-    struct timespec wait = {ms / 1000, ms % 1000 * 1000000};
-    while (nanosleep(&wait, &wait) != 0) {}
+    static struct timespec until;
+    if (until.tv_sec == 0) clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += ms * 1000000;
+    until.tv_sec += until.tv_nsec / 1000000000;
+    until.tv_nsec %= 1000000000;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) != 0) {}
 }
 
 int main(int count, char **words) {
@@ -29,7 +34,7 @@ int main(int count, char **words) {
     clockid_t clock = (clockid_t)(~(unsigned)device << 3 | 3);
     while (keeps) {
         struct timespec now;
-        clock_gettime(CLOCK_REALTIME, &now);
+        clock_gettime(CLOCK_REALTIME, &now); // TAI is 37 s ahead of it
         now.tv_sec += 37;
         if (clock_settime(clock, &now) != 0) { perror("clock_settime"); return 1; }
         sleep_ms(atol(words[3]));

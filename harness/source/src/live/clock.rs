@@ -73,8 +73,7 @@ impl Clock {
         self.alignment.add(stamp.ns, host_ns(came.at));
         if let Reference::Scale(known) = &mut self.reference {
             let time = known.when(stamp, came)?;
-            let delay_ns = host_ns(came.at) as f64 - host_ns(time.at) as f64;
-            self.dates.dated(delay_ns, time.within.as_secs_f64() * 1e9);
+            self.dates.dated(time.delay_s * 1e9, time.within.as_secs_f64() * 1e9);
             return Ok(Some(time.at));
         }
         let Some(arrivals) = self.alignment.estimate() else { return Ok(Some(came.at)) };

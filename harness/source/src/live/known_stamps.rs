@@ -49,6 +49,8 @@ pub(super) struct KnownClock {
 pub(super) struct KnownTime {
     pub(super) at: Instant,
     pub(super) within: Duration,
+    /// Time from it to the arrival of its reading; negative: it arrived before.
+    pub(super) delay_s: f64,
 }
 
 impl KnownClock {
@@ -212,7 +214,7 @@ impl KnownClock {
         };
         let given_s = self.plan.within_s + drift_s.abs();
         let within = Duration::from_secs_f64(given_s) + self.host_within + clocks.within;
-        Ok(KnownTime { at, within })
+        Ok(KnownTime { at, within, delay_s })
     }
 }
 
@@ -269,6 +271,7 @@ mod tests {
             let came = Arrival::read(made + Duration::from_millis(2));
             let time = clock.when(stamp(ns), came).unwrap();
             assert!(time.at + time.within >= made && time.at <= after + time.within, "{scale:?}");
+            assert!((time.delay_s - 2e-3).abs() < (after - made).as_secs_f64() + 1e-3, "{time:?}");
             // What was given, the kernel's bound, and that of the readings.
             let read = time.within - Duration::from_micros(350);
             assert!(read > Duration::ZERO && read < Duration::from_millis(5), "{read:?}");
