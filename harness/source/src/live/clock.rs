@@ -29,7 +29,7 @@ pub(super) enum Reference {
     /// Nothing.
     Arrivals,
     /// Pulses at the whole seconds of the stamps.
-    Pulses(Pulses),
+    Pulses(Box<Pulses>),
     /// The time scale of the stamps.
     Scale(KnownClock),
 }
@@ -199,7 +199,8 @@ mod tests {
             silence_s: 60.0,
             within_s: 20e-6,
         };
-        let mut clock = Clock::new(Reference::Pulses(Pulses::open(&plan, folder.path()).unwrap()));
+        let mut clock =
+            Clock::new(Reference::Pulses(Box::new(Pulses::open(&plan, folder.path()).unwrap())));
         let delay = Duration::from_millis(23);
         let (start, first_ns) = (clock.base, 1_000_100_000_000u64);
         let made = |number: u64| start + Duration::from_nanos(number * 5_000_250);

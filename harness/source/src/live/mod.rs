@@ -100,7 +100,9 @@ impl LiveSource {
         let settings = SamplerSettings { axes: instrument.axes, period_ns: sample_period_ns };
         let gone = |reason| SourceError::Gone { uri: instrument.uri.to_string(), reason };
         let reference = match (&instrument.pulses, &instrument.known_stamps) {
-            (Some(pulses), _) => Reference::Pulses(Pulses::open(pulses, folder).map_err(gone)?),
+            (Some(pulses), _) => {
+                Reference::Pulses(Box::new(Pulses::open(pulses, folder).map_err(gone)?))
+            }
             (None, Some(known)) => Reference::Scale(KnownClock::open(known).map_err(gone)?),
             (None, None) => Reference::Arrivals,
         };
