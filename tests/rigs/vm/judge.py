@@ -31,6 +31,17 @@ def hash_of(name):
     return json.loads((work / f"{name}.json").read_text())["stream_hash"]
 
 
+def said_of(name: str) -> str:
+    """The line of a name."""
+    return next((line for line in said if line.startswith(f"{name} ")), f"nothing of {name}")
+
+
+def figure(line: str, name: str) -> float:
+    """Value of a key in a line, or not a number."""
+    match = re.search(rf'"{name}":([-\d.e]+)', line)
+    return float(match[1]) if match else math.nan
+
+
 said = [
     line.strip()[4:]
     for line in (work / "console").read_text(errors="replace").splitlines()
@@ -119,6 +130,7 @@ for one in recorded:
     if held in played[at:]:
         equal, at = equal + 1, played.index(held, at) + 1
 check("an instrument on the kernel's CAN", told.startswith("instrument 0 "), told)
+check("its arrivals are stamped by the kernel", figure(told, "arrivals_by_kernel") > 100, told)
 # A host that is busy starves the machine, and its controllers overrun: however many samples that costs, each has to be
 # counted, and one that has arrived has to be equal. Where most are lost, nothing is shown.
 missing = re.search(r'"missing":(\d+)', told)
@@ -128,19 +140,6 @@ check(
     equal == len(recorded) == 200 - missing and missing <= 100,
     f"{equal} of {len(recorded)} equal, {missing} missing",
 )
-
-
-
-def said_of(name: str) -> str:
-    """The line of a run by stamps."""
-    return next((line for line in said if line.startswith(f"{name} ")), f"nothing of {name}")
-
-
-def figure(line: str, name: str) -> float:
-    """Value of a key in a line, or not a number."""
-    match = re.search(rf'"{name}":([-\d.e]+)', line)
-    return float(match[1]) if match else math.nan
-
 
 told = said_of("unkept")
 check("a clock that nobody keeps is refused", not told.startswith("unkept 0") and "found a clock that went" in told, told)

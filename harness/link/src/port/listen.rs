@@ -2,7 +2,7 @@
 
 use super::{PortError, SlcanPort};
 use crate::Uri;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// A frame of any node.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -72,16 +72,19 @@ impl Listener {
         Ok(Self { bus })
     }
 
-    /// Receives the next frame within a time; `None`: nothing came, or an event that is no frame with
-    /// data.
+    /// Receives the next frame within a time, with the kernel's time of its arrival where there is one: an
+    /// adapter on a serial line has none. `None`: nothing came, or an event that is no frame with data.
     ///
     /// # Errors
     /// If the port is gone.
-    pub fn hear(&mut self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
+    pub fn hear(
+        &mut self,
+        wait: Duration,
+    ) -> Result<Option<(HeardFrame, Option<SystemTime>)>, PortError> {
         match &mut self.bus {
             #[cfg(all(target_os = "linux", feature = "can"))]
             Bus::Kernel(bus) => bus.hear(wait),
-            Bus::Slcan(bus) => bus.hear(wait),
+            Bus::Slcan(bus) => Ok(bus.hear(wait)?.map(|heard| (heard, None))),
         }
     }
 }

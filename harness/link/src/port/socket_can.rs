@@ -11,7 +11,7 @@ use socketcan::{
     EmbeddedFrame, Id, Socket, SocketOptions, StandardId,
 };
 use std::io::ErrorKind;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// A CAN interface that receives the messages for its role, and the problems of the bus.
 #[derive(Debug)]
@@ -58,7 +58,10 @@ impl SocketCan {
             CanFilter::new(id, mask | EXTENDED | REMOTE)
         };
         let filters: Vec<CanFilter> = identifiers.iter().map(filter).collect();
-        Self::filtered(can, EndRole::Device, &filters)
+        let bus = Self::filtered(can, EndRole::Device, &filters)?;
+        // Without stamps an arrival is the return of the read, which is told.
+        let _ = bus.socket()?.set_recv_timestamp(true);
+        Ok(bus)
     }
 
     fn filtered(can: &Can, role: EndRole, filters: &[CanFilter]) -> Result<Self, PortError> {
@@ -101,11 +104,15 @@ impl SocketCan {
         self.socket.as_ref().ok_or_else(|| PortError::gone(&self.uri, "it is closed"))
     }
 
-    /// Receives the kernel's next frame within a time.
-    fn next(&self, wait: Duration) -> Result<Option<CanAnyFrame>, PortError> {
+    /// Receives the kernel's next frame within a time, by one way to read.
+    fn next<T>(
+        &self,
+        wait: Duration,
+        read: impl Fn(&CanFdSocket) -> std::io::Result<T>,
+    ) -> Result<Option<T>, PortError> {
         let mut waited = wait.is_zero();
         loop {
-            match self.socket()?.read_frame() {
+            match read(self.socket()?) {
                 Ok(frame) => return Ok(Some(frame)),
                 Err(error) if error.kind() == ErrorKind::WouldBlock => {
                     if std::mem::replace(&mut waited, true) {
@@ -119,16 +126,24 @@ impl SocketCan {
         }
     }
 
-    /// Receives the next frame of any node within a time; `None`: nothing came, or no frame with data.
-    pub(super) fn hear(&self, wait: Duration) -> Result<Option<HeardFrame>, PortError> {
+    /// Receives the next frame of any node within a time, with the kernel's time of its arrival; `None`: nothing
+    /// came, or no frame with data.
+    pub(super) fn hear(
+        &self,
+        wait: Duration,
+    ) -> Result<Option<(HeardFrame, Option<SystemTime>)>, PortError> {
         let heard = |id: Id, data: &[u8]| match id {
             Id::Standard(id) => HeardFrame::new(u32::from(id.as_raw()), false, data),
             Id::Extended(id) => HeardFrame::new(id.as_raw(), true, data),
         };
-        Ok(self.next(wait)?.and_then(|frame| match &frame {
-            CanAnyFrame::Normal(frame) => Some(heard(frame.id(), frame.data())),
-            CanAnyFrame::Fd(frame) => Some(heard(frame.id(), frame.data())),
-            CanAnyFrame::Remote(_) | CanAnyFrame::Error(_) => None,
+        let came = self.next(wait, Socket::read_frame_with_timestamps)?;
+        Ok(came.and_then(|(frame, stamps)| {
+            let heard = match &frame {
+                CanAnyFrame::Normal(frame) => heard(frame.id(), frame.data()),
+                CanAnyFrame::Fd(frame) => heard(frame.id(), frame.data()),
+                CanAnyFrame::Remote(_) | CanAnyFrame::Error(_) => return None,
+            };
+            Some((heard, stamps.socket))
         }))
     }
 
@@ -280,7 +295,7 @@ impl Frames for SocketCan {
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError> {
-        Ok(self.next(wait)?.map(|frame| event(&frame)))
+        Ok(self.next(wait, Socket::read_frame)?.map(|frame| event(&frame)))
     }
 
     fn format(&self) -> CanVersion {

@@ -1,5 +1,6 @@
 //! An instrument on a CAN bus, by a database and a mapping of its signals.
 
+use super::arrival::{Arrival, ArrivalClock};
 use crate::SourceError;
 use octant_base::encoding::utf8_or_windows_1252;
 use octant_base::number::counted;
@@ -9,7 +10,7 @@ use octant_link::Uri;
 use octant_link::port::{HeardFrame, Listener};
 use octant_scenario::{FileName, Messages};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Messages on a bus, and what is gathered of a reading.
 #[derive(Debug)]
@@ -17,7 +18,8 @@ pub(super) struct Bus {
     listener: Listener,
     gatherer: Gatherer,
     /// Frame that was not taken yet, with its time of arrival.
-    frame: Option<(HeardFrame, Instant)>,
+    frame: Option<(HeardFrame, Arrival)>,
+    clock: ArrivalClock,
 }
 
 impl Bus {
@@ -29,10 +31,10 @@ impl Bus {
             uri: uri.to_string(),
             reason: error.to_string(),
         })?;
-        Ok(Self { listener, gatherer, frame: None })
+        Ok(Self { listener, gatherer, frame: None, clock: ArrivalClock::default() })
     }
 
-    pub(super) fn reading(&mut self) -> Option<(Reading, Instant)> {
+    pub(super) fn reading(&mut self) -> Option<(Reading, Arrival)> {
         let (heard, came) = self.frame.take()?;
         let frame = CanFrame { id: heard.id, extended: heard.extended, data: heard.data() };
         self.gatherer.receive(&frame).map(|reading| (reading, came))
@@ -40,7 +42,7 @@ impl Bus {
 
     pub(super) fn receive(&mut self, wait: Duration) -> Result<bool, String> {
         let heard = self.listener.hear(wait).map_err(|error| error.to_string())?;
-        self.frame = heard.map(|heard| (heard, Instant::now()));
+        self.frame = heard.map(|(heard, stamp)| (heard, self.clock.arrival(stamp)));
         Ok(self.frame.is_some())
     }
 

@@ -85,7 +85,7 @@ impl Feed {
     pub(super) fn reading(&mut self) -> Option<(Reading, Arrival)> {
         match self {
             Self::Line(line) => line.reading(),
-            Self::Bus(bus) => bus.reading().map(|(reading, came)| (reading, Arrival::read(came))),
+            Self::Bus(bus) => bus.reading(),
         }
     }
 

@@ -1,11 +1,12 @@
 //! Stand-in for instruments on a CAN bus in a program that was built without them.
 
+use super::arrival::Arrival;
 use crate::SourceError;
 use octant_instruments::Reading;
 use octant_link::Uri;
 use octant_scenario::Messages;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Uninhabited: no bus can be opened.
 #[derive(Debug)]
@@ -16,7 +17,7 @@ impl Bus {
         Err(SourceError::WithoutCan)
     }
 
-    pub(super) fn reading(&mut self) -> Option<(Reading, Instant)> {
+    pub(super) fn reading(&mut self) -> Option<(Reading, Arrival)> {
         match *self {}
     }
 
