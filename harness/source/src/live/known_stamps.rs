@@ -196,8 +196,11 @@ impl KnownClock {
             HostClock::Realtime => self.plan.scale.utc_ns(stamp.ns, self.tai_offset_s),
             HostClock::Hardware(_) => self.plan.scale.tai_ns(stamp.ns, self.tai_offset_s),
         };
-        let before = clocks.monotonic.saturating_duration_since(came.at);
-        let delay_s = (clocks.other_ns - before.as_nanos() as i128 - stamp_ns) as f64 * 1e-9;
+        let before_ns = match clocks.monotonic.checked_duration_since(came.at) {
+            Some(before) => before.as_nanos() as i128,
+            None => -((came.at - clocks.monotonic).as_nanos() as i128),
+        };
+        let delay_s = (clocks.other_ns - before_ns - stamp_ns) as f64 * 1e-9;
         let drift_s = match self.host {
             HostClock::Realtime => 0.0,
             HostClock::Hardware(_) => {
