@@ -67,4 +67,4 @@ pub use facts::ProtocolFacts;
 pub use framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
 pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};
-pub use stamp_scale::StampScale;
+pub use stamp_scale::{GPS_EPOCH_S, StampScale};

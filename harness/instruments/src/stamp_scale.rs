@@ -3,8 +3,8 @@
 //! A unit whose clock is set by PTP, NTP or a satellite receiver stamps its samples by a scale that clocks of the
 //! host have too: UTC is the realtime clock's, TAI that of a network card that PTP sets.
 
-/// GPS time began on 6 January 1980, this long after 1970, s.
-const GPS_BEGAN_S: i128 = 315_964_800;
+/// Beginning of GPS time, 6 January 1980, s since 1970 (IS-GPS-200, 3.3.4).
+pub const GPS_EPOCH_S: i64 = 315_964_800;
 /// Seconds by which TAI is ahead of GPS time, for good.
 const TAI_AHEAD_OF_GPS_S: i128 = 19;
 const SECOND_NS: i128 = 1_000_000_000;
@@ -39,7 +39,7 @@ impl StampScale {
         match self {
             Self::Utc => ns + tai_offset_s as i128 * SECOND_NS,
             Self::Tai => ns,
-            Self::Gps => ns + (GPS_BEGAN_S + TAI_AHEAD_OF_GPS_S) * SECOND_NS,
+            Self::Gps => ns + (GPS_EPOCH_S as i128 + TAI_AHEAD_OF_GPS_S) * SECOND_NS,
         }
     }
 

@@ -102,7 +102,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let data = ReportData {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
-        axes_of_file: FileNames::of(&scenario.source).line(),
+        axes_of_source: FileNames::of(&scenario.source).line(),
         events: watcher.events(),
         navigation_start_h: watcher.navigation_start_h(),
         solution: watcher.solution,

@@ -110,7 +110,13 @@ fn a_recording_of_a_base_that_settles_is_aligned_and_filtered() {
     let heading_deg = recorded(folder, "");
     let out = folder.join("chain");
     let scenario = chain(folder, "chain.toml", &format!("{INERTIAL}{COLUMNS}{STATIC}"));
-    ends(&["run", &scenario, "--out", out.to_str().unwrap()], 0);
+    let (told, _) = ends(&["run", &scenario, "--out", out.to_str().unwrap()], 0);
+    let axes = "gyro x, y, z: delta_theta_x_rad, delta_theta_y_rad, delta_theta_z_rad; accelerometer x, y, z: ";
+    for line in ["  axes of the source: ", "  columns        "] {
+        assert!(told.contains(&format!("{line}{axes}")), "{told}");
+    }
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains(&format!("Axes of the source: {axes}")));
     let summary = json(&out.join("summary.json"));
     let aligned = &summary["alignment"]["solution"];
     assert_eq!(

@@ -205,7 +205,7 @@ fn data() -> ReportData {
         requirement_texts: BTreeMap::new(),
         units: DisplayUnits::default(),
         summary,
-        axes_of_file: None,
+        axes_of_source: None,
         facts: vec![
             fact("Site", "30.5° N 114.3° E, 0 m"),
             fact("Motion", "static"),

@@ -153,6 +153,36 @@ fn what_is_said_about_a_port_is_checked_before_it_is_opened() {
 }
 
 #[test]
+fn stamps_by_a_time_scale_have_what_they_need_and_nothing_without_effect() {
+    let live = |more: &str| {
+        let source = "[source]\nuri = \"udp:7000\"\n[source.live]\nprotocol = \"novatel\"\n";
+        problem(&format!("{HEAD}{source}{more}\n"))
+    };
+    let (_, path, message) = live("stamps = \"gps\"");
+    assert_eq!(path, "source.live.stamps");
+    assert_says(&message, &["stamps_within is missing"]);
+    let scale = "stamps_within = \"1 us\"\nstamps =";
+    let (.., message) = live(&format!("pps = \"/dev/pps0\"\n{scale} \"gps\""));
+    assert_says(&message, &["beside source.live.pps", "expected one of both"]);
+    let (.., message) = live(&format!("host_clock = \"/dev/ptp0\"\n{scale} \"tai\""));
+    assert_says(&message, &["host_within is missing"]);
+    let card = "host_clock = \"/dev/ptp0\"\nhost_within = \"1 us\"";
+    let (.., message) = live(&format!("{card}\n{scale} \"utc\""));
+    assert_says(&message, &["tai_offset is missing"]);
+    for (more, key) in [
+        (format!("tai_offset = 37\n{scale} \"utc\""), "tai_offset"),
+        (format!("tai_offset = 37\n{card}\n{scale} \"tai\""), "tai_offset"),
+        ("host_within = \"1 us\"".to_owned(), "host_within"),
+        ("host_clock = \"/dev/ptp0\"".to_owned(), "host_clock"),
+        ("stamps_within = \"1 us\"".to_owned(), "stamps_within"),
+    ] {
+        let (_, path, message) = live(&more);
+        assert_eq!(path, format!("source.live.{key}"));
+        assert_says(&message, &["without effect"]);
+    }
+}
+
+#[test]
 fn what_is_said_about_an_fmu_is_checked_before_the_fmu_is_read() {
     let fmu = |text: &str| problem(&format!("{HEAD}[source]\nuri = \"fmu:a.fmu\"\n{text}"));
     let (place, path, message) = fmu("[source.fmu.map]\ngyro.rat = \"w\"\n");

@@ -40,8 +40,8 @@ impl HardwareClock {
         Ok(clock)
     }
 
-    /// Reads the clock between two readings of the monotonic one: its time, of a scale that who sets it
-    /// knows, stands as [`HostClocks::other_ns`].
+    /// Reads the clock between two readings of the monotonic one. [`HostClocks::other_ns`] is its time,
+    /// of the scale that the program keeps it at.
     ///
     /// # Errors
     /// If the device doesn't answer any more.

@@ -1,4 +1,4 @@
-//! What the kernel knows of its realtime clock.
+//! State of the kernel's realtime clock: who keeps it, and how well.
 
 use std::time::Duration;
 
@@ -20,13 +20,13 @@ impl KernelClock {
     /// If it doesn't answer, as on other systems than Linux.
     #[cfg(target_os = "linux")]
     #[allow(unsafe_code, reason = "a function of C is called")]
-    pub fn read() -> Result<Self, String> {
+    pub fn read() -> std::io::Result<Self> {
         // SAFETY: all fields are numbers. Zero modes set nothing.
         let mut state: libc::timex = unsafe { std::mem::zeroed() };
         // SAFETY: the pointer is valid during the call, which keeps none.
         let found = unsafe { libc::adjtimex(&raw mut state) };
         if found < 0 {
-            return Err(std::io::Error::last_os_error().to_string());
+            return Err(std::io::Error::last_os_error());
         }
         let is_synchronised = found != libc::TIME_ERROR && state.status & libc::STA_UNSYNC == 0;
         let error_most = Duration::from_micros(u64::try_from(state.maxerror).unwrap_or(u64::MAX));
@@ -42,7 +42,8 @@ impl KernelClock {
     /// # Errors
     /// Always.
     #[cfg(not(target_os = "linux"))]
-    pub fn read() -> Result<Self, String> {
-        Err("Octant asks the kernel of Linux alone".to_owned())
+    pub fn read() -> std::io::Result<Self> {
+        let reason = "Octant asks the kernel of Linux alone";
+        Err(std::io::Error::new(std::io::ErrorKind::Unsupported, reason))
     }
 }

@@ -11,7 +11,7 @@
 //! | [`host_clocks`] | the realtime clock against the monotonic one |
 //! | [`hardware_clock`] | clocks of network cards that PTP sets |
 //! | [`pps`] | pulses that the kernel stamps |
-//! | [`kernel_clock`] | what the kernel knows of its realtime clock |
+//! | [`kernel_clock`] | state of the kernel's realtime clock |
 //! | [`schedule`] | real-time scheduling and locked memory, as far as the host permits them |
 //! | [`latency`] | wake-up latency of this host |
 //! | [`host`] | properties of a host that matter for all this, and advice |

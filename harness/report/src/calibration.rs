@@ -28,8 +28,8 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
                 (number::significant(floor, 2)) " deg/h/g."
             }
         }
-        @if let Some(axes) = &data.axes_of_file {
-            p.hint { "Axes in the file of the samples: " (axes) "." }
+        @if let Some(axes) = &data.axes_of_source {
+            p.hint { "Axes of the source: " (axes) "." }
         }
         (parameters::table(calibration, baseline.and_then(|b| b.calibration.as_ref())))
         (convergence(data))

@@ -15,8 +15,8 @@ pub struct ReportData {
     pub summary: Summary,
     /// Setting of the run, in pairs of name and value: site, motion, instrument.
     pub facts: Vec<(String, String)>,
-    /// Names that the file of the samples has for the body's axes; `None` where it has the same.
-    pub axes_of_file: Option<String>,
+    /// Names that the source has for the body's axes; `None` where it has the same.
+    pub axes_of_source: Option<String>,
     /// True parameters, SI, for the convergence of the errors; `None` where they aren't known.
     pub truth: Option<Parameters>,
     /// Convergence of the parameters during the calibration; any rate, 100 to 1000 points look

@@ -142,7 +142,7 @@ fn data() -> ReportData {
     ReportData {
         stops: Vec::new(),
         summary,
-        axes_of_file: None,
+        axes_of_source: None,
         facts: vec![("site".to_owned(), "30.5° latitude".to_owned())],
         truth: Some(Parameters::from_array(&[0.0; PARAMETER_COUNT])),
         convergence: convergence(),

@@ -200,7 +200,7 @@ pub fn assemble_with(
         covariance: primary.table.as_ref().map(|table| Box::new(table.covariance)),
         requirement_texts: requirement_texts(scenario),
         summary: summary.clone(),
-        axes_of_file: FileNames::of(&scenario.source).line(),
+        axes_of_source: FileNames::of(&scenario.source).line(),
         facts: facts(scenario),
         units: scenario.display,
         truth: primary.truth,
@@ -385,7 +385,7 @@ pub fn parameter_text(summary: &Summary, source: &SourceSpec) -> String {
         Some(c) if c.refused.is_none() || c.estimator == "kalman" => {
             let axes = FileNames::of(source).line();
             let axes =
-                axes.map_or_else(String::new, |axes| format!("  axes in the file: {axes}\n"));
+                axes.map_or_else(String::new, |axes| format!("  axes of the source: {axes}\n"));
             axes + &parameter_lines(&c.parameters)
         }
         _ => String::new(),

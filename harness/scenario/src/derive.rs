@@ -301,6 +301,12 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
             add("source.live", &["stamps_within"], reason);
         }
     }
+    let is_utc = is("source.live.stamps", "utc");
+    if is_utc != text(document, "source.live.host_clock").is_some() {
+        let reason =
+            "without effect: the stamps and the host's clock have scales that don't differ by it";
+        add("source.live", &["tai_offset"], reason);
+    }
     for table in ["source.live", "source.log"] {
         if !is(&format!("{table}.protocol"), DESCRIBED) {
             add(table, &["description"], "without effect: the protocol is not \"described\"");

@@ -1,12 +1,11 @@
 //! A position with velocity and attitude at a time.
 
-/// Nanoseconds of a second, and of a week.
+use octant_instruments::GPS_EPOCH_S;
+
+/// Nanoseconds of a second.
 pub const SECOND_NS: i64 = 1_000_000_000;
 /// Nanoseconds of a week.
 pub const WEEK_NS: i64 = 604_800 * SECOND_NS;
-
-/// GPS time began on 6 January 1980, s since 1970 (IS-GPS-200, 3.3.4).
-const GPS_EPOCH_S: i64 = 315_964_800;
 
 /// GPS time minus UTC, s, from a time on, s since 1970 (IERS Bulletin C).
 const LEAP_SECONDS: [(i64, i64); 6] = [

@@ -5,6 +5,7 @@
 use super::point::{SECOND_NS, TimeScale, TrajectoryPoint, WEEK_NS, gps_to_utc_ns};
 use super::points::{LINE_BYTES_MAX, Points};
 use octant_base::decimal::decimal_ns;
+use octant_instruments::GPS_EPOCH_S;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::time::UNIX_EPOCH;
@@ -159,11 +160,8 @@ fn time_ns(date: &str, time: &str, utc: bool) -> Option<i64> {
         return Some(as_if_ns);
     }
     // Of GPS time the calendar is that of UTC without leap seconds.
-    gps_to_utc_ns(as_if_ns.checked_sub(GPS_EPOCH_NS)?)
+    gps_to_utc_ns(as_if_ns.checked_sub(GPS_EPOCH_S * SECOND_NS)?)
 }
-
-/// Beginning of GPS time, ns since 1970.
-const GPS_EPOCH_NS: i64 = 315_964_800 * SECOND_NS;
 
 #[cfg(test)]
 mod tests {

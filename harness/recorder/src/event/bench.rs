@@ -47,7 +47,7 @@ pub struct BenchTime {
     /// Delay of the line, where the times don't rest on arrivals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line_delay: Option<BenchDelay>,
-    /// `pulses`, `stamps by utc` and other scales, `arrivals by the kernel` or `arrivals by the read`.
+    /// `pulses`, `stamps (utc)` and other scales, `arrivals by the kernel` or `arrivals by the read`.
     pub origin: String,
     /// Pulses, where the unit has them.
     #[serde(skip_serializing_if = "Option::is_none")]

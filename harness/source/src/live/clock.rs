@@ -23,10 +23,10 @@ pub(super) struct Clock {
     dates: Dates,
 }
 
-/// What relates stamps to the host's clock, besides arrivals.
+/// Relation between stamps and the host's clock.
 #[derive(Debug)]
 pub(super) enum Reference {
-    /// Nothing.
+    /// Arrivals alone.
     Arrivals,
     /// Pulses at the whole seconds of the stamps.
     Pulses(Box<Pulses>),
@@ -106,12 +106,12 @@ impl Clock {
         rate_degps: Option<f64>,
         looks_ms: Option<f64>,
     ) -> (String, BenchTime) {
-        let (pulses, scale) = match &self.reference {
+        let (pulses, stamps) = match &self.reference {
             Reference::Arrivals => (None, None),
             Reference::Pulses(pulses) => (Some(pulses.told()), None),
-            Reference::Scale(known) => (None, Some(known.told())),
+            Reference::Scale(known) => (None, Some(known.origin())),
         };
-        self.dates.told(pulses, scale, rate_degps, looks_ms)
+        self.dates.told(pulses, stamps, rate_degps, looks_ms)
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.

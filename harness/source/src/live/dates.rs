@@ -66,12 +66,12 @@ impl Dates {
     pub(super) fn told(
         &self,
         pulses: Option<BenchPulses>,
-        scale: Option<String>,
+        stamps: Option<String>,
         rate_degps: Option<f64>,
         looks_ms: Option<f64>,
     ) -> (String, BenchTime) {
         let line_delay = self.delay();
-        let is_known = pulses.is_some() || scale.is_some();
+        let is_known = pulses.is_some() || stamps.is_some();
         // A reading that came before its time contradicts the bound: then there is none.
         let is_bounded = is_known && self.delays > 0 && self.early == 0;
         let within_us = is_bounded.then_some(self.within_ns * 1e-3);
@@ -79,9 +79,9 @@ impl Dates {
         let within_ms = within_us.map(|us| us * 1e-3);
         let angle_within_arcsec =
             within_ms.and_then(|ms| arcsec(ms + looks_ms.unwrap_or_default()));
-        let origin = match (&pulses, scale) {
+        let origin = match (&pulses, stamps) {
             (Some(_), _) => "pulses".to_owned(),
-            (None, Some(scale)) => format!("stamps by {scale}"),
+            (None, Some(stamps)) => stamps,
             (None, None) if self.by_kernel > self.by_read => "arrivals by the kernel".to_owned(),
             (None, None) => "arrivals by the read".to_owned(),
         };
@@ -96,8 +96,20 @@ impl Dates {
             rate_degps,
             within_us,
         };
+        if is_known && self.delays == 0 {
+            return (undated(&figures), figures);
+        }
         (words(&figures, looks_ms, arcsec(1.0)), figures)
     }
+}
+
+/// Words where no sample got its time.
+fn undated(time: &BenchTime) -> String {
+    let by = time.pulses.as_ref().map_or_else(
+        || format!("by {}", time.origin),
+        |pulses| format!("after {} at {}", counted(pulses.taken, "pulse", "pulses"), pulses.device),
+    );
+    format!("none: no sample got its time {by}")
 }
 
 fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) -> String {
@@ -110,10 +122,6 @@ fn words(time: &BenchTime, looks_ms: Option<f64>, arcsec_per_ms: Option<f64>) ->
             counted(delay.early, "reading", "readings"),
             delay.least_ms
         );
-    }
-    if let (Some(pulses), None) = (&time.pulses, time.line_delay) {
-        let came = counted(pulses.taken, "pulse", "pulses");
-        return format!("none: no sample got its time, after {came} at {}", pulses.device);
     }
     let Some(within_us) = time.within_us else {
         let angle = arcsec_per_ms.map_or_else(String::new, |arcsec| {
@@ -190,8 +198,13 @@ mod tests {
         let mut dates = Dates::default();
         let (words, told) = dates.told(Some(pulses()), None, Some(10.0), None);
         assert_eq!(told.within_us, None);
-        assert_eq!(words, "none: no sample got its time, after 9 pulses at /dev/pps0");
+        assert_eq!(words, "none: no sample got its time after 9 pulses at /dev/pps0");
+        let (words, told) = dates.told(None, Some("stamps (tai)".to_owned()), Some(10.0), None);
+        assert_eq!(told.within_us, None);
+        assert_eq!(words, "none: no sample got its time by stamps (tai)");
         dates.dated(3e6, 25e3);
+        let (words, _) = dates.told(None, Some("stamps (tai)".to_owned()), Some(10.0), None);
+        assert!(words.starts_with("by stamps (tai): within 25.0 µs, 0.9″ at 10 °/s; "), "{words}");
         dates.dated(-20e3, 25e3);
         let (words, told) = dates.told(Some(pulses()), None, Some(10.0), Some(1.0));
         assert_eq!((told.within_us, told.line_delay.unwrap().early), (Some(25.0), 0));

@@ -54,11 +54,12 @@ pub(super) struct KnownTime {
 }
 
 impl KnownClock {
-    pub(super) fn open(plan: &KnownStamps) -> Result<Self, String> {
+    /// Opens the host's clock. A device that isn't absolute is relative to `folder`.
+    pub(super) fn open(plan: &KnownStamps, folder: &Path) -> Result<Self, String> {
         let host = match &plan.host_clock {
             None => HostClock::Realtime,
             Some(path) => {
-                let clock = HardwareClock::open(Path::new(path));
+                let clock = HardwareClock::open(&folder.join(path));
                 HostClock::Hardware(
                     clock.map_err(|error| format!("source.live.host_clock: {error}"))?,
                 )
@@ -70,7 +71,7 @@ impl KnownClock {
     fn with(
         plan: &KnownStamps,
         host: HostClock,
-        kernel: Result<KernelClock, String>,
+        kernel: std::io::Result<KernelClock>,
     ) -> Result<Self, String> {
         let mut clock = Self {
             plan: plan.clone(),
@@ -84,11 +85,12 @@ impl KnownClock {
         Ok(clock)
     }
 
-    /// Origin of the times, in words.
-    pub(super) fn told(&self) -> String {
+    /// Origin of the times: the scale, and the clock if it isn't the realtime one.
+    pub(super) fn origin(&self) -> String {
+        let scale = self.plan.scale.name();
         match &self.plan.host_clock {
-            None => self.plan.scale.name().to_owned(),
-            Some(path) => format!("{} and {path}", self.plan.scale.name()),
+            None => format!("stamps ({scale})"),
+            Some(path) => format!("stamps ({scale}, {path})"),
         }
     }
 
@@ -101,7 +103,7 @@ impl KnownClock {
     }
 
     /// Takes the kernel's state of its clock, where the scenario doesn't say it.
-    fn ask(&mut self, kernel: Result<KernelClock, String>) -> Result<(), String> {
+    fn ask(&mut self, kernel: std::io::Result<KernelClock>) -> Result<(), String> {
         self.asked = Instant::now();
         if let Some(within_s) = self.plan.host_within_s {
             self.host_within = Duration::from_secs_f64(within_s);
@@ -209,9 +211,11 @@ impl KnownClock {
         };
         let at = clocks.at(stamp_ns);
         let Some(at) = at.filter(|_| (-EARLY_MOST_S..=DELAY_MOST_S).contains(&delay_s)) else {
+            let side = if delay_s < 0.0 { "after" } else { "before" };
             return Err(format!(
-                "source.live.stamps: found a stamp {delay_s:.3} s before its arrival by {:?}, expected 0 to \
-                 {DELAY_MOST_S} s: the stamps have another scale, or the clocks differ",
+                "source.live.stamps: found a stamp {:.3} s {side} its arrival by {:?}, expected at most \
+                 {DELAY_MOST_S} s before: the stamps have another scale, or the clocks differ",
+                delay_s.abs(),
                 self.plan.scale.name()
             ));
         };
@@ -275,11 +279,11 @@ mod tests {
             let time = clock.when(stamp(ns), came).unwrap();
             assert!(time.at + time.within >= made && time.at <= after + time.within, "{scale:?}");
             assert!((time.delay_s - 2e-3).abs() < (after - made).as_secs_f64() + 1e-3, "{time:?}");
-            // What was given, the kernel's bound, and that of the readings.
+            // The given bound and the kernel's are 350 µs. The rest is the reading of both clocks.
             let read = time.within - Duration::from_micros(350);
             assert!(read > Duration::ZERO && read < Duration::from_millis(5), "{read:?}");
             let error = clock.when(stamp(ns - SECOND_NS), came).unwrap_err();
-            assert!(error.contains("before its arrival by"), "{error}");
+            assert!(error.contains("another scale"), "{error}");
         }
     }
 
@@ -369,7 +373,7 @@ mod tests {
         let (bench, ended) = source.conclude(None);
         assert!(ended.is_none());
         let time = bench.unwrap().time.unwrap();
-        assert_eq!(time.origin, "stamps by utc");
+        assert_eq!(time.origin, "stamps (utc)");
         let (within_us, delay) = (time.within_us.unwrap(), time.line_delay.unwrap());
         assert!((15.0..1000.0).contains(&within_us), "{within_us}");
         assert!(delay.early == 0 && (20.0..80.0).contains(&delay.least_ms), "{delay:?}");

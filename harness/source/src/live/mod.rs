@@ -103,7 +103,7 @@ impl LiveSource {
             (Some(pulses), _) => {
                 Reference::Pulses(Box::new(Pulses::open(pulses, folder).map_err(gone)?))
             }
-            (None, Some(known)) => Reference::Scale(KnownClock::open(known).map_err(gone)?),
+            (None, Some(known)) => Reference::Scale(KnownClock::open(known, folder).map_err(gone)?),
             (None, None) => Reference::Arrivals,
         };
         Ok(Self {
