@@ -65,6 +65,41 @@ fn chain(before: &str, text: &str) -> String {
     hasher.finalize().to_hex().chars().take(CHECKSUM).collect()
 }
 
+/// Reads the whole lines of a file; returns where they end, and the last checksum.
+fn whole_lines(
+    path: &Path,
+    is_mine: impl FnOnce(&str) -> Result<(), String>,
+    each: &mut dyn FnMut(&str) -> Result<(), String>,
+) -> Result<(usize, String), ChainedLinesError> {
+    let refused = |line, problem| ChainedLinesError::Line { path: path.to_owned(), line, problem };
+    let bytes = std::fs::read(path).map_err(|source| ChainedLinesError::System {
+        action: "read",
+        path: path.to_owned(),
+        source,
+    })?;
+    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+    let whole = std::str::from_utf8(&bytes[..end])
+        .map_err(|_| refused(1, "found bytes that are not UTF-8".to_owned()))?;
+    let (mut chained, mut is_mine) = (String::new(), Some(is_mine));
+    for (index, line) in whole.lines().enumerate() {
+        let (checksum, text) = line.split_once(' ').unwrap_or(("", line));
+        let is_first = is_mine.take();
+        let found = is_first.is_none();
+        if let Some(is_mine) = is_first {
+            is_mine(text).map_err(|problem| refused(1, problem))?;
+        }
+        chained = chain(&chained, text);
+        if checksum != chained {
+            let problem = "the checksum doesn't fit: a line was changed or left out".to_owned();
+            return Err(refused(index + 1, problem));
+        }
+        if found {
+            each(text).map_err(|problem| refused(index + 1, problem))?;
+        }
+    }
+    Ok((end, chained))
+}
+
 impl ChainedLines {
     /// Opens a file, or begins it with a first line, and locks it. `is_mine` takes the first line of a file that is
     /// there, before its checksum is looked at: a newer version may have another one. `each` takes the further lines.
@@ -82,34 +117,12 @@ impl ChainedLines {
         let failed = |action| {
             move |source| ChainedLinesError::System { action, path: path.to_owned(), source }
         };
-        let refused =
-            |line, problem| ChainedLinesError::Line { path: path.to_owned(), line, problem };
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false);
         let file = options.open(path).map_err(failed("open"))?;
         file.try_lock().map_err(|error| failed("lock")(error.into()))?;
         let mut file = LockedFile(file);
-        let bytes = std::fs::read(path).map_err(failed("read"))?;
-        let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let whole = std::str::from_utf8(&bytes[..end])
-            .map_err(|_| refused(1, "found bytes that are not UTF-8".to_owned()))?;
-        let (mut chained, mut is_mine) = (String::new(), Some(is_mine));
-        for (index, line) in whole.lines().enumerate() {
-            let (checksum, text) = line.split_once(' ').unwrap_or(("", line));
-            let is_first = is_mine.take();
-            let found = is_first.is_none();
-            if let Some(is_mine) = is_first {
-                is_mine(text).map_err(|problem| refused(1, problem))?;
-            }
-            chained = chain(&chained, text);
-            if checksum != chained {
-                let problem = "the checksum doesn't fit: a line was changed or left out".to_owned();
-                return Err(refused(index + 1, problem));
-            }
-            if found {
-                each(text).map_err(|problem| refused(index + 1, problem))?;
-            }
-        }
+        let (end, chained) = whole_lines(path, is_mine, &mut each)?;
         file.0.set_len(end as u64).map_err(failed("cut"))?;
         file.0.seek(SeekFrom::Start(end as u64)).map_err(failed("read"))?;
         let mut lines = Self { path: path.to_owned(), file, chained };
@@ -117,6 +130,24 @@ impl ChainedLines {
             lines.append([first.to_owned()])?;
         }
         Ok(lines)
+    }
+
+    /// Reads a file that is there, and leaves it as it is; a line without an end isn't taken. The functions are those of
+    /// [`Self::open`].
+    ///
+    /// # Errors
+    /// If a line is refused or doesn't follow the one before, there is none, or the operating system refuses.
+    pub fn read(
+        path: &Path,
+        is_mine: impl FnOnce(&str) -> Result<(), String>,
+        mut each: impl FnMut(&str) -> Result<(), String>,
+    ) -> Result<(), ChainedLinesError> {
+        let (end, _) = whole_lines(path, is_mine, &mut each)?;
+        if end == 0 {
+            let problem = "found no line".to_owned();
+            return Err(ChainedLinesError::Line { path: path.to_owned(), line: 1, problem });
+        }
+        Ok(())
     }
 
     /// Name of the file.
@@ -193,6 +224,25 @@ mod tests {
         std::fs::write(&path, &whole[..whole.len() - 1]).unwrap();
         let (mut lines, found) = open(&path).unwrap();
         assert_eq!(found, ["a b", ""]);
+        // What only reads takes the same lines, and leaves a torn one where it is.
+        let torn = [&std::fs::read(&path).unwrap()[..], b"torn"].concat();
+        std::fs::write(&path, &torn).unwrap();
+        let mut found = Vec::new();
+        let take = |text: &str| {
+            found.push(text.to_owned());
+            Ok(())
+        };
+        ChainedLines::read(&path, |_| Ok(()), take).unwrap();
+        assert_eq!(
+            (found, std::fs::read(&path).unwrap()),
+            (vec!["a b".to_owned(), String::new()], torn)
+        );
+        let empty = folder.path().join("empty");
+        std::fs::write(&empty, "torn").unwrap();
+        let told =
+            |path: &Path| ChainedLines::read(path, |_| Ok(()), |_| Ok(())).unwrap_err().to_string();
+        assert!(told(&empty).ends_with("line 1: found no line"));
+        assert!(told(&folder.path().join("none")).starts_with("read "));
         // The chain goes on from there, and from what is cut off on purpose.
         lines.append(["d".to_owned()]).unwrap();
         lines.forget_from(2).unwrap();

@@ -120,6 +120,7 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
     let prepared = prepare(scenario, seed, twins)?;
     let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
+    follower.watch_interrupts();
     let begun = asked.begin(request, prepared.tasks())?;
     let folder = begun.folder.path();
     let attendant = plan.map(|plan| Attendant::open(plan, scenario, folder)).transpose()?;

@@ -41,6 +41,14 @@ pub(crate) enum Follower<'a> {
 }
 
 impl Follower<'_> {
+    /// Handles interrupts from now on if this program is the one that follows: before a run has a folder, so that
+    /// no interrupt leaves one without a word.
+    pub(crate) fn watch_interrupts(&self) {
+        if matches!(self, Self::Terminal) {
+            watch_interrupts();
+        }
+    }
+
     /// Follows some runs while `work` does them.
     ///
     /// `epochs` is the total that the controls will count, `sample_s` the length of one.
@@ -53,9 +61,7 @@ impl Follower<'_> {
     ) -> T {
         let done = std::sync::atomic::AtomicBool::new(false);
         let done = &done;
-        if matches!(self, Self::Terminal) {
-            watch_interrupts();
-        }
+        self.watch_interrupts();
         std::thread::scope(|scope| {
             scope.spawn(move || match self {
                 Self::Terminal => show(controls, epochs, sample_s, done),

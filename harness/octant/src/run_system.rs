@@ -1,6 +1,6 @@
 //! `octant run` of a system of FMUs: an `.ssp`, an `.ssd`, or a folder with one.
 
-use super::progress::with_progress;
+use super::progress::{watch_interrupts, with_progress};
 use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
@@ -139,6 +139,7 @@ pub(super) fn command(
     }
     let texts =
         prepared.texts().map_err(|error| Failure::bench(format!("failed to read {error}")))?;
+    watch_interrupts();
     let folder = folder()?;
     let started = SystemTime::now();
     let (recording, table) =

@@ -14,6 +14,7 @@ use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_search::bench::SearchBench;
 use octant_search::derived::{RunTimes, derived, searchable};
+use octant_search::earlier::{EarlierFound, EarlierSearch};
 use octant_search::error::FaultSearchError;
 use octant_search::found::{FoundFault, SearchFound, worst};
 use octant_search::minimal::minimal;
@@ -55,6 +56,10 @@ pub(super) struct Arguments {
     /// Seed of the candidates.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     search_seed: u64,
+    /// Folder of an earlier search of another core in the same space: first what noticed faults there is asked again, then the
+    /// search goes on where it answers otherwise.
+    #[arg(long, value_name = "DIR")]
+    after: Option<PathBuf>,
     /// Number of parallel runs; by default the number of processors.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -106,6 +111,7 @@ fn searched(
         print(&space_file::to_toml(&space))?;
         return Ok(Verdict::Pass);
     }
+    let after = after(arguments, &space)?;
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))
@@ -121,6 +127,7 @@ fn searched(
         seed: arguments.search_seed,
         pairs: arguments.pairs,
         enough: arguments.enough,
+        after,
     };
     let journal = arguments.out.as_ref().map(|folder| folder.join("search.jsonl"));
     let bar = CaseBar::new("search", plan.runs, jobs, plan.enough.is_some());
@@ -138,6 +145,7 @@ fn searched(
         search_seed: plan.seed,
         strategy: strategy.name().to_owned(),
         pairs: plan.pairs,
+        earlier: plan.after.as_ref().map(|earlier| EarlierFound::of(earlier, &trials)),
         left_out,
         ..SearchFound::of(&trials, &space)
     };
@@ -163,6 +171,19 @@ fn asked(arguments: &Arguments, scenario: &Scenario) -> Result<SearchSpace, Fail
         names => names.iter().map(|name| the_kind(name)).collect::<Result<Vec<_>, _>>()?,
     };
     Ok(derived(&kinds, times))
+}
+
+/// The earlier search, read before anything is written.
+fn after(arguments: &Arguments, space: &SearchSpace) -> Result<Option<EarlierSearch>, Failure> {
+    let Some(folder) = &arguments.after else { return Ok(None) };
+    if let StrategyName::Latin = arguments.strategy {
+        return Err(Failure::input(
+            "--after: a Latin hypercube is drawn all at once and takes no earlier search; leave out one of --after and \
+             --strategy latin",
+        ));
+    }
+    let earlier = EarlierSearch::read(&folder.join("search.jsonl"), space);
+    earlier.map(Some).map_err(|error| Failure::input(format!("failed to search: --after: {error}")))
 }
 
 fn the_kind(name: &str) -> Result<&'static FaultKind, Failure> {
@@ -306,6 +327,9 @@ fn rerun(arguments: &Arguments, seed: u64) -> String {
     }
     if let StrategyName::Latin = arguments.strategy {
         line += " --strategy latin";
+    }
+    if let Some(folder) = &arguments.after {
+        line += &format!(" --after {}", folder.display());
     }
     if let Some(enough) = arguments.enough {
         line += &format!(" --enough {enough}");

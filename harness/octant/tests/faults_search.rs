@@ -63,6 +63,29 @@ duration = \"131 s\"
     );
     let page = read("search.html");
     assert!(page.contains("Harm of every run") && page.contains("asymmetry"));
+    // A search of another core begins with it.
+    let again = [
+        &arguments[..4],
+        &["32", "--set", "screening.gate=\"off\"", "--after", "found", "--out", "after"],
+    ];
+    let after = search(folder.path(), &again.concat());
+    assert!(words(&after).contains("after a search of 3"), "{}", words(&after));
+    let found = json(&folder.path().join("after/search.json"));
+    let screens = found["earlier"]["screens"].as_array().unwrap();
+    assert!(screens.iter().any(|screen| screen["again"].as_u64() > Some(0)), "{found}");
+    let page = std::fs::read_to_string(folder.path().join("after/search.html")).unwrap();
+    assert!(page.contains("After an earlier search") && page.contains("--after found"));
+    for (more, expected) in [
+        (["--after", "nowhere", "--pairs", "0"], "--after: read nowhere/search.jsonl"),
+        (["--after", "found", "--strategy", "latin"], "takes no earlier search"),
+    ] {
+        let told = search(folder.path(), &[&arguments[..5], &more].concat());
+        assert_eq!(told.status.code(), Some(2), "{}", words(&told));
+        assert!(words(&told).contains(expected), "{}", words(&told));
+    }
+    let told = search(folder.path(), &["short.toml", "--kinds", "spike", "--after", "found"]);
+    assert_eq!(told.status.code(), Some(2), "{}", words(&told));
+    assert!(words(&told).contains("found/search.jsonl: line 1: found a search of another space"));
 }
 
 #[test]

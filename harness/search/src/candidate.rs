@@ -26,6 +26,13 @@ impl PlacedFault {
         let places = space.forms[form].keys.iter().map(|_| draws.unit()).collect();
         Self { form, places }
     }
+
+    /// True for a fault that a space has.
+    pub(crate) fn is_in(&self, space: &SearchSpace) -> bool {
+        let keys = space.forms.get(self.form).map(|form| form.keys.len());
+        keys == Some(self.places.len())
+            && self.places.iter().all(|place| (0.0..=1.0).contains(place))
+    }
 }
 
 impl FaultCandidate {

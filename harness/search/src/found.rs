@@ -1,5 +1,6 @@
 //! Result of a search.
 
+use crate::earlier::EarlierFound;
 use crate::space::SearchSpace;
 use crate::trial::{FaultTrial, TrialEffect, TrialResult};
 use octant_base::number::{counted, significant};
@@ -27,6 +28,9 @@ pub struct SearchFound {
     pub strategy: String,
     /// Share of candidates with two faults.
     pub pairs: f64,
+    /// What the screens of an earlier search answer now, where the search began with one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earlier: Option<EarlierFound>,
     /// Shift of a parameter, in σ, from which a fault counts as harmful.
     pub harmful_shift_sigma: f64,
     /// Runs with faults.
@@ -118,6 +122,7 @@ impl SearchFound {
             search_seed: 0,
             strategy: String::new(),
             pairs: 0.0,
+            earlier: None,
             harmful_shift_sigma: HARMFUL_SHIFT_SIGMA,
             runs: 0,
             refused: 0,
@@ -216,6 +221,9 @@ impl SearchFound {
             self.not_fired,
             self.missed
         );
+        if let Some(earlier) = &self.earlier {
+            out += &format!("  {}\n", earlier.words());
+        }
         if self.not_judged > 0 {
             out += &format!(
                 "  {} unnoticed and not judged: the instrument changed for good, and there is no navigation\n",

@@ -3,12 +3,14 @@
 //! Both the harm of a fault and its chance to be noticed grow with its size. The largest harm that goes
 //! unnoticed is therefore just below the size at which it is noticed. A line looks for that size: it starts in
 //! the middle, and tries next the size at which the harm, extrapolated, would be worse than all so far. Noticed
-//! there, it ends; unnoticed, it goes on to the size at which it is noticed. New lines are begun at random for each kind in turn, near the worst of what was
-//! found, or as two of its faults at once.
+//! there, it ends; unnoticed, it goes on to the size at which it is noticed. New lines are begun at random for each
+//! kind in turn, near the worst of what was found, or as two of its faults at once. After an earlier search they begin
+//! with [faults that were noticed there](crate::earlier).
 //!
 //! Each proposal depends on the seed and the results before it alone.
 
 use crate::candidate::{FaultCandidate, PlacedFault};
+use crate::earlier::{AskedFault, EarlierScreens};
 use crate::space::{KeyValues, SearchSpace};
 use crate::trial::FaultTrial;
 use octant_random::draws::Draws;
@@ -35,6 +37,8 @@ const BEYOND: f64 = 1.1;
 const CLIMB: f64 = 1.6;
 /// Most decades between two sizes of a line.
 const JUMP_MAX: f64 = 2.5;
+/// Candidates that are proposed together while the screens of an earlier search are asked: each tells where to look next.
+const ASKED_TOGETHER: usize = 4;
 /// Harm that isn't extrapolated, and runs of a line that finds no more.
 const HARMLESS: f64 = 1e-4;
 const RUNS_MAX_HARMLESS: u32 = 2;
@@ -52,6 +56,8 @@ pub struct SearchGuide<'a> {
     order: Vec<usize>,
     /// Worst that went unnoticed, worst first.
     elites: Vec<Elite>,
+    /// What noticed faults in an earlier search.
+    screens: EarlierScreens,
 }
 
 #[derive(Clone, Debug)]
@@ -73,6 +79,8 @@ struct SizeLine {
     runs: u32,
     /// Place that is run next; `None` when the line has ended.
     next: Option<f64>,
+    /// Screen of an earlier search that noticed its beginning.
+    screen: Option<usize>,
 }
 
 impl SizeLine {
@@ -90,13 +98,20 @@ impl<'a> SearchGuide<'a> {
     #[must_use]
     pub fn new(space: &'a SearchSpace, seed: u64, pairs: f64) -> Self {
         let (lines, order, elites) = (Vec::new(), Vec::new(), Vec::new());
-        Self { space, seed, pairs, lines, begun: 0, order, elites }
+        let screens = EarlierScreens::default();
+        Self { space, seed, pairs, lines, begun: 0, order, elites, screens }
+    }
+
+    /// Asks the screens of an earlier search first.
+    pub(crate) fn after(self, screens: EarlierScreens) -> Self {
+        Self { screens, ..self }
     }
 
     /// Proposes candidates. Their results are taken by [`Self::learn`], in the same order, before the next ones
     /// are proposed.
     pub fn propose(&mut self, count: usize) -> Vec<FaultCandidate> {
         self.lines.retain(|line| line.next.is_some());
+        let count = if self.screens.are_asked() { count.min(ASKED_TOGETHER) } else { count };
         while self.lines.len() < count {
             let line = self.begin();
             self.lines.push(line);
@@ -111,6 +126,13 @@ impl<'a> SearchGuide<'a> {
         let worst = self.elites.first().map_or(1.0, |elite| elite.harm).max(1.0);
         for (place, trial) in trials.iter().enumerate() {
             let Some(line) = self.lines.get_mut(place) else { continue };
+            if line.runs == 0
+                && let Some(screen) = line.screen
+                && !self.screens.learn(screen, trial)
+            {
+                line.next = None;
+                continue;
+            }
             follow(line, self.space, trial, worst);
             if let Some(harm) = trial.unnoticed_harm().filter(|harm| *harm > 0.0) {
                 self.elites.push(Elite { candidate: trial.candidate.clone(), harm });
@@ -141,6 +163,19 @@ impl<'a> SearchGuide<'a> {
     fn begin(&mut self) -> SizeLine {
         let mut draws = Draws::of(self.seed, "faults search", self.begun);
         self.begun += 1;
+        if let Some(AskedFault { candidate, screen }) = self.screens.next() {
+            let (key, start) = (self.size_key(&candidate), self.size_of(&candidate).unwrap_or(0.5));
+            let next = Some(start);
+            return SizeLine {
+                candidate,
+                key,
+                low: None,
+                high: None,
+                runs: 0,
+                next,
+                screen: Some(screen),
+            };
+        }
         let is_pair = draws.unit() < self.pairs;
         let explores = self.elites.is_empty() || draws.unit() < EXPLORE;
         let (mut candidate, start) = if explores {
@@ -165,8 +200,8 @@ impl<'a> SearchGuide<'a> {
             };
             candidate.faults.push(second);
         }
-        let key = self.space.forms[candidate.faults[0].form].size();
-        SizeLine { candidate, key, low: None, high: None, runs: 0, next: Some(start) }
+        let key = self.size_key(&candidate);
+        SizeLine { candidate, key, low: None, high: None, runs: 0, next: Some(start), screen: None }
     }
 
     /// The next form in a random order of all.
@@ -186,11 +221,14 @@ impl<'a> SearchGuide<'a> {
         ((place * self.elites.len() as f64) as usize).min(self.elites.len() - 1)
     }
 
+    /// Key of the size of a candidate.
+    fn size_key(&self, candidate: &FaultCandidate) -> Option<usize> {
+        self.space.forms[candidate.faults[0].form].size()
+    }
+
     /// Place of the size of a candidate.
     fn size_of(&self, candidate: &FaultCandidate) -> Option<f64> {
-        let fault = &candidate.faults[0];
-        let key = self.space.forms[fault.form].size()?;
-        fault.places.get(key).copied()
+        candidate.faults[0].places.get(self.size_key(candidate)?).copied()
     }
 
     /// A fault near another one.
@@ -233,6 +271,14 @@ fn follow(line: &mut SizeLine, space: &SearchSpace, trial: &FaultTrial, worst: f
     let (Some(edge), Some(decade)) = (range.distance_of(EDGE), range.distance_of(10.0)) else {
         return;
     };
+    if line.screen.is_some() && line.low.is_none() {
+        // Another screen notices it. Between this size and the one that is just harmful may be those that only the screen
+        // of the earlier search noticed.
+        let harm = effect.harm();
+        let down = range.distance_of((harm / BEYOND).max(1.0).sqrt()).filter(|down| *down > edge);
+        line.next = down.filter(|down| *down < place).map(|down| place - down);
+        return;
+    }
     let Some((low, harm)) = line.low else {
         // What is noticed at one size may be harmless at a tenth of it.
         line.next = line.high.filter(|high| *high > 0.0).map(|high| (high - decade).max(0.0));

@@ -3,6 +3,8 @@
 //! It has [chained lines](octant_base::chained_lines) of JSON: the first names the search, each further one is a trial.
 
 use crate::error::FaultSearchError;
+use crate::space::SearchSpace;
+use crate::space_file::to_toml;
 use crate::trial::FaultTrial;
 use octant_base::chained_lines::ChainedLines;
 use serde::{Deserialize, Serialize};
@@ -107,20 +109,69 @@ impl SearchJournal {
     }
 }
 
+/// Reads the trials of a journal in a space, and the journal's hash.
+///
+/// # Errors
+/// If there is no journal, it is damaged, of a newer version, of another space, or has no trial.
+pub(crate) fn read(
+    path: &Path,
+    space: &SearchSpace,
+) -> Result<(Vec<FaultTrial>, String), FaultSearchError> {
+    let (mut trials, mut hasher) = (Vec::new(), blake3::Hasher::new());
+    let in_space = |line: &str| {
+        refuse_newer(line)?;
+        let found: SearchIdentity = serde_json::from_str(line)
+            .map_err(|error| format!("expected the identity of a search: {error}"))?;
+        if found.space_blake3 != hash_of(space) {
+            return Err(
+                "found a search of another space, expected one of the same kinds and values"
+                    .to_owned(),
+            );
+        }
+        Ok(())
+    };
+    ChainedLines::read(path, in_space, |json| {
+        hasher.update(json.as_bytes());
+        let trial: FaultTrial =
+            serde_json::from_str(json).map_err(|error| format!("expected a trial: {error}"))?;
+        if !trial.candidate.faults.iter().all(|fault| fault.is_in(space)) {
+            return Err("found a fault that isn't in the space".to_owned());
+        }
+        trials.push(trial);
+        Ok(())
+    })?;
+    if trials.is_empty() {
+        let problem = "found no trial after the first line, expected some".to_owned();
+        return Err(FaultSearchError::OtherSearch { path: path.to_owned(), line: 1, problem });
+    }
+    Ok((trials, hasher.finalize().to_hex().to_string()))
+}
+
+/// BLAKE3 of a space.
+pub(crate) fn hash_of(space: &SearchSpace) -> String {
+    blake3::hash(to_toml(space).as_bytes()).to_hex().to_string()
+}
+
+/// Refuses a first line of a newer version.
+fn refuse_newer(line: &str) -> Result<(), String> {
+    let schema = |line: &str| -> Option<u64> {
+        serde_json::from_str::<serde_json::Value>(line).ok()?.get("schema")?.as_u64()
+    };
+    match schema(line).filter(|schema| *schema > u64::from(JOURNAL_SCHEMA)) {
+        None => Ok(()),
+        Some(newer) => Err(format!(
+            "found schema {newer}, of a newer version: this program reads {JOURNAL_SCHEMA}"
+        )),
+    }
+}
+
 fn unwritten(path: &Path, error: serde_json::Error) -> FaultSearchError {
     FaultSearchError::Journal { action: "write", path: path.to_owned(), source: error.into() }
 }
 
 /// Refuses the first line of a journal of another search, naming the field.
 fn refuse_other(identity: &SearchIdentity, line: &str) -> Result<(), String> {
-    let schema = |line: &str| -> Option<u64> {
-        serde_json::from_str::<serde_json::Value>(line).ok()?.get("schema")?.as_u64()
-    };
-    if let Some(newer) = schema(line).filter(|schema| *schema > u64::from(JOURNAL_SCHEMA)) {
-        return Err(format!(
-            "found schema {newer}, of a newer version: this program reads {JOURNAL_SCHEMA}"
-        ));
-    }
+    refuse_newer(line)?;
     let found: SearchIdentity = serde_json::from_str(line)
         .map_err(|error| format!("expected the identity of a search: {error}"))?;
     if found == *identity {

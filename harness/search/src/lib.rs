@@ -12,6 +12,7 @@
 pub mod bench;
 pub mod candidate;
 pub mod derived;
+pub mod earlier;
 pub mod error;
 pub mod found;
 pub mod guide;

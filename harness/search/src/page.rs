@@ -1,5 +1,6 @@
 //! Page of a search.
 
+use crate::earlier::EarlierFound;
 use crate::found::{FoundFault, SearchFound, effect_words};
 use crate::space::SearchSpace;
 use crate::trial::FaultTrial;
@@ -37,6 +38,7 @@ pub fn render(
             p.hint { "Made smaller in " (counted(found.minimal_runs, "run", "runs")) " from: "
                 @if let Some(worst) = &found.worst { (worst.words) ", " (effect_words(&worst.effect)) } }
         }
+        @if let Some(earlier) = &found.earlier { (after(earlier)) }
         h2 { "Harm of every run" }
         (picture(trials, space))
         p.hint { "One point for each run. Harm 1: a parameter moved by " (fixed(found.harmful_shift_sigma, 0))
@@ -63,6 +65,22 @@ pub fn render(
         code.rerun { (rerun) }
     };
     page(&format!("{}: search for unnoticed faults", found.scenario), &body)
+}
+
+fn after(earlier: &EarlierFound) -> Markup {
+    html! {
+        h2 { "After an earlier search" }
+        table {
+            thead { tr { th { "Noticed in the earlier search as" } th.n { "Faults" } th.n { "Run again" }
+                th.n { "Noticed otherwise, or not at all" } } }
+            tbody { @for screen in &earlier.screens { tr {
+                td { (screen.report) } td.n { (screen.faults) } td.n { (screen.again) }
+                td.n { @if screen.otherwise > 0 { strong { (screen.otherwise) } } @else { "0" } }
+            } } }
+        }
+        p.hint { "The earlier search had " (counted(earlier.runs, "run", "runs")) ", its journal the BLAKE3 "
+            span.mono { (earlier.journal_blake3) } "." }
+    }
 }
 
 fn fault(fault: &FoundFault) -> Markup {

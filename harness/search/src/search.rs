@@ -2,12 +2,12 @@
 
 use crate::bench::SearchBench;
 use crate::candidate::FaultCandidate;
+use crate::earlier::{EarlierScreens, EarlierSearch};
 use crate::error::FaultSearchError;
 use crate::guide::SearchGuide;
-use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal};
+use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal, hash_of};
 use crate::latin::latin;
 use crate::space::SearchSpace;
-use crate::space_file::to_toml;
 use crate::trial::{FaultTrial, TrialResult};
 use octant_base::control::Control;
 use octant_score::numerics;
@@ -38,7 +38,7 @@ impl SearchStrategy {
 }
 
 /// Settings of a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SearchPlan {
     /// The strategy.
     pub strategy: SearchStrategy,
@@ -50,6 +50,8 @@ pub struct SearchPlan {
     pub pairs: f64,
     /// Harm at which the search ends, as a multiple of that from which a fault is harmful; `None`: all runs.
     pub enough: Option<f64>,
+    /// A search before this one, of a core that was changed since; a Latin hypercube takes none.
+    pub after: Option<EarlierSearch>,
 }
 
 /// Runs a search, or goes on with that of a journal. `tell` is called with all trials after each proposal.
@@ -67,7 +69,12 @@ pub fn search(
     let mut journal =
         journal.map(|path| SearchJournal::open(path, &identity(bench, space, plan))).transpose()?;
     let mut proposer = match plan.strategy {
-        SearchStrategy::Guided => Proposer::Guided(SearchGuide::new(space, plan.seed, plan.pairs)),
+        SearchStrategy::Guided => {
+            let earlier = plan.after.as_ref();
+            let screens = earlier.map(|earlier| EarlierScreens::of(&earlier.trials, space));
+            let guide = SearchGuide::new(space, plan.seed, plan.pairs);
+            Proposer::Guided(guide.after(screens.unwrap_or_default()))
+        }
         SearchStrategy::Latin => {
             let mut all = latin(space, plan.seed, plan.pairs, plan.runs);
             all.reverse();
@@ -139,17 +146,20 @@ impl Proposer<'_> {
 }
 
 fn identity(bench: &SearchBench, space: &SearchSpace, plan: &SearchPlan) -> SearchIdentity {
-    let hash = |text: &str| blake3::hash(text.as_bytes()).to_hex().to_string();
     let strategy = match plan.strategy {
-        SearchStrategy::Guided => format!("guided, pairs {}", plan.pairs),
+        SearchStrategy::Guided => {
+            let after = plan.after.as_ref();
+            let after = after.map(|after| format!(", after {}", after.journal_blake3));
+            format!("guided, pairs {}{}", plan.pairs, after.unwrap_or_default())
+        }
         SearchStrategy::Latin => format!("latin, pairs {}, runs {}", plan.pairs, plan.runs),
     };
     SearchIdentity {
         schema: JOURNAL_SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         numerics: numerics::NUMERICS,
-        scenario_blake3: hash(bench.base()),
-        space_blake3: hash(&to_toml(space)),
+        scenario_blake3: blake3::hash(bench.base().as_bytes()).to_hex().to_string(),
+        space_blake3: hash_of(space),
         seed: bench.seed(),
         search_seed: plan.seed,
         strategy,

@@ -3,6 +3,7 @@
 use crate::bench::SearchBench;
 use crate::candidate::{FaultCandidate, PlacedFault};
 use crate::derived::{RunTimes, derived, searchable};
+use crate::earlier::{EarlierFound, EarlierSearch, ScreenFound};
 use crate::error::FaultSearchError;
 use crate::found::{SearchFound, worst};
 use crate::minimal::minimal;
@@ -10,6 +11,7 @@ use crate::search::{SearchPlan, SearchStrategy, is_run, search};
 use crate::space::{FormKey, SearchSpace};
 use crate::space_file::{SpaceError, read, to_toml};
 use crate::trial::{FaultTrial, TrialResult};
+use octant_base::chained_lines::ChainedLines;
 use octant_base::control::Control;
 use octant_faults::kinds;
 use octant_scenario::Scenario;
@@ -34,7 +36,14 @@ fn space(names: &[&str]) -> SearchSpace {
 }
 
 fn plan(runs: usize) -> SearchPlan {
-    SearchPlan { strategy: SearchStrategy::Guided, runs, seed: 1, pairs: 0.3, enough: None }
+    SearchPlan {
+        strategy: SearchStrategy::Guided,
+        runs,
+        seed: 1,
+        pairs: 0.3,
+        enough: None,
+        after: None,
+    }
 }
 
 fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<FaultTrial> {
@@ -96,6 +105,84 @@ fn a_journal_of_another_search_is_refused() {
     std::fs::write(&journal, text.replace("{\"schema\":1", "{\"schema\":2")).unwrap();
     let told = tried(&bias, &plan(16)).unwrap_err();
     assert!(told.contains("newer version"), "{told}");
+}
+
+/// A core without the test of jumps answers otherwise where that test had noticed faults, and the search goes on there.
+#[test]
+fn after_an_earlier_search_the_screen_that_changed_is_found_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = |name: &str| folder.path().join(name);
+    let space = space(&["bias-step", "noise-gain", "stuck-at-current"]);
+    let searched = |bench: &SearchBench, plan: &SearchPlan, name: &str| {
+        let journal = journal(name);
+        search(bench, &space, plan, Some(&journal), &Control::default(), &mut |_| {})
+    };
+    let full = bench(2);
+    let first = SearchPlan { pairs: 0.1, ..plan(96) };
+    let trials = searched(&full, &first, "first").unwrap();
+    let earlier = EarlierSearch::read(&journal("first"), &space).unwrap();
+    assert_eq!(earlier.trials, trials);
+    let after = SearchPlan { after: Some(earlier.clone()), seed: 5, pairs: 0.0, ..plan(24) };
+    let found = |trials: &[FaultTrial]| {
+        let found = EarlierFound::of(&earlier, trials);
+        let counts = |screen: &ScreenFound| (screen.report.clone(), screen.again, screen.otherwise);
+        found.screens.iter().map(counts).collect::<Vec<_>>()
+    };
+    // The same core says the same of each.
+    let same = found(&searched(&full, &after, "same").unwrap());
+    assert!(same.len() >= 3 && same.iter().all(|(_, _, otherwise)| *otherwise == 0), "{same:?}");
+    assert!(same.iter().filter(|(_, again, _)| *again > 0).count() >= 3, "{same:?}");
+    let weak = |jobs| {
+        let weak = scenario(&["screening.jumps=\"off\""]);
+        SearchBench::new(&weak, 1, jobs, &Control::default()).unwrap()
+    };
+    let trials = searched(&weak(2), &after, "weak").unwrap();
+    let screens = found(&trials);
+    for (report, again, otherwise) in &screens {
+        let is_off = report == "increments jumped";
+        assert_eq!(*otherwise, if is_off { *again } else { 0 }, "{screens:?}");
+        assert!(!is_off || *again > 4, "{screens:?}");
+    }
+    // On one thread, and after an interruption, it is the same search.
+    let whole = std::fs::read(journal("weak")).unwrap();
+    std::fs::write(journal("weak"), &whole[..whole.len() / 2]).unwrap();
+    assert_eq!(searched(&weak(1), &after, "weak").unwrap(), trials);
+    assert_eq!(std::fs::read(journal("weak")).unwrap(), whole);
+    let told = searched(&weak(2), &SearchPlan { after: None, ..after }, "weak").unwrap_err();
+    assert!(told.to_string().contains(&format!("after {}", earlier.journal_blake3)), "{told}");
+}
+
+#[test]
+fn what_is_no_earlier_search_of_the_space_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("search.jsonl");
+    let told = |space: &SearchSpace| EarlierSearch::read(&journal, space).unwrap_err().to_string();
+    let bias = space(&["bias-step"]);
+    assert!(told(&bias).starts_with("read "), "{}", told(&bias));
+    let control = Control::default();
+    search(&bench(2), &bias, &plan(16), Some(&journal), &control, &mut |_| {}).unwrap();
+    assert!(told(&space(&["spike"])).contains("line 1: found a search of another space"));
+    let text = std::fs::read_to_string(&journal).unwrap();
+    let first = text.split_inclusive('\n').next().unwrap();
+    for (edited, expected) in [
+        (String::new(), "found no line"),
+        (first.to_owned(), "found no trial"),
+        (text.replace("{\"schema\":1", "{\"schema\":2"), "newer version"),
+        (text.replacen("\"places\":[0.", "\"places\":[0.9", 1), "was changed or left out"),
+    ] {
+        std::fs::write(&journal, edited).unwrap();
+        assert!(told(&bias).contains(expected), "{}", told(&bias));
+    }
+    // Faults that the space doesn't have, in a file whose checksums are right.
+    for candidate in [(7, vec![0.5; 4]), (0, vec![0.5]), (0, vec![0.5, 0.5, 0.5, f64::MAX])] {
+        std::fs::write(&journal, first).unwrap();
+        let (form, places) = candidate;
+        let candidate = FaultCandidate { faults: vec![PlacedFault { form, places }] };
+        let trial = FaultTrial { candidate, result: TrialResult::Broken(String::new()) };
+        let mut lines = ChainedLines::open(&journal, "", |_| Ok(()), |_| Ok(())).unwrap();
+        lines.append([serde_json::to_string(&trial).unwrap()]).unwrap();
+        assert!(told(&bias).contains("isn't in the space"), "{}", told(&bias));
+    }
 }
 
 #[test]

@@ -1,0 +1,210 @@
+//! What an earlier search found, on a core that was changed since.
+//!
+//! A screen that was weakened shows at once: a fault that the earlier core noticed by it is noticed otherwise now, or
+//! not at all. So a search after another one first runs a few of the faults that each screen noticed, and goes on
+//! among those of the screens that answered otherwise.
+
+use crate::candidate::FaultCandidate;
+use crate::error::FaultSearchError;
+use crate::journal;
+use crate::search::is_run;
+use crate::space::SearchSpace;
+use crate::trial::FaultTrial;
+use octant_base::number::counted;
+use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Faults of a screen that are run while it answers as before.
+const ASKED: usize = 4;
+
+/// Trials of an earlier search, on whatever core.
+#[derive(Clone, Debug)]
+pub struct EarlierSearch {
+    /// The trials.
+    pub trials: Vec<FaultTrial>,
+    /// BLAKE3 of its journal.
+    pub journal_blake3: String,
+}
+
+impl EarlierSearch {
+    /// Reads the journal of a search in the same space. Scenario, seeds, program and strategy may be others.
+    ///
+    /// # Errors
+    /// If there is none, it is damaged, of a newer version, of another space, or has no trial.
+    pub fn read(path: &Path, space: &SearchSpace) -> Result<Self, FaultSearchError> {
+        let (trials, journal_blake3) = journal::read(path, space)?;
+        Ok(Self { trials, journal_blake3 })
+    }
+}
+
+/// A fault that is run again, and the screen that noticed it.
+#[derive(Clone, Debug)]
+pub(crate) struct AskedFault {
+    pub(crate) candidate: FaultCandidate,
+    pub(crate) screen: usize,
+}
+
+/// What the screens of an earlier search answer now.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EarlierFound {
+    /// BLAKE3 of the journal of the earlier search.
+    pub journal_blake3: String,
+    /// Its runs.
+    pub runs: usize,
+    /// What noticed its faults, and how those that were run again are noticed now; the most faults first.
+    pub screens: Vec<ScreenFound>,
+}
+
+/// A report of the earlier core.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScreenFound {
+    /// The report, without numbers and names of parameters.
+    pub report: String,
+    /// Faults that were noticed by it.
+    pub faults: usize,
+    /// Those that were run again.
+    pub again: usize,
+    /// Those that are noticed otherwise now, or not at all.
+    pub otherwise: usize,
+}
+
+impl EarlierFound {
+    /// Compares the trials of a search with those of the earlier one.
+    #[must_use]
+    pub fn of(earlier: &EarlierSearch, trials: &[FaultTrial]) -> Self {
+        let mut screens: BTreeMap<String, ScreenFound> = BTreeMap::new();
+        for before in earlier.trials.iter().filter(|trial| trial.candidate.faults.len() == 1) {
+            let Some(report) = report_of(before) else { continue };
+            let none = ScreenFound { report: report.clone(), faults: 0, again: 0, otherwise: 0 };
+            let screen = screens.entry(report).or_insert(none);
+            screen.faults += 1;
+            if let Some(now) = trials.iter().find(|trial| trial.candidate == before.candidate) {
+                screen.again += 1;
+                screen.otherwise += usize::from(report_of(now).as_ref() != Some(&screen.report));
+            }
+        }
+        let mut screens: Vec<ScreenFound> = screens.into_values().collect();
+        screens.sort_by_key(|screen| Reverse(screen.faults));
+        let runs = earlier.trials.iter().filter(|trial| is_run(trial)).count();
+        Self { journal_blake3: earlier.journal_blake3.clone(), runs, screens }
+    }
+
+    /// Says on one line what changed.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let again: usize = self.screens.iter().map(|screen| screen.again).sum();
+        let changed = self.screens.iter().filter(|screen| screen.otherwise > 0);
+        let changed: Vec<String> = changed
+            .map(|screen| format!("{} of {} ({})", screen.otherwise, screen.again, screen.report))
+            .collect();
+        let changed = if changed.is_empty() { "none".to_owned() } else { changed.join(", ") };
+        format!(
+            "after a search of {}: {} of its faults run again, noticed otherwise or not at all: {changed}",
+            counted(self.runs, "run", "runs"),
+            again
+        )
+    }
+}
+
+/// What noticed faults in the earlier search.
+#[derive(Clone, Debug)]
+struct Screen {
+    /// Its report, without numbers and names.
+    report: String,
+    /// Faults that it noticed, the next one last.
+    faults: Vec<FaultCandidate>,
+    asked: usize,
+    changed: usize,
+}
+
+impl Screen {
+    fn is_asked(&self) -> bool {
+        !self.faults.is_empty() && (self.changed > 0 || self.asked < ASKED)
+    }
+}
+
+/// A fault that the earlier core noticed.
+struct Known<'a> {
+    is_harmless: bool,
+    size: f64,
+    candidate: &'a FaultCandidate,
+}
+
+/// The screens of an earlier search, and how they answer now.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EarlierScreens(Vec<Screen>);
+
+impl EarlierScreens {
+    /// Sorts the single faults of a search by what noticed them.
+    pub(crate) fn of(trials: &[FaultTrial], space: &SearchSpace) -> Self {
+        let mut reports: BTreeMap<String, BTreeMap<usize, Vec<Known<'_>>>> = BTreeMap::new();
+        let mut noticed: BTreeMap<usize, usize> = BTreeMap::new();
+        for trial in trials {
+            let [fault] = trial.candidate.faults.as_slice() else { continue };
+            let Some(report) = report_of(trial) else { continue };
+            let size = space.forms.get(fault.form).and_then(|form| form.size());
+            let size = size.and_then(|key| fault.places.get(key)).copied().unwrap_or(0.0);
+            let is_harmless = trial.effect().is_none_or(|effect| effect.harm() < 1.0);
+            *noticed.entry(fault.form).or_default() += 1;
+            let forms = reports.entry(report).or_default();
+            let known = Known { is_harmless, size, candidate: &trial.candidate };
+            forms.entry(fault.form).or_default().push(known);
+        }
+        let screen = |(report, forms): (String, BTreeMap<usize, Vec<Known<'_>>>)| {
+            // Each form in turn, the smallest first: what a screen just notices, it misses first. What did harm although
+            // it was noticed goes before what was undone.
+            let mut ranked = Vec::new();
+            for (form, mut known) in forms {
+                let share = known.len() as f64 / noticed[&form] as f64;
+                known.sort_by(|a, b| {
+                    a.is_harmless.cmp(&b.is_harmless).then(a.size.total_cmp(&b.size))
+                });
+                ranked.extend(
+                    known.into_iter().enumerate().map(|(rank, known)| (rank, share, known)),
+                );
+            }
+            ranked.sort_by(|a, b| {
+                a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.is_harmless.cmp(&b.2.is_harmless))
+            });
+            let faults = ranked.into_iter().rev().map(|(_, _, known)| known.candidate.clone());
+            Screen { report, faults: faults.collect(), asked: 0, changed: 0 }
+        };
+        let mut screens: Vec<Screen> = reports.into_iter().map(screen).collect();
+        screens.sort_by_key(|screen| Reverse(screen.faults.len()));
+        Self(screens)
+    }
+
+    /// The next fault to run: of the screens that answered otherwise, or else of those that were asked least.
+    pub(crate) fn next(&mut self) -> Option<AskedFault> {
+        let places = (0..self.0.len()).filter(|place| self.0[*place].is_asked());
+        let screen = places.min_by_key(|place| {
+            let screen = &self.0[*place];
+            (screen.changed == 0, screen.asked)
+        })?;
+        let of = &mut self.0[screen];
+        of.asked += 1;
+        Some(AskedFault { candidate: of.faults.pop()?, screen })
+    }
+
+    /// True while there is a fault to run.
+    pub(crate) fn are_asked(&self) -> bool {
+        self.0.iter().any(Screen::is_asked)
+    }
+
+    /// Takes the result of a fault that was asked for; returns whether its screen answered otherwise.
+    pub(crate) fn learn(&mut self, screen: usize, trial: &FaultTrial) -> bool {
+        let Some(screen) = self.0.get_mut(screen) else { return false };
+        let changed = report_of(trial).as_ref() != Some(&screen.report);
+        screen.changed += usize::from(changed);
+        changed
+    }
+}
+
+/// What noticed a fault: its report without what differs from one fault to the next, numbers and names of parameters.
+fn report_of(trial: &FaultTrial) -> Option<String> {
+    let by = trial.effect().filter(|effect| effect.fired)?.noticed_by.as_ref()?;
+    let differs = |word: &&str| !word.contains(|c: char| c == '_' || c.is_ascii_digit());
+    Some(by.split_whitespace().filter(differs).collect::<Vec<_>>().join(" "))
+}
