@@ -19,7 +19,7 @@ use octant_search::error::FaultSearchError;
 use octant_search::found::{FoundFault, SearchFound, worst};
 use octant_search::minimal::minimal;
 use octant_search::page::render;
-use octant_search::search::{SearchPlan, SearchStrategy, is_run, search};
+use octant_search::search::{SearchPlan, SearchStrategy, search};
 use octant_search::space::SearchSpace;
 use octant_search::space_file;
 use octant_search::trial::{FaultTrial, TrialEffect, TrialResult};
@@ -133,7 +133,7 @@ fn searched(
     let bar = CaseBar::new("search", plan.runs, jobs, plan.enough.is_some());
     let mut told = 0;
     let mut tell = |trials: &[FaultTrial]| {
-        trials[told..].iter().filter(|trial| is_run(trial)).for_each(|_| bar.ended(None, false));
+        trials[told..].iter().filter(|trial| trial.is_run()).for_each(|_| bar.ended(None, false));
         told = trials.len();
     };
     let name = |_: usize| String::new();

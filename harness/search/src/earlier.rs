@@ -1,13 +1,12 @@
 //! What an earlier search found, on a core that was changed since.
 //!
 //! A screen that was weakened shows at once: a fault that the earlier core noticed by it is noticed otherwise now, or
-//! not at all. So a search after another one first runs a few of the faults that each screen noticed, and goes on
-//! among those of the screens that answered otherwise.
+//! not at all. So a search after another one first runs the worst that the earlier one found unnoticed, and a few of the
+//! faults that each screen noticed, and goes on among those of the screens that answered otherwise.
 
 use crate::candidate::FaultCandidate;
 use crate::error::FaultSearchError;
 use crate::journal;
-use crate::search::is_run;
 use crate::space::SearchSpace;
 use crate::trial::FaultTrial;
 use octant_base::number::counted;
@@ -39,7 +38,7 @@ impl EarlierSearch {
     }
 }
 
-/// A fault that is run again, and the screen that noticed it.
+/// A fault that is run again, and the screen whose it is.
 #[derive(Clone, Debug)]
 pub(crate) struct AskedFault {
     pub(crate) candidate: FaultCandidate,
@@ -55,6 +54,12 @@ pub struct EarlierFound {
     pub runs: usize,
     /// What noticed its faults, and how those that were run again are noticed now; the most faults first.
     pub screens: Vec<ScreenFound>,
+    /// Its faults that were harmful and unnoticed.
+    pub missed: usize,
+    /// Those of them that were run again.
+    pub missed_again: usize,
+    /// Those of them that are harmful and unnoticed now too.
+    pub still_missed: usize,
 }
 
 /// A report of the earlier core.
@@ -74,45 +79,65 @@ impl EarlierFound {
     /// Compares the trials of a search with those of the earlier one.
     #[must_use]
     pub fn of(earlier: &EarlierSearch, trials: &[FaultTrial]) -> Self {
+        let now =
+            |before: &FaultTrial| trials.iter().find(|trial| trial.candidate == before.candidate);
+        let missed: Vec<&FaultTrial> =
+            earlier.trials.iter().filter(|trial| is_missed(trial)).collect();
+        let again: Vec<&FaultTrial> = missed.iter().filter_map(|before| now(before)).collect();
         let mut screens: BTreeMap<String, ScreenFound> = BTreeMap::new();
         for before in earlier.trials.iter().filter(|trial| trial.candidate.faults.len() == 1) {
             let Some(report) = report_of(before) else { continue };
             let none = ScreenFound { report: report.clone(), faults: 0, again: 0, otherwise: 0 };
             let screen = screens.entry(report).or_insert(none);
             screen.faults += 1;
-            if let Some(now) = trials.iter().find(|trial| trial.candidate == before.candidate) {
+            if let Some(now) = now(before) {
                 screen.again += 1;
                 screen.otherwise += usize::from(report_of(now).as_ref() != Some(&screen.report));
             }
         }
         let mut screens: Vec<ScreenFound> = screens.into_values().collect();
         screens.sort_by_key(|screen| Reverse(screen.faults));
-        let runs = earlier.trials.iter().filter(|trial| is_run(trial)).count();
-        Self { journal_blake3: earlier.journal_blake3.clone(), runs, screens }
+        let runs = earlier.trials.iter().filter(|trial| trial.is_run()).count();
+        Self {
+            journal_blake3: earlier.journal_blake3.clone(),
+            runs,
+            screens,
+            missed: missed.len(),
+            missed_again: again.len(),
+            still_missed: again.into_iter().filter(|trial| is_missed(trial)).count(),
+        }
     }
 
-    /// Says on one line what changed.
+    /// Says what changed, a line each.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn words(&self) -> Vec<String> {
         let again: usize = self.screens.iter().map(|screen| screen.again).sum();
         let changed = self.screens.iter().filter(|screen| screen.otherwise > 0);
         let changed: Vec<String> = changed
             .map(|screen| format!("{} of {} ({})", screen.otherwise, screen.again, screen.report))
             .collect();
         let changed = if changed.is_empty() { "none".to_owned() } else { changed.join(", ") };
-        format!(
-            "after a search of {}: {} of its faults run again, noticed otherwise or not at all: {changed}",
-            counted(self.runs, "run", "runs"),
-            again
-        )
+        let mut lines = vec![
+            format!("after a search of {}:", counted(self.runs, "run", "runs")),
+            format!(
+                "  noticed there, {again} run again; noticed otherwise now, or not at all: {changed}"
+            ),
+        ];
+        if self.missed > 0 {
+            lines.push(format!(
+                "  harmful and unnoticed there, {} of {} run again; still so: {}",
+                self.missed_again, self.missed, self.still_missed
+            ));
+        }
+        lines
     }
 }
 
 /// What noticed faults in the earlier search.
 #[derive(Clone, Debug)]
 struct Screen {
-    /// Its report, without numbers and names.
-    report: String,
+    /// Its report, without numbers and names; `None` for what was harmful and unnoticed.
+    report: Option<String>,
     /// Faults that it noticed, the next one last.
     faults: Vec<FaultCandidate>,
     asked: usize,
@@ -169,10 +194,11 @@ impl EarlierScreens {
                 a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.is_harmless.cmp(&b.2.is_harmless))
             });
             let faults = ranked.into_iter().rev().map(|(_, _, known)| known.candidate.clone());
-            Screen { report, faults: faults.collect(), asked: 0, changed: 0 }
+            Screen { report: Some(report), faults: faults.collect(), asked: 0, changed: 0 }
         };
         let mut screens: Vec<Screen> = reports.into_iter().map(screen).collect();
         screens.sort_by_key(|screen| Reverse(screen.faults.len()));
+        screens.insert(0, Screen { report: None, faults: missed(trials), asked: 0, changed: 0 });
         Self(screens)
     }
 
@@ -196,10 +222,32 @@ impl EarlierScreens {
     /// Takes the result of a fault that was asked for; returns whether its screen answered otherwise.
     pub(crate) fn learn(&mut self, screen: usize, trial: &FaultTrial) -> bool {
         let Some(screen) = self.0.get_mut(screen) else { return false };
-        let changed = report_of(trial).as_ref() != Some(&screen.report);
-        screen.changed += usize::from(changed);
+        let changed = report_of(trial) != screen.report;
+        // What is noticed now that wasn't before doesn't tell of a weakness.
+        screen.changed += usize::from(changed && screen.report.is_some());
         changed
     }
+}
+
+/// True for what was harmful and unnoticed.
+fn is_missed(trial: &FaultTrial) -> bool {
+    trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0)
+}
+
+/// The worst of each form that was harmful and unnoticed, the worst last.
+fn missed(trials: &[FaultTrial]) -> Vec<FaultCandidate> {
+    let mut worst: BTreeMap<Vec<usize>, (f64, &FaultCandidate)> = BTreeMap::new();
+    for trial in trials.iter().filter(|trial| is_missed(trial)) {
+        let forms = trial.candidate.faults.iter().map(|fault| fault.form).collect();
+        let harm = trial.unnoticed_harm().unwrap_or(0.0);
+        let known = worst.entry(forms).or_insert((harm, &trial.candidate));
+        if harm > known.0 {
+            *known = (harm, &trial.candidate);
+        }
+    }
+    let mut all: Vec<(f64, &FaultCandidate)> = worst.into_values().collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().map(|(_, candidate)| candidate.clone()).collect()
 }
 
 /// What noticed a fault: its report without what differs from one fault to the next, numbers and names of parameters.

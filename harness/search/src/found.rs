@@ -222,7 +222,7 @@ impl SearchFound {
             self.missed
         );
         if let Some(earlier) = &self.earlier {
-            out += &format!("  {}\n", earlier.words());
+            earlier.words().iter().for_each(|line| out += &format!("  {line}\n"));
         }
         if self.not_judged > 0 {
             out += &format!(

@@ -78,6 +78,10 @@ fn after(earlier: &EarlierFound) -> Markup {
                 td.n { @if screen.otherwise > 0 { strong { (screen.otherwise) } } @else { "0" } }
             } } }
         }
+        @if earlier.missed > 0 {
+            p { (earlier.missed_again) " of the " (earlier.missed) " faults that were harmful and unnoticed there were run \
+                again; " (earlier.still_missed) " of them are so now too." }
+        }
         p.hint { "The earlier search had " (counted(earlier.runs, "run", "runs")) ", its journal the BLAKE3 "
             span.mono { (earlier.journal_blake3) } "." }
     }

@@ -8,7 +8,7 @@ use crate::guide::SearchGuide;
 use crate::journal::{JOURNAL_SCHEMA, SearchIdentity, SearchJournal, hash_of};
 use crate::latin::latin;
 use crate::space::SearchSpace;
-use crate::trial::{FaultTrial, TrialResult};
+use crate::trial::FaultTrial;
 use octant_base::control::Control;
 use octant_score::numerics;
 use std::path::Path;
@@ -105,7 +105,7 @@ pub fn search(
         };
         proposer.learn(&results);
         proposed += results.len();
-        runs += results.iter().filter(|trial| is_run(trial)).count();
+        runs += results.iter().filter(|trial| trial.is_run()).count();
         trials.extend(results);
         tell(&trials);
         let worst = trials.iter().filter_map(FaultTrial::unnoticed_harm).fold(0.0, f64::max);
@@ -114,12 +114,6 @@ pub fn search(
         }
     }
     Ok(trials)
-}
-
-/// True for a trial that took a run.
-#[must_use]
-pub fn is_run(trial: &FaultTrial) -> bool {
-    !matches!(trial.result, TrialResult::Refused(_))
 }
 
 enum Proposer<'a> {

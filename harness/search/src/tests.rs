@@ -7,7 +7,7 @@ use crate::earlier::{EarlierFound, EarlierSearch, ScreenFound};
 use crate::error::FaultSearchError;
 use crate::found::{SearchFound, worst};
 use crate::minimal::minimal;
-use crate::search::{SearchPlan, SearchStrategy, is_run, search};
+use crate::search::{SearchPlan, SearchStrategy, search};
 use crate::space::{FormKey, SearchSpace};
 use crate::space_file::{SpaceError, read, to_toml};
 use crate::trial::{FaultTrial, TrialResult};
@@ -54,7 +54,7 @@ fn searched(bench: &SearchBench, runs: usize, journal: Option<&Path>) -> Vec<Fau
 #[test]
 fn threads_and_interruptions_change_nothing() {
     let one = searched(&bench(1), 24, None);
-    assert!(one.iter().filter(|trial| is_run(trial)).count() >= 24);
+    assert!(one.iter().filter(|trial| trial.is_run()).count() >= 24);
     assert_eq!(searched(&bench(2), 24, None), one);
     let folder = tempfile::tempdir().unwrap();
     let journal = folder.path().join("search.jsonl");
@@ -128,8 +128,14 @@ fn after_an_earlier_search_the_screen_that_changed_is_found_first() {
         let counts = |screen: &ScreenFound| (screen.report.clone(), screen.again, screen.otherwise);
         found.screens.iter().map(counts).collect::<Vec<_>>()
     };
-    // The same core says the same of each.
-    let same = found(&searched(&full, &after, "same").unwrap());
+    // The same core says the same of each, and what it missed it misses again.
+    let trials = searched(&full, &after, "same").unwrap();
+    let missed = EarlierFound::of(&earlier, &trials);
+    assert!(missed.missed > 0 && missed.missed_again > 0, "{missed:?}");
+    assert_eq!(missed.still_missed, missed.missed_again);
+    let harm = |trial: Option<&FaultTrial>| trial.and_then(FaultTrial::unnoticed_harm);
+    assert_eq!(harm(worst(&earlier.trials)), harm(trials.first()));
+    let same = found(&trials);
     assert!(same.len() >= 3 && same.iter().all(|(_, _, otherwise)| *otherwise == 0), "{same:?}");
     assert!(same.iter().filter(|(_, again, _)| *again > 0).count() >= 3, "{same:?}");
     let weak = |jobs| {

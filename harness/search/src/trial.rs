@@ -143,6 +143,12 @@ impl FaultTrial {
         }
     }
 
+    /// True for a trial that took a run.
+    #[must_use]
+    pub fn is_run(&self) -> bool {
+        !matches!(self.result, TrialResult::Refused(_))
+    }
+
     /// Harm, where it went unnoticed.
     #[must_use]
     pub fn unnoticed_harm(&self) -> Option<f64> {
