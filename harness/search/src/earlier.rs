@@ -178,8 +178,8 @@ impl EarlierScreens {
             forms.entry(fault.form).or_default().push(known);
         }
         let screen = |(report, forms): (String, BTreeMap<usize, Vec<Known<'_>>>)| {
-            // Each form in turn, the smallest first: what a screen just notices, it misses first. What did harm although
-            // it was noticed goes before what was undone.
+            // Each form in turn, the smallest first: what a screen just notices, it misses first. Forms that no other screen
+            // notices go first, and what did harm although it was noticed goes before what was undone.
             let mut ranked = Vec::new();
             for (form, mut known) in forms {
                 let share = known.len() as f64 / noticed[&form] as f64;
@@ -250,9 +250,11 @@ fn missed(trials: &[FaultTrial]) -> Vec<FaultCandidate> {
     all.into_iter().map(|(_, candidate)| candidate.clone()).collect()
 }
 
-/// What noticed a fault: its report without what differs from one fault to the next, numbers and names of parameters.
+/// What noticed a fault: its report without what differs from one fault to the next, numbers and names of parameters, and
+/// of a refusal the reason without its details.
 fn report_of(trial: &FaultTrial) -> Option<String> {
     let by = trial.effect().filter(|effect| effect.fired)?.noticed_by.as_ref()?;
     let differs = |word: &&str| !word.contains(|c: char| c == '_' || c.is_ascii_digit());
-    Some(by.split_whitespace().filter(differs).collect::<Vec<_>>().join(" "))
+    let of = |part: &str| part.split_whitespace().filter(differs).collect::<Vec<_>>().join(" ");
+    Some(by.split(':').take(2).map(of).collect::<Vec<_>>().join(": "))
 }

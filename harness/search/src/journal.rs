@@ -134,8 +134,9 @@ pub(crate) fn read(
         hasher.update(json.as_bytes());
         let trial: FaultTrial =
             serde_json::from_str(json).map_err(|error| format!("expected a trial: {error}"))?;
-        if !trial.candidate.faults.iter().all(|fault| fault.is_in(space)) {
-            return Err("found a fault that isn't in the space".to_owned());
+        let faults = &trial.candidate.faults;
+        if faults.is_empty() || !faults.iter().all(|fault| fault.is_in(space)) {
+            return Err("found no fault, or one that isn't in the space".to_owned());
         }
         trials.push(trial);
         Ok(())

@@ -79,8 +79,8 @@ fn after(earlier: &EarlierFound) -> Markup {
             } } }
         }
         @if earlier.missed > 0 {
-            p { (earlier.missed_again) " of the " (earlier.missed) " faults that were harmful and unnoticed there were run \
-                again; " (earlier.still_missed) " of them are so now too." }
+            p { "Harmful and unnoticed there: " (earlier.missed) ", run again: " (earlier.missed_again)
+                ", harmful and unnoticed now too: " (earlier.still_missed) "." }
         }
         p.hint { "The earlier search had " (counted(earlier.runs, "run", "runs")) ", its journal the BLAKE3 "
             span.mono { (earlier.journal_blake3) } "." }

@@ -180,10 +180,11 @@ fn what_is_no_earlier_search_of_the_space_is_refused() {
         assert!(told(&bias).contains(expected), "{}", told(&bias));
     }
     // Faults that the space doesn't have, in a file whose checksums are right.
-    for candidate in [(7, vec![0.5; 4]), (0, vec![0.5]), (0, vec![0.5, 0.5, 0.5, f64::MAX])] {
+    let fault = |form, places| vec![PlacedFault { form, places }];
+    let far = vec![0.5, 0.5, 0.5, f64::MAX];
+    for faults in [vec![], fault(7, vec![0.5; 4]), fault(0, vec![0.5]), fault(0, far)] {
         std::fs::write(&journal, first).unwrap();
-        let (form, places) = candidate;
-        let candidate = FaultCandidate { faults: vec![PlacedFault { form, places }] };
+        let candidate = FaultCandidate { faults };
         let trial = FaultTrial { candidate, result: TrialResult::Broken(String::new()) };
         let mut lines = ChainedLines::open(&journal, "", |_| Ok(()), |_| Ok(())).unwrap();
         lines.append([serde_json::to_string(&trial).unwrap()]).unwrap();
