@@ -224,7 +224,7 @@ mod tests {
         std::fs::write(&path, &whole[..whole.len() - 1]).unwrap();
         let (mut lines, found) = open(&path).unwrap();
         assert_eq!(found, ["a b", ""]);
-        // What only reads takes the same lines, and leaves a torn one where it is.
+        // Reading alone gives the same lines, and doesn't cut off a torn one.
         let torn = [&std::fs::read(&path).unwrap()[..], b"torn"].concat();
         std::fs::write(&path, &torn).unwrap();
         let mut found = Vec::new();

@@ -290,6 +290,12 @@ fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
             Verdict::Inconclusive
         }
         0 if broken => Verdict::Inconclusive,
+        0 if found.earlier.as_ref().is_some_and(EarlierFound::is_too_short) => {
+            note!(
+                "octant: not all faults that were harmful and unnoticed in the earlier search were run again: expected more --runs"
+            );
+            Verdict::Inconclusive
+        }
         0 => Verdict::Pass,
         _ => Verdict::Fail,
     }

@@ -1,8 +1,8 @@
-//! What an earlier search found, on a core that was changed since.
+//! Search of a changed core, begun with the results of an earlier search.
 //!
-//! A screen that was weakened shows at once: a fault that the earlier core noticed by it is noticed otherwise now, or
-//! not at all. So a search after another one first runs the worst that the earlier one found unnoticed, and a few of the
-//! faults that each screen noticed, and goes on among those of the screens that answered otherwise.
+//! Faults that were harmful and unnoticed are run again, worst first, until one is so again: a pass needs all of them
+//! noticed. A weakened screen shows at once: its faults raise another report now, or none. So a few faults of each screen
+//! are run again, and the search goes on with those of the screens whose report changed.
 
 use crate::candidate::FaultCandidate;
 use crate::error::FaultSearchError;
@@ -45,14 +45,14 @@ pub(crate) struct AskedFault {
     pub(crate) screen: usize,
 }
 
-/// What the screens of an earlier search answer now.
+/// Screens of an earlier search, with the reports that their faults raise now.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarlierFound {
     /// BLAKE3 of the journal of the earlier search.
     pub journal_blake3: String,
     /// Its runs.
     pub runs: usize,
-    /// What noticed its faults, and how those that were run again are noticed now; the most faults first.
+    /// Reports that its faults raised, the one with the most faults first.
     pub screens: Vec<ScreenFound>,
     /// Its faults that were harmful and unnoticed.
     pub missed: usize,
@@ -108,6 +108,12 @@ impl EarlierFound {
         }
     }
 
+    /// True if a missed fault wasn't run again and none is missed still: the search is too short to say that they are noticed.
+    #[must_use]
+    pub fn is_too_short(&self) -> bool {
+        self.still_missed == 0 && self.missed_again < self.missed
+    }
+
     /// Says what changed, a line each.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
@@ -133,7 +139,7 @@ impl EarlierFound {
     }
 }
 
-/// What noticed faults in the earlier search.
+/// A screen, known by its report, with the faults of the earlier search that raised it.
 #[derive(Clone, Debug)]
 struct Screen {
     /// Its report, without numbers and names; `None` for what was harmful and unnoticed.
@@ -141,12 +147,23 @@ struct Screen {
     /// Faults that it noticed, the next one last.
     faults: Vec<FaultCandidate>,
     asked: usize,
+    /// Faults that answered otherwise, or as before.
     changed: usize,
+    same: usize,
 }
 
 impl Screen {
+    fn new(report: Option<String>, faults: Vec<FaultCandidate>) -> Self {
+        Self { report, faults, asked: 0, changed: 0, same: 0 }
+    }
+
     fn is_asked(&self) -> bool {
-        !self.faults.is_empty() && (self.changed > 0 || self.asked < ASKED)
+        let goes_on = match &self.report {
+            Some(_) => self.changed > 0 || self.asked < ASKED,
+            // One alone, until it is known whether it is still missed.
+            None => self.same == 0 && (self.asked == 0 || self.changed > 0),
+        };
+        goes_on && !self.faults.is_empty()
     }
 }
 
@@ -194,20 +211,21 @@ impl EarlierScreens {
                 a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.is_harmless.cmp(&b.2.is_harmless))
             });
             let faults = ranked.into_iter().rev().map(|(_, _, known)| known.candidate.clone());
-            Screen { report: Some(report), faults: faults.collect(), asked: 0, changed: 0 }
+            Screen::new(Some(report), faults.collect())
         };
         let mut screens: Vec<Screen> = reports.into_iter().map(screen).collect();
         screens.sort_by_key(|screen| Reverse(screen.faults.len()));
-        screens.insert(0, Screen { report: None, faults: missed(trials), asked: 0, changed: 0 });
+        screens.insert(0, Screen::new(None, missed(trials)));
         Self(screens)
     }
 
-    /// The next fault to run: of the screens that answered otherwise, or else of those that were asked least.
+    /// The next fault to run: one that was missed, or of the screens that answered otherwise, or else of those that were
+    /// asked least.
     pub(crate) fn next(&mut self) -> Option<AskedFault> {
         let places = (0..self.0.len()).filter(|place| self.0[*place].is_asked());
         let screen = places.min_by_key(|place| {
             let screen = &self.0[*place];
-            (screen.changed == 0, screen.asked)
+            (screen.report.is_some(), screen.changed == 0, screen.asked)
         })?;
         let of = &mut self.0[screen];
         of.asked += 1;
@@ -222,9 +240,12 @@ impl EarlierScreens {
     /// Takes the result of a fault that was asked for; returns whether its screen answered otherwise.
     pub(crate) fn learn(&mut self, screen: usize, trial: &FaultTrial) -> bool {
         let Some(screen) = self.0.get_mut(screen) else { return false };
+        if screen.report.is_none() {
+            *(if is_missed(trial) { &mut screen.same } else { &mut screen.changed }) += 1;
+            return false;
+        }
         let changed = report_of(trial) != screen.report;
-        // What is noticed now that wasn't before doesn't tell of a weakness.
-        screen.changed += usize::from(changed && screen.report.is_some());
+        *(if changed { &mut screen.changed } else { &mut screen.same }) += 1;
         changed
     }
 }
@@ -234,24 +255,16 @@ fn is_missed(trial: &FaultTrial) -> bool {
     trial.unnoticed_harm().is_some_and(|harm| harm >= 1.0)
 }
 
-/// The worst of each form that was harmful and unnoticed, the worst last.
+/// Faults that were harmful and unnoticed, the worst last.
 fn missed(trials: &[FaultTrial]) -> Vec<FaultCandidate> {
-    let mut worst: BTreeMap<Vec<usize>, (f64, &FaultCandidate)> = BTreeMap::new();
-    for trial in trials.iter().filter(|trial| is_missed(trial)) {
-        let forms = trial.candidate.faults.iter().map(|fault| fault.form).collect();
-        let harm = trial.unnoticed_harm().unwrap_or(0.0);
-        let known = worst.entry(forms).or_insert((harm, &trial.candidate));
-        if harm > known.0 {
-            *known = (harm, &trial.candidate);
-        }
-    }
-    let mut all: Vec<(f64, &FaultCandidate)> = worst.into_values().collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all.into_iter().map(|(_, candidate)| candidate.clone()).collect()
+    let mut all: Vec<&FaultTrial> = trials.iter().filter(|trial| is_missed(trial)).collect();
+    let harm = |trial: &FaultTrial| trial.unnoticed_harm().unwrap_or(0.0);
+    all.sort_by(|a, b| harm(a).total_cmp(&harm(b)));
+    all.into_iter().map(|trial| trial.candidate.clone()).collect()
 }
 
-/// What noticed a fault: its report without what differs from one fault to the next, numbers and names of parameters, and
-/// of a refusal the reason without its details.
+/// Report that a fault raised, without numbers and names of parameters, which differ from fault to fault; of a refusal,
+/// its reason without the details.
 fn report_of(trial: &FaultTrial) -> Option<String> {
     let by = trial.effect().filter(|effect| effect.fired)?.noticed_by.as_ref()?;
     let differs = |word: &&str| !word.contains(|c: char| c == '_' || c.is_ascii_digit());

@@ -28,7 +28,7 @@ pub struct SearchFound {
     pub strategy: String,
     /// Share of candidates with two faults.
     pub pairs: f64,
-    /// What the screens of an earlier search answer now, where the search began with one.
+    /// Screens of the earlier search with which this one began.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier: Option<EarlierFound>,
     /// Shift of a parameter, in σ, from which a fault counts as harmful.

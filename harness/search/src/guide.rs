@@ -56,7 +56,7 @@ pub struct SearchGuide<'a> {
     order: Vec<usize>,
     /// Worst that went unnoticed, worst first.
     elites: Vec<Elite>,
-    /// What noticed faults in an earlier search.
+    /// Screens of an earlier search.
     screens: EarlierScreens,
 }
 

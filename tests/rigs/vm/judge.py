@@ -132,12 +132,12 @@ for one in recorded:
 check("an instrument on the kernel's CAN", told.startswith("instrument 0 "), told)
 check("its arrivals are stamped by the kernel", figure(told, "arrivals_by_kernel") > 100, told)
 # A host that is busy starves the machine, and its controllers overrun: however many samples that costs, each has to be
-# counted, and one that has arrived has to be equal. Where nearly all are lost, nothing is shown.
+# counted, and one that has arrived has to be equal. Where most are lost, nothing is shown.
 missing = re.search(r'"missing":(\d+)', told)
 missing = int(missing[1]) if missing else 0
 check(
     "it has the samples of the frames, or counts them as missing",
-    equal == len(recorded) == 200 - missing and missing < 190,
+    equal == len(recorded) == 200 - missing and missing <= 100,
     f"{equal} of {len(recorded)} equal, {missing} missing",
 )
 
@@ -146,12 +146,12 @@ check("a clock that nobody keeps is refused", not told.startswith("unkept 0") an
 told = [line for line in said if line.startswith("stamped ")]
 kept = [line for line in told if line.startswith("stamped 0 ") and '"early":0' in line]
 if kept:
-    check("a unit with stamps by /dev/ptp0", '"origin":"stamps(tai,/dev/ptp0)"' in kept[0], kept[0])
+    check("a unit with stamps by /dev/ptp0", '"origin":"stamps(tai,/dev/ptp0)"' in kept[-1], kept[-1])
     # The clock is kept within milliseconds, and the scenario says so. A host that is busy makes the bound and the line's
     # delay larger, and never smaller.
-    within_ms = figure(kept[0], "within_us") * 1e-3
-    check("the bound of its times", 10.0 < within_ms < 400.0, kept[0])
-    check("the line's delay is what the unit waits", 20.0 - within_ms <= figure(kept[0], "least_ms") < 400.0, kept[0])
+    within_ms = figure(kept[-1], "within_us") * 1e-3
+    check("the bound of its times", 10.0 < within_ms < 40.0, kept[-1])
+    check("the line's delay is what the unit waits", 20.0 - within_ms <= figure(kept[-1], "least_ms") < 60.0, kept[-1])
 else:
     # A clock that nobody kept for long, or a unit that came too late, has to end the run or leave it without a bound.
     noticed = [not line.startswith("stamped 0 ") or '"within_us":null' in line for line in told]
