@@ -8,6 +8,7 @@ use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
 use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
+use octant_base::number::counted;
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
 use octant_operator::OperatorRecord;
@@ -265,6 +266,10 @@ impl Asked {
         ];
         let reasons = what_broke(&primary, baseline.as_ref());
         let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
+        if let Some(bench) = primary.bench.as_ref().filter(|bench| bench.readings.missing > 0) {
+            let missing = counted(bench.readings.missing, "sample is", "samples are");
+            note!("octant: {}; {missing} missing, and the core bridges the gaps", bench.instrument);
+        }
         let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
         let bench = with_power(bench, primary.power.as_deref());
         let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());

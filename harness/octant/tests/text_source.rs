@@ -61,15 +61,15 @@ fn error(text: &str, change: impl FnOnce(&mut TextMapping)) -> String {
 #[test]
 fn rates_become_counts_over_the_real_intervals() {
     let epochs =
-        read("# a comment\n0.010, 1e-3, 0, 0, 0, 0, 9.8\n\n0.030, 1e-3, 0, 0, 0, 0, 9.8\n", |_| {})
+        read("# a comment\n0.010, 1e-3, 0, 0, 0, 0, 9.8\n\n0.024, 1e-3, 0, 0, 0, 0, 9.8\n", |_| {})
             .unwrap();
     assert_eq!(epochs.len(), 2);
-    // 1e-3 rad/s over 10 ms is 1e-5 rad: 687194.767 counts; over the next 20 ms twice that, and the
+    // 1e-3 rad/s over 10 ms is 1e-5 rad: 687194.767 counts; over the next 14 ms 1.4 times that, and the
     // sum is right to half a count.
     let counts: Vec<i32> = epochs.iter().map(|epoch| epoch.sample.delta_theta[0]).collect();
-    assert_eq!(counts, [687_195, 1_374_389]);
-    assert_eq!(epochs[1].sample.delta_velocity[2], (9.8 * 0.02 / DELTA_VELOCITY_LSB_MPS) as i32);
-    assert_eq!(epochs[1].sample.device_time.ns, 30_000_000);
+    assert_eq!(counts, [687_195, 962_072]);
+    assert_eq!(epochs[1].sample.delta_velocity[2], (9.8 * 0.014 / DELTA_VELOCITY_LSB_MPS) as i32);
+    assert_eq!(epochs[1].sample.device_time.ns, 24_000_000);
     assert_eq!(epochs[1].sample.sequence, 2);
     assert_eq!(epochs[1].sample.status, Status::GIMBAL_INVALID, "the file has no gimbals");
 }

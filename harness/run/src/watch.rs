@@ -68,8 +68,10 @@ pub struct Watcher {
     pub(super) done: Done,
     drift: DriftScorer,
     drift_samples: u64,
-    /// Moment of which the solution is to be noted with the next truth.
+    /// Moment of which the solution is to be noted with the next answer that is due.
     moment: Option<Moment>,
+    /// Moment that the last answer that was due is, whose errors come with its truth.
+    noted: Option<Moment>,
     /// Solution at the end of the alignment.
     pub aligned: Option<SolutionPoint>,
     /// Solution at the end of the calibration.
@@ -149,6 +151,7 @@ impl Watcher {
             drift: DriftScorer::new(),
             drift_samples: 0,
             moment: None,
+            noted: None,
             aligned: None,
             calibrated: None,
             trace: None,
@@ -223,8 +226,12 @@ impl Watcher {
             self.follow.epoch(now_ns, output);
         }
         let due = self.epoch(output);
-        if due && self.moment.is_some() {
-            self.note(sent, output);
+        if due {
+            // Taken whether or not a truth follows: without one, later answers aren't this moment's.
+            self.noted = self.moment.take();
+            if let Some(moment) = self.noted {
+                self.note(moment, sent, output);
+            }
         }
         due
     }
@@ -286,7 +293,7 @@ impl Watcher {
 
     /// Notes the solution at the end of an alignment or calibration, with the gimbals of its sample.
     #[cold]
-    fn note(&mut self, sent: &Epoch, output: &Output) {
+    fn note(&mut self, moment: Moment, sent: &Epoch, output: &Output) {
         let sample = &sent.sample;
         let gimbal_rad = if sample.status.contains(Status::GIMBAL_INVALID) {
             // Without encoders, as an instrument is that stands alone.
@@ -298,10 +305,9 @@ impl Watcher {
             .filter(|_| self.tells.attitude)
             .map(|gimbal_rad| CaseAngles::of(output.navigation.q_nb, gimbal_rad));
         let point = Some(SolutionPoint { attitude, ..SolutionPoint::default() });
-        match self.moment {
-            Some(Moment::Aligned) => self.aligned = point,
-            Some(Moment::Calibrated) => self.calibrated = point,
-            None => {}
+        match moment {
+            Moment::Aligned => self.aligned = point,
+            Moment::Calibrated => self.calibrated = point,
         }
     }
 
@@ -404,7 +410,7 @@ impl Watcher {
 
     /// Takes the truth of the last epoch.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
-        if let Some(moment) = self.moment.take() {
+        if let Some(moment) = self.noted.take() {
             self.note_errors(moment, output, truth);
         }
         let attitude_error = attitude_error(self.tells, output, truth);

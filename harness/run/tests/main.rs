@@ -5,6 +5,7 @@ mod at_rest;
 mod findings;
 mod follow;
 mod minimise;
+mod moments;
 mod passes;
 mod rotation;
 mod unit;

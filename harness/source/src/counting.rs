@@ -1,5 +1,11 @@
 //! Converts measured quantities of a real instrument into the integer counts of a sample.
+//!
+//! Rows may be missing. A gap is not repaired here: the row after it stands for one period, as every other row does, its
+//! sample's number is advanced by the missing samples, and the core bridges the gap.
 
+use super::rate_check::RateCheck;
+use octant_base::number::counted;
+use octant_recorder::event::{BenchReadings, BenchRecord};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 use octant_scenario::recorded::{RecordedQuantity, SPLIT_MAX};
@@ -69,20 +75,62 @@ impl Triads {
     }
 }
 
+/// More missing rows than one for so many that are there make a file incomplete.
+pub(super) const MISSING_MAX: u64 = 10;
+
 /// Converts rows into counts and carries the remainder of each axis.
 ///
 /// A row may be split into equal parts of its interval, so that counts can hold faster rates.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Counting {
     quantity: RecordedQuantity,
-    /// Interval assumed for the first row, ns.
-    nominal_ns: u64,
+    period: FittedPeriod,
+    rate: RateCheck,
     /// Number of samples per row.
     split: u64,
     previous_ns: Option<u64>,
     pending: Option<Pending>,
     sequence: u64,
+    rows: u64,
+    gaps: Gaps,
     triads: Triads,
+}
+
+/// Mean interval of the rows so far that follow each other without a gap; the nominal one counts as the first.
+#[derive(Clone, Copy, Debug)]
+struct FittedPeriod {
+    sum_ns: u64,
+    intervals: u64,
+}
+
+impl FittedPeriod {
+    fn ns(self) -> u64 {
+        self.sum_ns / self.intervals
+    }
+
+    /// Takes the interval before a row: returns the number of missing rows, 0 for an interval of up to one and a half
+    /// periods.
+    fn missing(&mut self, interval_ns: u64) -> u64 {
+        let period_ns = self.ns();
+        if u128::from(interval_ns) * 2 <= u128::from(period_ns) * 3 {
+            self.sum_ns = self.sum_ns.saturating_add(interval_ns);
+            self.intervals += 1;
+            return 0;
+        }
+        // Rounded to whole rows, and one at least.
+        ((interval_ns - period_ns / 2) / period_ns).max(1)
+    }
+}
+
+/// Gaps between rows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gaps {
+    count: u64,
+    /// Number of rows that are missing in all of them.
+    missing: u64,
+    longest_ns: u64,
+    /// Stamp of the row before the first gap, ns.
+    first_ns: u64,
 }
 
 /// Row whose parts have not all been delivered.
@@ -107,13 +155,59 @@ impl Counting {
         }
         Ok(Self {
             quantity,
-            nominal_ns,
+            period: FittedPeriod { sum_ns: nominal_ns, intervals: 1 },
+            rate: RateCheck::new(nominal_ns),
             split: u64::from(split),
             previous_ns: None,
             pending: None,
             sequence: 0,
+            rows: 0,
+            gaps: Gaps::default(),
             triads: Triads::default(),
         })
+    }
+
+    /// Ends the rows.
+    ///
+    /// # Errors
+    /// If their rate isn't that of the scenario.
+    pub(super) fn end(&mut self) -> Result<(), String> {
+        self.rate.end()
+    }
+
+    /// Describes gaps of which more rows are missing than a file may lack.
+    pub(super) fn cut_short(&self, path: &str) -> Option<String> {
+        let Gaps { missing, .. } = self.gaps;
+        (missing > self.rows / MISSING_MAX).then(|| {
+            format!(
+                "{path} has gaps: {} missing, {} there",
+                counted(missing, "row", "rows"),
+                self.rows
+            )
+        })
+    }
+
+    /// Returns what the report says of a file with gaps; `None` without any.
+    pub(super) fn bench(&self, path: &str) -> Option<Box<BenchRecord>> {
+        let Gaps { count, missing, longest_ns, first_ns } = self.gaps;
+        if count == 0 {
+            return None;
+        }
+        let instrument = format!(
+            "{path}: {}, {} in {}, the longest {} s, the first after the row of {} s",
+            counted(self.rows, "row", "rows"),
+            counted(missing, "row missing", "rows missing"),
+            counted(count, "gap", "gaps"),
+            longest_ns as f64 * 1e-9,
+            first_ns as f64 * 1e-9,
+        );
+        let readings = BenchReadings {
+            behind: 0,
+            irregular: 0,
+            missing: missing.saturating_mul(self.split),
+            samples: self.sequence.saturating_sub(missing.saturating_mul(self.split)),
+        };
+        Some(Box::new(BenchRecord::of_file(instrument, readings)))
     }
 
     /// Number of samples in which at least one count saturated.
@@ -129,12 +223,17 @@ impl Counting {
         let mut left = self.split;
         let interval_ns = match self.previous_ns {
             None => {
-                let part_ns = (self.nominal_ns / self.split).max(1);
+                let nominal_ns = self.period.ns();
+                let part_ns = (nominal_ns / self.split).max(1);
                 left = left.min(row.time_ns / part_ns + 1);
-                self.nominal_ns
+                nominal_ns
             }
             Some(previous) => match row.time_ns.checked_sub(previous) {
-                Some(interval) if interval >= self.split => interval,
+                Some(interval) if interval >= self.split => {
+                    self.rate.interval(interval as f64 * 1e-9)?;
+                    let missing = self.period.missing(interval);
+                    if missing == 0 { interval } else { self.gap(previous, interval, missing) }
+                }
                 Some(interval) if interval > 0 => {
                     return Err(format!(
                         "stamp {} ns is {interval} ns after the one before, expected {} ns at \
@@ -150,9 +249,24 @@ impl Counting {
                 }
             },
         };
+        self.rows += 1;
         self.previous_ns = Some(row.time_ns);
         self.pending = Some(Pending { row, interval_ns, left });
         Ok(())
+    }
+
+    /// Counts a gap before a row; returns the interval for which the row stands, ns.
+    #[cold]
+    fn gap(&mut self, previous_ns: u64, interval_ns: u64, missing: u64) -> u64 {
+        if self.gaps.count == 0 {
+            self.gaps.first_ns = previous_ns;
+        }
+        let gap_ns = interval_ns.saturating_sub(self.period.ns());
+        self.gaps.count += 1;
+        self.gaps.missing = self.gaps.missing.saturating_add(missing);
+        self.gaps.longest_ns = self.gaps.longest_ns.max(gap_ns);
+        self.sequence = self.sequence.saturating_add(missing.saturating_mul(self.split));
+        self.period.ns()
     }
 
     /// Returns the next sample of the current row; `None` when the whole row has been delivered.
@@ -165,7 +279,7 @@ impl Counting {
         };
         let time_ns = row.time_ns.saturating_sub(until_end(left - 1));
         let part_ns = until_end(left) - until_end(left - 1);
-        self.sequence += 1;
+        self.sequence = self.sequence.saturating_add(1);
         let factor = match self.quantity {
             RecordedQuantity::Rates => part_ns as f64 * 1e-9,
             RecordedQuantity::Increments => part_ns as f64 / interval_ns as f64,
@@ -249,6 +363,95 @@ mod tests {
         );
         assert!(counting.begin(row(9, 0.0)).unwrap_err().contains("expected 5 ns at least"));
         counting.begin(row(10, 0.0)).unwrap();
+    }
+
+    /// Counts rows of 1e-3 rad/s with these stamps in periods of 5 ms; returns samples, and the record of the gaps.
+    fn counted_rows(
+        quantity: RecordedQuantity,
+        split: u32,
+        stamps: impl Iterator<Item = u64>,
+    ) -> (Vec<Sample>, Counting) {
+        let mut counting = Counting::new(quantity, 5_000_000, split).unwrap();
+        let mut samples = Vec::new();
+        let value = if quantity == RecordedQuantity::Rates { 1e-3 } else { 5e-6 };
+        for stamp_ns in stamps {
+            counting.begin(row(stamp_ns, value)).unwrap();
+            samples.extend(std::iter::from_fn(|| counting.next()));
+        }
+        counting.end().unwrap();
+        (samples, counting)
+    }
+
+    #[test]
+    fn a_row_after_a_gap_stands_for_one_period() {
+        for quantity in [RecordedQuantity::Rates, RecordedQuantity::Increments] {
+            // Rows 41 to 240 are missing, 1 s, and row 261.
+            let present = |k: &u64| !(41..=240).contains(k) && *k != 261;
+            let stamps = (1..=400).filter(present).map(|k| k * 5_000_000);
+            let (samples, counting) = counted_rows(quantity, 1, stamps);
+            assert_eq!(samples.len(), 199);
+            for sample in &samples {
+                // 5e-6 rad are 343 597.4 counts.
+                assert!((343_597..=343_598).contains(&sample.delta_theta[0]), "{sample:?}");
+                assert_eq!(sample.sequence * 5_000_000, sample.device_time.ns);
+            }
+            let bench = counting.bench("a.csv").unwrap();
+            assert_eq!(
+                bench.instrument,
+                "a.csv: 199 rows, 201 rows missing in 2 gaps, the longest 1 s, the first after the row of 0.2 s"
+            );
+            assert_eq!((bench.readings.samples, bench.readings.missing), (199, 201));
+            assert_eq!(
+                counting.cut_short("a.csv").unwrap(),
+                "a.csv has gaps: 201 rows missing, 199 there"
+            );
+        }
+    }
+
+    #[test]
+    fn parts_of_a_row_after_a_gap_have_its_period() {
+        let (samples, counting) = counted_rows(
+            RecordedQuantity::Rates,
+            5,
+            (1..=60).filter(|k| *k != 30).map(|k| k * 5_000_000),
+        );
+        assert_eq!(samples.len(), 5 * 59);
+        for sample in &samples {
+            assert_eq!(sample.sequence * 1_000_000, sample.device_time.ns);
+            assert!((68_719..=68_720).contains(&sample.delta_theta[0]), "{sample:?}");
+        }
+        assert_eq!(counting.bench("a.csv").unwrap().readings.missing, 5);
+        assert_eq!(counting.cut_short("a.csv"), None);
+    }
+
+    #[test]
+    fn an_interval_of_up_to_one_and_a_half_fitted_periods_is_no_gap() {
+        // The unit's clock is 4 % slow: its period is 5.2 ms, of which 7.7 ms is less than one and a half.
+        let slow = (1..=400).map(|k| k * 5_200_000);
+        let late = slow.clone().chain(std::iter::once(400 * 5_200_000 + 7_700_000));
+        let (samples, counting) = counted_rows(RecordedQuantity::Rates, 1, late);
+        assert!(counting.bench("a.csv").is_none());
+        let last = samples.last().unwrap();
+        assert_eq!((last.sequence, last.delta_theta[0]), (401, 529_140), "7.7e-6 rad");
+        let beyond = slow.chain(std::iter::once(400 * 5_200_000 + 7_900_000));
+        let (samples, counting) = counted_rows(RecordedQuantity::Rates, 1, beyond);
+        let last = samples.last().unwrap();
+        assert!((357_000..358_000).contains(&last.delta_theta[0]), "one fitted period: {last:?}");
+        assert_eq!((last.sequence, counting.gaps.count), (402, 1));
+    }
+
+    #[test]
+    fn rows_of_another_rate_are_refused() {
+        let mut counting = Counting::new(RecordedQuantity::Rates, 5_000_000, 1).unwrap();
+        let refused = (1..100).find_map(|k| {
+            while counting.next().is_some() {}
+            counting.begin(row(k * 10_000_000, 0.0)).err()
+        });
+        let refused = refused.unwrap();
+        assert!(
+            refused.contains("10.0000 ms apart, 100.0 Hz, expected 5.0000 ms by imu.rate"),
+            "{refused}"
+        );
     }
 
     #[test]

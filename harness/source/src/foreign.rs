@@ -4,6 +4,7 @@ use super::counting::{Counting, Measured};
 use super::messages::{TopicMessage, TopicMessages};
 use super::temperature::TemperatureCheck;
 use super::{Epoch, SourceError};
+use octant_recorder::event::BenchRecord;
 use octant_scenario::recorded::{MappedField, McapMapping, TemperatureUnit};
 use std::io::Read;
 
@@ -52,6 +53,16 @@ impl<R: Read> Foreign<R> {
         self.messages.truncated()
     }
 
+    /// Describes gaps of which more messages are missing than a file may lack.
+    pub(super) fn gaps(&self) -> Option<String> {
+        self.counting.cut_short(&self.path)
+    }
+
+    /// Returns what the report says of a file with gaps.
+    pub(super) fn bench(&self) -> Option<Box<BenchRecord>> {
+        self.counting.bench(&self.path)
+    }
+
     pub(super) fn saturated(&self) -> u64 {
         self.counting.saturated()
     }
@@ -76,7 +87,10 @@ impl<R: Read> Foreign<R> {
             if let Some(sample) = self.counting.next() {
                 return Ok(Some(Epoch { sample, aiding: None }));
             }
-            let Some(message) = self.messages.next()? else { return Ok(None) };
+            let Some(message) = self.messages.next()? else {
+                self.counting.end()?;
+                return Ok(None);
+            };
             self.take(&message).map_err(|reason| self.messages.in_message(&reason))?;
         }
     }

@@ -3,6 +3,7 @@
 //! Damaged frames are skipped, and a gap stays a gap, as on a port. The file has no time of its own: stamps
 //! are those of the readings, and where the protocol has none, readings follow each other.
 
+use crate::counting::MISSING_MAX;
 use crate::described::decoder;
 use crate::rate_check::RateCheck;
 use crate::temperature::TemperatureCheck;
@@ -25,9 +26,6 @@ use std::path::Path;
 
 /// Number of bytes that are read at a time.
 const READ_BYTES: usize = 1 << 16;
-
-/// More missing samples than one for so many that are there make a file incomplete.
-const MISSING_MAX: u64 = 10;
 
 /// A file of what an instrument sent.
 pub struct LogSource {
@@ -187,23 +185,14 @@ impl Source for LogSource {
         _broken: Option<&str>,
     ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
         let counters = self.sampler.counters();
-        let bench = BenchRecord {
-            clock: None,
-            instrument: format!("{}: {}", self.path, self.said()),
-            instruments_clock: None,
-            samples_times: None,
-            time: None,
-            readings: BenchReadings {
-                behind: counters.behind,
-                irregular: counters.irregular,
-                missing: counters.missing,
-                samples: counters.samples,
-            },
-            table: None,
-            tables_angles: None,
-            turntable: None,
+        let readings = BenchReadings {
+            behind: counters.behind,
+            irregular: counters.irregular,
+            missing: counters.missing,
+            samples: counters.samples,
         };
-        (Some(Box::new(bench)), None)
+        let instrument = format!("{}: {}", self.path, self.said());
+        (Some(Box::new(BenchRecord::of_file(instrument, readings))), None)
     }
 }
 

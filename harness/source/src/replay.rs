@@ -7,6 +7,7 @@ use super::foreign::Foreign;
 use super::{Epoch, Source, SourceError};
 use octant_plant::Truth;
 use octant_recorder::Samples;
+use octant_recorder::event::BenchRecord;
 use octant_recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
 use octant_sample::GimbalCommand;
 use octant_scenario::Scenario;
@@ -142,7 +143,24 @@ impl Source for Replay {
     }
 
     fn cut_short(&self) -> Option<String> {
-        self.truncated().then(|| format!("{} ends in the middle of a recording", self.path))
+        if self.truncated() {
+            return Some(format!("{} ends in the middle of a recording", self.path));
+        }
+        match &self.kind {
+            Kind::Octant { .. } => None,
+            Kind::Foreign(foreign) => foreign.gaps(),
+        }
+    }
+
+    fn conclude(
+        &mut self,
+        _broken: Option<&str>,
+    ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+        let bench = match &self.kind {
+            Kind::Octant { .. } => None,
+            Kind::Foreign(foreign) => foreign.bench(),
+        };
+        (bench, None)
     }
 }
 

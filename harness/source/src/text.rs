@@ -6,6 +6,7 @@ use super::temperature::TemperatureCheck;
 use super::{Epoch, Source, SourceError, nominal_period_ns};
 use octant_base::number::counted;
 use octant_plant::Truth;
+use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
 use octant_scenario::recorded::{
     AxisColumn, RecordedColumn, TemperatureUnit, TextFiles, TextMapping, TimeUnit,
@@ -14,8 +15,8 @@ use std::path::Path;
 
 /// Streams delimited text.
 ///
-/// The increment of an interval is its rate times the time since the previous stamp (the nominal
-/// period for the first sample); the remainder after rounding to counts is carried. A value that
+/// The increment of an interval is its rate times the time since the previous stamp, and times the period for the first
+/// row and for a row after a gap (more than one and a half periods); the remainder after rounding to counts is carried. A value that
 /// does not fit a count saturates, is flagged in the sample, and is counted.
 pub struct TextSource {
     first: File,
@@ -104,6 +105,7 @@ impl TextSource {
             }
         }
         if !more {
+            self.counting.end().map_err(|reason| self.first.rows.error(reason))?;
             return Ok(false);
         }
         self.rows += 1;
@@ -158,6 +160,17 @@ impl Source for TextSource {
 
     fn samples_total(&self) -> Option<u64> {
         None
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        self.counting.cut_short(self.first.rows.path())
+    }
+
+    fn conclude(
+        &mut self,
+        _broken: Option<&str>,
+    ) -> (Option<Box<BenchRecord>>, Option<SourceError>) {
+        (self.counting.bench(self.first.rows.path()), None)
     }
 }
 

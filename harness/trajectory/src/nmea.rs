@@ -3,6 +3,9 @@
 //! Sentences with the same time of day belong to one point: GGA, GNS, GLL and RMC give the position, RMC and VTG the
 //! velocity, PASHR roll, pitch and heading. Sentences without a time belong to the point before them. The date comes with
 //! RMC and ZDA. A point without a valid position is left out.
+//!
+//! Several talkers may give the same quantity at the same time, as the parts of one receiver do. Where they differ by more
+//! than their last digits, they are different instruments, and the file is refused with their names.
 
 use super::point::{SECOND_NS, TimeScale, TrajectoryPoint};
 use super::points::{LINE_BYTES_MAX, Points};
@@ -12,6 +15,9 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
 
 const DAY_NS: i64 = 86_400 * SECOND_NS;
+const KNOT_MPS: f64 = NAUTICAL_MILE_M / 3600.0;
+/// Radius for distances in messages, m.
+const EARTH_RADIUS_M: f64 = 6.371e6;
 
 /// Lines within which a file has to show what it is.
 const LINES_TO_LOOK_AT: u64 = 10_000;
@@ -28,10 +34,82 @@ pub(crate) struct NmeaReader {
 #[derive(Clone, Copy, Debug, Default)]
 struct Begun {
     of_day_ns: i64,
-    position: Option<[f64; 2]>,
-    height_m: Option<f64>,
-    velocity_mps: Option<[f64; 2]>,
+    position: Option<Said<2>>,
+    height_m: Option<Said<1>>,
+    velocity_mps: Option<Said<2>>,
     attitude_rad: Option<[f64; 3]>,
+}
+
+/// A quantity as a talker gave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Said<const N: usize> {
+    value: [f64; N],
+    /// Change of the values by one in their last digits.
+    resolution: [f64; N],
+    talker: Talker,
+}
+
+impl<const N: usize> Said<N> {
+    /// Index of a value in which another talker differs by more than the last digits of both.
+    fn differs(&self, other: &Self) -> Option<usize> {
+        if self.talker == other.talker {
+            return None;
+        }
+        (0..N).find(|&index| {
+            let most = self.resolution[index] + other.resolution[index];
+            (self.value[index] - other.value[index]).abs() > most
+        })
+    }
+
+    /// Keeps the first that was said of a point.
+    ///
+    /// # Errors
+    /// If two talkers differ; `amount` gives the difference in words.
+    fn keep(
+        kept: &mut Option<Self>,
+        said: Option<Self>,
+        quantity: &str,
+        amount: impl Fn(&Self, &Self) -> String,
+    ) -> Result<(), String> {
+        let Some(said) = said else { return Ok(()) };
+        let Some(first) = kept else {
+            *kept = Some(said);
+            return Ok(());
+        };
+        match first.differs(&said) {
+            None => Ok(()),
+            Some(_) => Err(format!(
+                "talkers {} and {} disagree: their {quantity} at the same time are {} apart, expected one instrument: \
+                 write the sentences of each talker into a file of its own, and name the one to use",
+                first.talker,
+                said.talker,
+                amount(first, &said)
+            )),
+        }
+    }
+}
+
+/// Talker of a sentence: the letters before its kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Talker([u8; 4]);
+
+impl Talker {
+    fn of(letters: &str) -> Self {
+        let mut talker = Self::default();
+        for (to, from) in talker.0.iter_mut().zip(letters.bytes()) {
+            *to = if from.is_ascii_graphic() { from } else { b'?' };
+        }
+        talker
+    }
+}
+
+impl std::fmt::Display for Talker {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0
+            .iter()
+            .filter(|byte| **byte != 0)
+            .try_for_each(|byte| write!(f, "{}", char::from(*byte)))
+    }
 }
 
 impl NmeaReader {
@@ -44,7 +122,10 @@ impl NmeaReader {
     }
 
     /// Takes a sentence; returns the point that it ends.
-    fn take(&mut self, sentence: &Sentence) -> Option<TrajectoryPoint> {
+    ///
+    /// # Errors
+    /// If its talker contradicts another one.
+    fn take(&mut self, sentence: &Sentence) -> Result<Option<TrajectoryPoint>, String> {
         let mut ended = None;
         if let Some(of_day_ns) = sentence.of_day_ns {
             match self.begun {
@@ -63,22 +144,36 @@ impl NmeaReader {
             self.heard_ns = self.heard_ns.max(Some(self.day_ns + of_day_ns));
         }
         if let Some(begun) = &mut self.begun {
-            begun.position = begun.position.or(sentence.position);
-            begun.height_m = begun.height_m.or(sentence.height_m);
-            begun.velocity_mps = begun.velocity_mps.or(sentence.velocity_mps);
+            Said::keep(&mut begun.position, sentence.position, "positions", |one, other| {
+                let [north, east] = [0, 1].map(|axis| one.value[axis] - other.value[axis]);
+                let east = east * libm::cos(one.value[0]);
+                format!("{:.1} m", libm::hypot(north, east) * EARTH_RADIUS_M)
+            })?;
+            Said::keep(&mut begun.height_m, sentence.height_m, "heights", |one, other| {
+                format!("{:.2} m", (one.value[0] - other.value[0]).abs())
+            })?;
+            Said::keep(
+                &mut begun.velocity_mps,
+                sentence.velocity_mps,
+                "velocities",
+                |one, other| {
+                    let [north, east] = [0, 1].map(|axis| one.value[axis] - other.value[axis]);
+                    format!("{:.2} m/s", libm::hypot(north, east))
+                },
+            )?;
             begun.attitude_rad = begun.attitude_rad.or(sentence.attitude_rad);
         }
-        ended
+        Ok(ended)
     }
 
     fn point(&self, begun: &Begun) -> Option<TrajectoryPoint> {
-        let [latitude_rad, longitude_rad] = begun.position?;
+        let [latitude_rad, longitude_rad] = begun.position?.value;
         Some(TrajectoryPoint {
             time_ns: self.day_ns + begun.of_day_ns,
             latitude_rad,
             longitude_rad,
-            height_m: begun.height_m.unwrap_or(0.0),
-            velocity_mps: begun.velocity_mps,
+            height_m: begun.height_m.map_or(0.0, |height| height.value[0]),
+            velocity_mps: begun.velocity_mps.map(|velocity| velocity.value),
             attitude_rad: begun.attitude_rad,
         })
     }
@@ -92,7 +187,12 @@ impl Points for NmeaReader {
                 return Ok(begun.and_then(|begun| self.point(&begun)));
             }
             let text = std::mem::take(&mut self.lines.text);
-            let ended = Sentence::of(&text).and_then(|sentence| self.take(&sentence));
+            let ended = match Sentence::of(&text) {
+                Some(sentence) => self
+                    .take(&sentence)
+                    .map_err(|reason| format!("line {}: {reason}", self.lines.line))?,
+                None => None,
+            };
             self.lines.text = text;
             if ended.is_some() {
                 return Ok(ended);
@@ -140,9 +240,9 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
 struct Sentence {
     of_day_ns: Option<i64>,
     day_ns: Option<i64>,
-    position: Option<[f64; 2]>,
-    height_m: Option<f64>,
-    velocity_mps: Option<[f64; 2]>,
+    position: Option<Said<2>>,
+    height_m: Option<Said<1>>,
+    velocity_mps: Option<Said<2>>,
     attitude_rad: Option<[f64; 3]>,
 }
 
@@ -158,19 +258,27 @@ impl Sentence {
         }
         let (kind, fields) = body.split_once(',')?;
         let fields: Vec<&str> = fields.split(',').collect();
-        let kind = if kind == "PASHR" { kind } else { kind.get(kind.len().checked_sub(3)?..)? };
+        let (talker, kind) = match kind {
+            "PASHR" => ("P", kind),
+            _ => kind.split_at_checked(kind.len().checked_sub(3)?)?,
+        };
+        let talker = Talker::of(talker);
         let field = |index: usize| fields.get(index).copied().unwrap_or_default();
         let number = |index: usize| field(index).parse::<f64>().ok().filter(|x| x.is_finite());
         let position = |at: usize| {
-            Some([angle(field(at), field(at + 1))?, angle(field(at + 2), field(at + 3))?])
+            let value = [angle(field(at), field(at + 1))?, angle(field(at + 2), field(at + 3))?];
+            let resolution = [at, at + 2].map(|at| (last_digit(field(at)) / 60.0).to_radians());
+            Some(Said { value, resolution, talker })
         };
         let of_day_ns = |index: usize| of_day(field(index));
-        let velocity = |speed_kn: Option<f64>, course_deg: Option<f64>| {
-            let speed_mps = speed_kn? * (NAUTICAL_MILE_M / 3600.0);
+        let velocity = |speed: usize, course: usize| {
+            let speed_mps = number(speed)? * KNOT_MPS;
             // At rest there is no course.
-            let course_deg = course_deg.or((speed_mps == 0.0).then_some(0.0))?;
+            let course_deg = number(course).or((speed_mps == 0.0).then_some(0.0))?;
             let (sine, cosine) = libm::sincos(course_deg.to_radians());
-            Some([speed_mps * cosine, speed_mps * sine])
+            let turned_mps = speed_mps.abs() * last_digit(field(course)).to_radians();
+            let resolution = [last_digit(field(speed)) * KNOT_MPS + turned_mps; 2];
+            Some(Said { value: [speed_mps * cosine, speed_mps * sine], resolution, talker })
         };
         let none = Self::default();
         let sentence = match kind {
@@ -179,9 +287,12 @@ impl Sentence {
                     "GGA" => number(5).is_some_and(|quality| quality > 0.0),
                     _ => field(5).bytes().any(|mode| mode != b'N'),
                 };
-                let separation = number(if kind == "GGA" { 10 } else { 9 });
-                let height_m =
-                    number(8).zip(separation).map(|(above_geoid, geoid)| above_geoid + geoid);
+                let separation = if kind == "GGA" { 10 } else { 9 };
+                let height_m = number(8).zip(number(separation)).map(|(above_geoid, geoid)| Said {
+                    value: [above_geoid + geoid],
+                    resolution: [last_digit(field(8)) + last_digit(field(separation))],
+                    talker,
+                });
                 let position = position(1).filter(|_| is_fix);
                 Self { of_day_ns: of_day_ns(0), position, height_m, ..none }
             }
@@ -195,7 +306,7 @@ impl Sentence {
                     of_day_ns: of_day_ns(0),
                     day_ns: short_date(field(8)),
                     position: position(2).filter(|_| valid),
-                    velocity_mps: velocity(number(6), number(7)).filter(|_| valid),
+                    velocity_mps: velocity(6, 7).filter(|_| valid),
                     ..none
                 }
             }
@@ -206,7 +317,7 @@ impl Sentence {
             }
             "VTG" => {
                 let valid = !matches!(field(8), "N");
-                Self { velocity_mps: velocity(number(4), number(0)).filter(|_| valid), ..none }
+                Self { velocity_mps: velocity(4, 0).filter(|_| valid), ..none }
             }
             "PASHR" => {
                 let [heading, roll, pitch] = [number(1)?, number(3)?, number(4)?];
@@ -219,6 +330,12 @@ impl Sentence {
         let needs_time = kind != "VTG";
         (!needs_time || sentence.of_day_ns.is_some()).then_some(sentence)
     }
+}
+
+/// Change of a decimal number by one in its last digit.
+fn last_digit(text: &str) -> f64 {
+    let digits = text.split_once('.').map_or(0, |(_, digits)| digits.len());
+    libm::exp10(-(digits as f64))
 }
 
 /// An angle of degrees and minutes with a letter, rad.
@@ -294,15 +411,15 @@ mod tests {
         let gga = "$GPGGA,092750.000,5321.6802,N,00630.3372,W,1,8,1.03,61.7,M,55.2,M,,*76";
         let found = Sentence::of(gga).unwrap();
         assert_eq!(found.of_day_ns, Some((9 * 3600 + 27 * 60 + 50) * SECOND_NS));
-        let [latitude, longitude] = found.position.unwrap().map(f64::to_degrees);
+        let [latitude, longitude] = found.position.unwrap().value.map(f64::to_degrees);
         assert!((latitude - (53.0 + 21.6802 / 60.0)).abs() < 1e-12);
         assert!((longitude + (6.0 + 30.3372 / 60.0)).abs() < 1e-12);
-        assert!((found.height_m.unwrap() - 116.9).abs() < 1e-12);
+        assert!((found.height_m.unwrap().value[0] - 116.9).abs() < 1e-12);
         let rmc = "$GPRMC,092750.000,A,5321.6802,N,00630.3372,W,0.02,31.66,280511,,,A*43";
         let found = Sentence::of(rmc).unwrap();
         // 28 May 2011.
         assert_eq!(found.day_ns, Some(1_306_540_800 * SECOND_NS));
-        let [north, east] = found.velocity_mps.unwrap();
+        let [north, east] = found.velocity_mps.unwrap().value;
         let speed = 0.02 * 1852.0 / 3600.0;
         assert!((libm::hypot(north, east) - speed).abs() < 1e-15 && east > 0.0);
         assert!(Sentence::of(&gga.replace("*76", "*77")).is_none(), "a wrong checksum");

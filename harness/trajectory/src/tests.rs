@@ -144,6 +144,42 @@ fn sentences_of_one_time_are_one_point_and_a_night_has_a_midnight() {
 }
 
 #[test]
+fn talkers_that_disagree_are_refused_with_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    // 0.0065 minutes of latitude are 12.0 m; one in the last digit of the coarser position is 1.9 m.
+    let text = |latitude: &str, above_m: &str, speed_kn: &str| {
+        sentence("GPGGA,120000,6000.0000,N,01030.0000,W,1,8,1,10.0,M,40.0,M,,")
+            + &sentence("GPRMC,120000,A,6000.0000,N,01030.0000,W,7.20,090.0,261126,,,A")
+            + &sentence(&format!(
+                "INGGA,120000,{latitude},N,01030.0000,W,1,8,1,{above_m},M,40.0,M,,"
+            ))
+            + &sentence(&format!("INVTG,090.0,T,,M,{speed_kn},N,,K,A"))
+    };
+    let read = |text: String| all(&file(folder.path(), "two.nmea", text), &TrajectoryFormat::Nmea);
+    for (latitude, above_m, speed_kn, words) in [
+        (
+            "6000.0065",
+            "10.0",
+            "7.20",
+            "line 3: talkers GP and IN disagree: their positions at the same time are 12.0 m apart",
+        ),
+        ("6000.0000", "11.0", "7.20", "their heights at the same time are 1.00 m apart"),
+        (
+            "6000.0000",
+            "10.0",
+            "8.20",
+            "line 4: talkers GP and IN disagree: their velocities at the same time are 0.51 m/s apart",
+        ),
+    ] {
+        let found = read(text(latitude, above_m, speed_kn)).unwrap_err();
+        assert!(found.contains(words), "{found}");
+    }
+    // The last digits of the same instrument's sentences may differ.
+    assert_eq!(read(text("6000.0001", "10.1", "7.21")).unwrap().len(), 1);
+    assert_eq!(read(text("6000.000", "10", "7.2")).unwrap().len(), 1);
+}
+
+#[test]
 fn a_file_without_sentences_or_without_a_date_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let gga = sentence("GPGGA,120000,6000.0,N,01030.0,W,1,8,1,10.0,M,40.0,M,,");

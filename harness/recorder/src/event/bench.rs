@@ -32,6 +32,24 @@ pub struct BenchRecord {
     pub turntable: Option<String>,
 }
 
+impl BenchRecord {
+    /// Creates the record of a file of readings: it has no clock of its own and no table.
+    #[must_use]
+    pub fn of_file(instrument: String, readings: BenchReadings) -> Self {
+        Self {
+            clock: None,
+            instrument,
+            instruments_clock: None,
+            readings,
+            samples_times: None,
+            table: None,
+            tables_angles: None,
+            time: None,
+            turntable: None,
+        }
+    }
+}
+
 /// Origin and uncertainty of the times of samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchTime {
