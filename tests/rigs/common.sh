@@ -21,7 +21,7 @@ install_quietly() {
 # one_at_a_time FUNCTION ARGUMENT...: rigs run beside each other and want the same packages.
 one_at_a_time() {
   mkdir -p .rigs
-  # A daemon that a package starts must not hold the lock.
+  # A daemon that is started all the same must not hold the lock.
   (flock 8; "$@" 8>&-) 8>.rigs/lock || exit $?
 }
 
@@ -80,7 +80,8 @@ install_apt_packages() {
   echo "installing Debian's $*"
   [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || skip "there is no $program, and no root with apt-get to install it"
   install_quietly apt-get update || skip "apt-get update failed: no $program"
-  DEBIAN_FRONTEND=noninteractive install_quietly apt-get install -y --no-install-recommends "$@" \
+  # In this run level no daemon is started: the rigs start those that they use.
+  RUNLEVEL=1 DEBIAN_FRONTEND=noninteractive install_quietly apt-get install -y --no-install-recommends "$@" \
     || skip "apt-get could not install $*"
 }
 
@@ -88,8 +89,9 @@ install_apt_packages() {
 named_tests() {
   local log
   log=$(mktemp)
-  cargo test --quiet "${test_profile[@]}" --test main -- "$@" 2>&1 | tee "$log"
-  local status=${PIPESTATUS[0]}
+  # Without a pipe, which a process that a test left behind would hold open.
+  local status=0
+  python3 tests/rigs/step.py --live "$log" cargo test --quiet "${test_profile[@]}" --test main -- "$@" || status=$?
   grep -qE '^test result: ok\. [1-9]' "$log" || { echo "no test is named so: $*" >&2; status=1; }
   rm -f "$log"
   return "$status"
