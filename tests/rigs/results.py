@@ -56,7 +56,7 @@ def steps(rigs, out):
             status, seconds, begun, end, processor = ended.read_text().split()
             status = int(status)
             step["result"] = {0: "passed", 77: "skipped"}.get(status, "failed")
-            step |= {"exit_status": status, "seconds": int(seconds), "processor_seconds": int(processor), "begun": begun, "ended": end}
+            step |= {"exit_status": status, "seconds": int(seconds), "processor_seconds": float(processor), "begun": begun, "ended": end}
         elif log.exists():
             step["result"] = "failed"
             step["reason"] = "it did not end"

@@ -120,6 +120,7 @@ mod system;
 mod system_foreign;
 mod system_tuned;
 mod terminal;
+mod text_gaps;
 mod text_source;
 mod trace_verdicts;
 #[cfg(unix)]

@@ -4,7 +4,7 @@
 //! sample's number is advanced by the missing samples, and the core bridges the gap.
 
 use super::rate_check::RateCheck;
-use octant_base::number::counted;
+use octant_base::number::{counted, plain};
 use octant_recorder::event::{BenchReadings, BenchRecord};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
@@ -193,13 +193,13 @@ impl Counting {
         if count == 0 {
             return None;
         }
+        let seconds = |ns: u64| plain(ns as f64 * 1e-9, 9);
         let instrument = format!(
-            "{path}: {}, {} in {}, the longest {} s, the first after the row of {} s",
+            "{path}: {}, {}, the longest {} s, the first after the row of {} s",
             counted(self.rows, "row", "rows"),
-            counted(missing, "row missing", "rows missing"),
             counted(count, "gap", "gaps"),
-            longest_ns as f64 * 1e-9,
-            first_ns as f64 * 1e-9,
+            seconds(longest_ns),
+            seconds(first_ns),
         );
         let readings = BenchReadings {
             behind: 0,
@@ -398,7 +398,7 @@ mod tests {
             let bench = counting.bench("a.csv").unwrap();
             assert_eq!(
                 bench.instrument,
-                "a.csv: 199 rows, 201 rows missing in 2 gaps, the longest 1 s, the first after the row of 0.2 s"
+                "a.csv: 199 rows, 2 gaps, the longest 1 s, the first after the row of 0.2 s"
             );
             assert_eq!((bench.readings.samples, bench.readings.missing), (199, 201));
             assert_eq!(
