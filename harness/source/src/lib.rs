@@ -156,7 +156,7 @@ pub enum SourceError {
     /// This program was built without instruments on a CAN bus.
     #[error(
         "use source.live.protocol = \"dbc\": this program was built without instruments on a CAN bus, \
-         expected one built with cargo build --release --features octant/can"
+         expected one built with its default features, or with --features octant/can"
     )]
     WithoutCan,
 }

@@ -118,7 +118,7 @@ pub(crate) fn open_here(
             name,
             "be run",
             "it has model exchange and no co-simulation, and this program was built without the solver for that, \
-             expected one built with cargo build --release --features octant/model-exchange",
+             expected one built with its default features, or with --features octant/model-exchange",
         ));
     }
     if interface.needs_execution_tool && !options.allow_tool {

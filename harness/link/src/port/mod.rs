@@ -249,8 +249,8 @@ fn open_can(can: &crate::uri::Can, _: EndRole) -> Result<Port, PortError> {
 /// Reason why no CAN interface can be opened.
 #[cfg(not(all(target_os = "linux", feature = "can")))]
 const WITHOUT_CAN: &str = if cfg!(target_os = "linux") {
-    "this program was built without CAN interfaces, expected one built with cargo build --release \
-     --features octant/can, or slcan: with an adapter on a serial line"
+    "this program was built without CAN interfaces, expected one built with its default features, \
+     or with --features octant/can, or slcan: with an adapter on a serial line"
 } else {
     "CAN interfaces are part of Linux alone; expected slcan: with an adapter on a serial line"
 };
