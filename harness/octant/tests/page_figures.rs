@@ -1,0 +1,147 @@
+//! Figures and lists on pages that follow from the tree: each is counted here, and stands on its page as it is
+//! counted.
+
+use crate::architecture::{
+    CRATE_LINES_MAX, FILE_LINES_MAX, Member, files, manifest, members, product, root,
+};
+use regex::Regex;
+use std::collections::BTreeSet;
+
+/// Lines above which CONTRIBUTING.md names a crate.
+const LARGE_LINES: usize = 8000;
+
+fn read(file: &str) -> String {
+    std::fs::read_to_string(root().join(file)).unwrap()
+}
+
+/// The text of a page with its line breaks as blanks, so that a sentence is found however it is broken.
+fn flowing(page: &str) -> String {
+    read(page).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn says(page: &str, said: &str) {
+    assert!(flowing(page).contains(said), "{page}: {said:?} is expected");
+}
+
+fn package(member: &Member) -> String {
+    let manifest = manifest(&root().join(&member.folder));
+    manifest["package"]["name"].as_str().unwrap().to_owned()
+}
+
+/// Names in code type, in their order, with commas between.
+fn listed(names: &BTreeSet<String>) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn in_thousands(number: usize) -> String {
+    match number {
+        0..10_000 => number.to_string(),
+        _ => format!("{} {:03}", number / 1000, number % 1000),
+    }
+}
+
+#[test]
+fn contributing_names_the_large_crates() {
+    let lines = |member: &Member| -> usize {
+        let mut all = Vec::new();
+        files(&root().join(&member.folder).join("src"), &mut all);
+        all.iter().map(|file| product(file).lines().count()).sum()
+    };
+    let large: BTreeSet<String> = members()
+        .iter()
+        .filter(|(_, member)| lines(member) > LARGE_LINES)
+        .map(|(_, member)| package(member))
+        .collect();
+    assert!(large.len() > 3, "{large:?}");
+    let (of_crate, of_file) = (in_thousands(CRATE_LINES_MAX), in_thousands(FILE_LINES_MAX));
+    let limits = format!("A crate has at most {of_crate} lines of source, a file {of_file}.");
+    let named = format!("Crates above {LARGE_LINES} lines: {}.", listed(&large));
+    says("CONTRIBUTING.md", &format!("{limits} {named}"));
+}
+
+#[test]
+fn contributing_names_the_crates_whose_tests_are_a_module_of_the_library() {
+    let inside: BTreeSet<String> = members()
+        .iter()
+        .filter(|(_, member)| {
+            let library = root().join(&member.folder).join("src/lib.rs");
+            std::fs::read_to_string(library).is_ok_and(|text| text.contains("../tests/main.rs"))
+        })
+        .map(|(_, member)| package(member))
+        .collect();
+    assert!(!inside.is_empty());
+    says("CONTRIBUTING.md", &format!("all the same ({})", listed(&inside)));
+}
+
+/// Modules and functions of a crate's tests that a feature switches on.
+#[test]
+fn contributing_has_the_features_that_switch_tests_on() {
+    let switch = Regex::new(r#"(?m)^#\[cfg\(feature = "([\w-]+)"\)\]"#).unwrap();
+    let mut commands = BTreeSet::new();
+    for (_, member) in members() {
+        let package = package(&member);
+        // Its features are those of the other crates; `full` is all of them.
+        if package == "octant" {
+            continue;
+        }
+        let main = root().join(&member.folder).join("tests/main.rs");
+        let Ok(text) = std::fs::read_to_string(main) else { continue };
+        let features: BTreeSet<&str> =
+            switch.captures_iter(&text).map(|found| found.get(1).unwrap().as_str()).collect();
+        if !features.is_empty() {
+            let features = features.into_iter().collect::<Vec<_>>().join(",");
+            commands.insert(format!("cargo test -p {package} --features {features}"));
+        }
+    }
+    assert!(commands.len() > 2, "{commands:?}");
+    says("CONTRIBUTING.md", &format!("Some tests are behind a feature: {}.", listed(&commands)));
+}
+
+/// Each folder in code type in the rule's sentence, and no other, has product code that allows `unsafe`.
+#[test]
+fn contributing_says_where_unsafe_is() {
+    let allowed = Regex::new(r"(?:allow|expect)\(\s*unsafe_code").unwrap();
+    let found: BTreeSet<String> = members()
+        .into_iter()
+        .filter(|(_, member)| {
+            let mut all = Vec::new();
+            files(&root().join(&member.folder).join("src"), &mut all);
+            all.iter().any(|file| allowed.is_match(&product(file)))
+        })
+        .map(|(_, member)| member.folder)
+        .collect();
+    let page = flowing("CONTRIBUTING.md");
+    let (_, rule) = page.split_once("**No `unsafe` but at the edge to foreign code**").unwrap();
+    let (rule, _) = rule.split_once("Each block says").unwrap();
+    let folder = Regex::new(r"`((?:models|fmu|harness)/\w+)`").unwrap();
+    let said: BTreeSet<String> =
+        folder.captures_iter(rule).map(|found| found[1].to_owned()).collect();
+    assert_eq!(said, found, "CONTRIBUTING.md: folders of crates with `unsafe`");
+}
+
+/// A dependency's comment stands before it. A sentence of its own line before another one is left over from a
+/// dependency that is gone.
+#[test]
+fn no_comment_of_a_dependency_is_left_over() {
+    let text = read("Cargo.toml");
+    let (_, table) = text.split_once("[workspace.dependencies]\n").unwrap();
+    let (table, _) = table.split_once("\n[").unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    for pair in lines.windows(2) {
+        let ends = pair[0].starts_with('#') && pair[0].ends_with('.');
+        let next = pair[1].strip_prefix("# ").and_then(|text| text.chars().next());
+        let is_left = ends && (pair[1].is_empty() || next.is_some_and(char::is_uppercase));
+        assert!(!is_left, "Cargo.toml: {:?} is about no dependency", pair[0]);
+    }
+    assert!(lines.iter().filter(|line| line.starts_with('#')).count() > 10);
+}
+
+#[test]
+fn the_oldest_rust_is_that_of_the_manifest() {
+    let workspace = manifest(&root());
+    let version = workspace["workspace"]["package"]["rust-version"].as_str().unwrap();
+    for page in ["README.md", "docs/install.md"] {
+        says(page, &format!("Rust {version} or later"));
+    }
+}
