@@ -137,6 +137,63 @@ fn no_comment_of_a_dependency_is_left_over() {
     assert!(lines.iter().filter(|line| line.starts_with('#')).count() > 10);
 }
 
+/// A default with a figure in a help text is made from the constant that is used (`help = format!(…)`), or clap adds
+/// it (`default_value_t`).
+#[test]
+fn no_help_text_has_a_default_of_its_own() {
+    let figure = Regex::new(r"[Bb]y default (?:\w+ )?[0-9]").unwrap();
+    let (mut all, mut lines) = (Vec::new(), 0);
+    files(&root().join("harness/octant/src"), &mut all);
+    for file in all {
+        for (number, line) in product(&file).lines().enumerate() {
+            let is_help = line.trim_start().starts_with("///");
+            lines += usize::from(is_help);
+            assert!(
+                !is_help || !figure.is_match(line),
+                "{}:{}: {line}",
+                file.display(),
+                number + 1
+            );
+        }
+    }
+    assert!(lines > 1000, "{lines}");
+}
+
+/// A figure that a machine gave is no figure of the program: its section says when it was measured. Output of
+/// commands is not looked at.
+#[test]
+fn measured_times_and_sizes_have_a_date() {
+    let measured = Regex::new(
+        r"\d MB\b|\btook [\d.]+ (?:s|ms|min|minutes)\b|\btakes? [\d.]+ (?:s|ms|minutes) (?:by|and|of processor)|\d µs (?:more|a |per )",
+    )
+    .unwrap();
+    let year = Regex::new(r"\b20\d\d\b").unwrap();
+    let mut undated = Vec::new();
+    let mut seen = 0;
+    for entry in std::fs::read_dir(root().join("docs")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if !name.ends_with(".md") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        // Every second part is a block of code.
+        let prose: String = text.split("```").step_by(2).collect();
+        for section in prose.split("\n#") {
+            if measured.is_match(section) {
+                seen += 1;
+                if !year.is_match(section) {
+                    undated.push(format!("{name}: {}", section.lines().next().unwrap()));
+                }
+            }
+        }
+    }
+    // Its table of build times says in what it was measured.
+    undated.retain(|section| !section.starts_with("architecture.md"));
+    assert!(undated.is_empty(), "measured figures without a date: {undated:#?}");
+    assert!(seen >= 8, "{seen}");
+}
+
 #[test]
 fn the_oldest_rust_is_that_of_the_manifest() {
     let workspace = manifest(&root());
