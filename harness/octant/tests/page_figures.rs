@@ -98,6 +98,19 @@ fn contributing_has_the_features_that_switch_tests_on() {
     says("CONTRIBUTING.md", &format!("Some tests are behind a feature: {}.", listed(&commands)));
 }
 
+/// Kinds of faults in the scenarios of the self-test.
+#[test]
+fn known_limitations_names_the_faults_of_the_self_test() {
+    let kind = Regex::new(r#"(?m)^kind = "([\w-]+)""#).unwrap();
+    let mut kinds = BTreeSet::new();
+    for entry in std::fs::read_dir(root().join("fixtures/selftest")).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        kinds.extend(kind.captures_iter(&text).map(|found| found[1].to_owned()));
+    }
+    let said = format!("Of the kinds of faults its runs have these: {}.", listed(&kinds));
+    says("docs/qualification/known-limitations.md", &said);
+}
+
 /// Each folder in code type in the rule's sentence, and no other, has product code that allows `unsafe`.
 #[test]
 fn contributing_says_where_unsafe_is() {
