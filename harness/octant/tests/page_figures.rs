@@ -172,6 +172,47 @@ fn no_help_text_has_a_default_of_its_own() {
     assert!(lines > 1000, "{lines}");
 }
 
+/// Tables of keys on pages: a default is the one of the schema, which is the one that is used.
+#[test]
+fn defaults_in_tables_of_keys_are_those_of_the_schema() {
+    let schema = octant_scenario::schema();
+    let row = Regex::new(r"^\| `(\w+)`(?:, `\w+`)* \| (.*?) \| ").unwrap();
+    let mut seen = 0;
+    for (page, table) in [
+        ("docs/instruments.md", "/properties/source/properties/live"),
+        ("docs/power.md", "/properties/power"),
+        ("docs/real-time.md", "/properties/realtime"),
+        ("docs/turntable.md", "/properties/turntable/properties/drive"),
+    ] {
+        let text = read(page);
+        let tables = text.split("| key | default | meaning |\n").skip(1);
+        for line in tables.flat_map(|table| table.lines().take_while(|line| line.starts_with('|')))
+        {
+            let Some(found) = row.captures(line) else { continue };
+            let (key, shown) = (&found[1], found[2].replace(['`', '"'], ""));
+            let property = schema.pointer(&format!("{table}/properties/{key}"));
+            let property = property.unwrap_or_else(|| panic!("{page}: no key {key} in {table}"));
+            let is_figure = shown.contains(|c: char| c.is_ascii_digit());
+            match property.get("default") {
+                Some(default) => {
+                    let default =
+                        default.as_str().map_or_else(|| default.to_string(), str::to_owned);
+                    assert_eq!(shown, default, "{page}: default of {key}");
+                    seen += 1;
+                }
+                // In the words of the schema.
+                None if is_figure => {
+                    let words = property["description"].as_str().unwrap();
+                    assert!(words.contains(&shown), "{page}: default {shown:?} of {key}: {words}");
+                    seen += 1;
+                }
+                None => {}
+            }
+        }
+    }
+    assert!(seen > 25, "{seen}");
+}
+
 /// A figure that a machine gave is no figure of the program: its section says when it was measured. Output of
 /// commands is not looked at.
 #[test]
