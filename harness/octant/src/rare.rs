@@ -13,16 +13,13 @@ use octant_rare_runs::error::RareError;
 use octant_rare_runs::failure::{failure, requirement};
 use octant_rare_runs::journal::{RARE_JOURNAL_SCHEMA, RareIdentity};
 use octant_rare_runs::outcome::RareSubject;
-use octant_rare_runs::protection::{parameters, protection};
+use octant_rare_runs::protection::{RISK, parameters, protection};
 use octant_rare_runs::runs::{RareRuns, SeverityOf};
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_score::numerics::NUMERICS;
 use serde::Serialize;
 use std::path::PathBuf;
-
-/// Probability of `--protection` without a value.
-const RISK: &str = "1e-5";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -5,16 +5,6 @@ use clap::{Args, ValueEnum};
 use octant_fmu_host::instance::OpenOptions;
 use std::path::PathBuf;
 
-fn time_limit_help() -> String {
-    let OpenOptions { time_limit, start_limit, .. } = OpenOptions::default();
-    format!(
-        "Longest wall time of a call in a process of its own, and of loading with instantiation; what takes longer \
-         counts as hung. By default {} s, and {} s for loading and initializing",
-        time_limit.as_secs(),
-        start_limit.as_secs()
-    )
-}
-
 /// Step any FMU, with inputs from a file; or a core, with the samples of a scenario's source.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -52,7 +42,7 @@ pub(super) struct Arguments {
     /// Run also an FMU that needs the tool that made it.
     #[arg(long)]
     pub(super) allow_tool: bool,
-    #[arg(long, value_name = "TIME", help = time_limit_help())]
+    #[arg(long, value_name = "TIME", help = OpenOptions::limits_help())]
     pub(super) time_limit: Option<String>,
     /// File for the outputs, CSV or MCAP; with --source a recording in MCAP.
     #[arg(long, value_name = "FILE")]
