@@ -31,7 +31,7 @@ use octant_score::verdict::RequirementResult;
 use std::path::{Path, PathBuf};
 
 /// Maximum number of rows of a recording, where the interval isn't given.
-const ROWS_MAX: u64 = 20_000;
+pub const ROWS_MAX: u64 = 20_000;
 /// Maximum number of times that a discarded step is halved.
 const HALVINGS: u32 = 10;
 /// Default seed.

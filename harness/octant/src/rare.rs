@@ -13,7 +13,7 @@ use octant_rare_runs::error::RareError;
 use octant_rare_runs::failure::{failure, requirement};
 use octant_rare_runs::journal::{RARE_JOURNAL_SCHEMA, RareIdentity};
 use octant_rare_runs::outcome::RareSubject;
-use octant_rare_runs::protection::{parameters, protection};
+use octant_rare_runs::protection::{RISK, parameters, protection};
 use octant_rare_runs::runs::{RareRuns, SeverityOf};
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
@@ -34,8 +34,9 @@ pub(super) struct Arguments {
     /// Count runs that refuse their calibration, or end without the measure, as failures.
     #[arg(long, conflicts_with = "protection")]
     count_refused: bool,
-    /// Find the error of each published parameter that is exceeded unnoticed with this probability; by default 1e-5.
-    #[arg(long, value_name = "RISK", value_parser = probability, num_args = 0..=1, default_missing_value = "1e-5")]
+    #[arg(long, value_name = "RISK", value_parser = probability, num_args = 0..=1, default_missing_value = RISK, help = format!(
+        "Find the error of each published parameter that is exceeded unnoticed with this probability; by default {RISK}"
+    ))]
     protection: Option<f64>,
     /// Parameters of --protection, separated by commas; by default all that are estimated.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "protection")]
@@ -144,7 +145,7 @@ fn estimated(
             Ok(found.verdict)
         }
         (None, risk) => {
-            let risk = risk.unwrap_or(1e-5);
+            let risk = risk.map_or_else(|| probability(RISK), Ok).map_err(Failure::input)?;
             let work = || protection(&mut runs, scenario, &names, risk, &plan);
             let found = bar.during(&name, work).map_err(of_error)?;
             tell_result(arguments, &found, &found.text())?;

@@ -8,7 +8,7 @@ use clap::Args;
 use octant_base::control::Control;
 use octant_cosim::experiment::GivenSettings;
 use octant_cosim::order::SteppingOrder;
-use octant_cosim::run::{PrepareError, PreparedSystem, Request};
+use octant_cosim::run::{PrepareError, PreparedSystem, ROWS_MAX, Request};
 use octant_cosim::summary::{FmuResult, SystemEnded};
 use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
 use octant_fmu_host::instance::ProcessPlace;
@@ -43,8 +43,9 @@ pub(super) struct SystemArguments {
     /// Time at which the run ends.
     #[arg(long, value_name = "TIME")]
     stop: Option<String>,
-    /// Record every Nth step; by default N gives 20 000 rows.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help = format!(
+        "Record every Nth step; by default N gives {ROWS_MAX} rows"
+    ))]
     every: Option<u64>,
     /// Also record into values.csv.
     #[arg(long)]

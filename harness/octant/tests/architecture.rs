@@ -7,25 +7,25 @@ use std::path::{Path, PathBuf};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/architecture.md");
 /// Most lines of product code in a crate.
-const CRATE_LINES_MAX: usize = 13_000;
+pub(crate) const CRATE_LINES_MAX: usize = 13_000;
 /// Most lines of a file of product code.
-const FILE_LINES_MAX: usize = 500;
+pub(crate) const FILE_LINES_MAX: usize = 500;
 
 /// A crate of the workspace.
-struct Member {
+pub(crate) struct Member {
     /// Folder, from the root of the repository.
-    folder: String,
+    pub(crate) folder: String,
     /// Folders' last names of the workspace's crates that it is built with.
     needs: BTreeSet<String>,
     /// The same of its tests and benches alone.
     tests_need: BTreeSet<String>,
 }
 
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-fn manifest(folder: &Path) -> toml::Table {
+pub(crate) fn manifest(folder: &Path) -> toml::Table {
     std::fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
 }
 
@@ -42,7 +42,7 @@ fn dependencies(manifest: &toml::Table, section: &str) -> BTreeSet<String> {
 }
 
 /// Crates of the workspace by the last name of their folder, in the order of the root manifest.
-fn members() -> Vec<(String, Member)> {
+pub(crate) fn members() -> Vec<(String, Member)> {
     let workspace = manifest(&root());
     let folders = workspace["workspace"]["members"].as_array().unwrap();
     let folders: Vec<&str> = folders.iter().map(|folder| folder.as_str().unwrap()).collect();
@@ -176,7 +176,7 @@ fn the_core_never_sees_the_truth_and_the_plant_never_an_estimate() {
 }
 
 /// Files of product code below a folder, without those of tests.
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -191,7 +191,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// Text of a file up to its own tests.
-fn product(path: &Path) -> String {
+pub(crate) fn product(path: &Path) -> String {
     let text = std::fs::read_to_string(path).unwrap();
     let tests = Regex::new(r"#\[cfg\(test\)\]\s*(?:pub(?:\(crate\))? )?mod \w+ \{").unwrap();
     let end = tests.find(&text).map_or(text.len(), |found| found.start());
@@ -355,6 +355,25 @@ fn no_two_files_of_a_crate_import_each_other() {
         }
     }
     assert!(circles.is_empty(), "{circles:#?}");
+}
+
+/// The way of a sample is a table of files and functions: each function is in its file, and each file is in the
+/// table that stands in the page.
+#[test]
+fn the_functions_on_a_samples_way_are_in_their_files() {
+    let page = std::fs::read_to_string(PAGE).unwrap();
+    let (_, way) = page.split_once("## A faulted sample, station by station").unwrap();
+    let (way, _) = way.split_once("`Steps::step`").unwrap();
+    let row = Regex::new(r"(?m)^\| `([\w/.]+\.rs)` \| `(\w+)` \| .+ \|$").unwrap();
+    let rows = row.captures_iter(way).map(|found| {
+        let (file, function) = (&found[1], &found[2]);
+        let definition = Regex::new(&format!(r"\bfn {function}\b")).unwrap();
+        let text = product(&root().join(file));
+        assert!(definition.is_match(&text), "docs/architecture.md: {file} has no `fn {function}`");
+    });
+    let lines = way.lines().filter(|line| line.starts_with("| `")).count();
+    assert_eq!(rows.count(), lines, "a row that isn't | `FILE.rs` | `FUNCTION` | STEP |");
+    assert!(lines > 10, "{lines}");
 }
 
 #[test]

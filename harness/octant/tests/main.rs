@@ -70,6 +70,7 @@ mod generated;
 mod gimbal_angles;
 mod hostile;
 mod innovations;
+mod known_limitations;
 #[cfg(unix)]
 mod least_squares_end;
 mod live;
@@ -85,6 +86,7 @@ mod operator;
 #[cfg(target_os = "linux")]
 mod operator_ways;
 mod own_sequences;
+mod page_figures;
 #[cfg(unix)]
 mod power;
 mod progress_bar;
@@ -131,3 +133,4 @@ mod verdict;
 mod verdict_algebra;
 mod verdict_edges;
 mod watch;
+mod workflows;

@@ -32,7 +32,7 @@ fn tests(requirement: &Requirement) -> Vec<(String, String)> {
 }
 
 /// Returns whether a test exists: a case of the self-test, a test function, or a check of a rig.
-fn is_there(file: &str, name: &str) -> bool {
+pub(crate) fn is_there(file: &str, name: &str) -> bool {
     if file == "selftest" {
         return octant_selftest::cases().iter().any(|case| case.id == name);
     }

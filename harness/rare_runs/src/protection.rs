@@ -18,6 +18,9 @@ use octant_statistics::sample::mean;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Probability with which an error may be exceeded unnoticed, where none is given.
+pub const RISK: &str = "1e-5";
+
 /// Protection level of a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterLevel {

@@ -55,7 +55,7 @@ pub(crate) fn complete(
                     problems.push(Problem { place: place.clone(), path, message });
                     continue;
                 }
-                Default::Derived(_) | Default::Absent(_) => continue,
+                Default::Derived(_) | Default::ByCase(_) | Default::Absent(_) => continue,
             }
         }
         if let Some(node) = table.get_mut(key.name) {

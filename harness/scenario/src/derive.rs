@@ -3,7 +3,8 @@
 use super::document::{DocumentNode, DocumentTable, DocumentValue, parse_default};
 use super::error::{Place, Problem};
 use super::keys::{
-    Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys, TextKeys,
+    Default, EndpointFmuKeys, ImuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
+    TextKeys, by_case,
 };
 use super::quantity::{self, UnitDimension};
 use super::recorded::NO_TIME;
@@ -26,8 +27,7 @@ pub(crate) fn derive(document: &mut DocumentTable) {
     let as_text = text(document, "source.uri").is_some_and(|uri| uri.starts_with("text:"));
     set(document, "screening.jumps", if as_text { "off" } else { "on" });
     let dockside = text(document, "motion.kind") == Some("dockside");
-    let (still, moving) =
-        (octant_calibration::drift::LIMIT_SIGMAS, octant_calibration::drift::LIMIT_MOVING_SIGMAS);
+    let [still, moving] = by_case::DRIFT_SIGMAS;
     set(document, "screening.drift", &format!("{:?}", if dockside { moving } else { still }));
     for (name, keys) in [("source", SourceFmuKeys::SECTION), ("endpoint", EndpointFmuKeys::SECTION)]
     {
@@ -56,11 +56,12 @@ pub(crate) fn derive(document: &mut DocumentTable) {
         reference(document);
     }
     if document.at("turntable.drive").is_some() {
-        set(document, "turntable.drive.guard", if cfg!(unix) { "1 s" } else { "0 s" });
+        set(document, "turntable.drive.guard", by_case::GUARD[usize::from(!cfg!(unix))]);
     }
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
-            let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
+            let rate = text(document, "imu.rate").or(default_of(ImuKeys::SECTION, "rate"));
+            let Some(rate) = rate.map(str::to_owned) else { continue };
             let split = match document.at(&format!("{table}.split")).map(|node| &node.value) {
                 Some(DocumentValue::Integer(split)) if *split > 1 => *split as f64,
                 _ => 1.0,
@@ -88,17 +89,22 @@ fn reference(document: &mut DocumentTable) {
         let value = match of_text.filter(|_| as_text) {
             Some(value) => value,
             None if name == "time_unit" && !as_text => parse_default("ns").value,
-            None => {
-                let mut keys = TextKeys::SECTION.keys.iter();
-                match keys.find(|key| key.name == name).map(|key| key.default) {
-                    Some(Default::Value(value)) => parse_default(value).value,
-                    _ => continue,
-                }
-            }
+            None => match default_of(TextKeys::SECTION, name) {
+                Some(value) => parse_default(value).value,
+                None => continue,
+            },
         };
         if document.at(&path).is_none() && reachable(document, &path) {
             document.set_at(&path, DocumentNode { value, place: Place::Default });
         }
+    }
+}
+
+/// Default of a key as TOML, where it has one that depends on no other key.
+fn default_of(section: &Section, name: &str) -> Option<&'static str> {
+    match section.key(name)?.default {
+        Default::Value(value) => Some(value),
+        _ => None,
     }
 }
 
@@ -128,7 +134,7 @@ fn fmu(document: &mut DocumentTable, path: &str, keys: &Section) {
         }
     }
     if text(document, &format!("{path}.process")) == Some("own") {
-        set(document, &format!("{path}.time_limit"), "10 s");
+        set(document, &format!("{path}.time_limit"), by_case::TIME_LIMIT);
     }
 }
 
@@ -140,17 +146,15 @@ fn calibration(document: &mut DocumentTable) {
     let reference = match text(document, "source.reference.kind") {
         Some("velocity") => "velocity",
         Some("position") => "dock-position",
-        _ if dockside => "dock-position",
-        _ => "zero-velocity",
+        _ => by_case::REFERENCES[usize::from(dockside)],
     };
     set(document, "procedure.calibration.aiding.reference", reference);
     let position =
         text(document, "procedure.calibration.aiding.reference") == Some("dock-position");
     let coloured = text(document, "procedure.calibration.aiding.sway") == Some("coloured");
-    let (sigma, noise) = match (position, coloured) {
-        (true, false) => ("0.15 m", "0.01 m"),
-        (true, true) => ("0.01 m", "0.01 m"),
-        (false, _) => ("1 mm/s", "1 mm/s"),
+    let [sigma, noise] = match position {
+        true => by_case::OF_POSITION[usize::from(coloured)],
+        false => by_case::OF_VELOCITY,
     };
     set(document, "procedure.calibration.aiding.sigma", sigma);
     set(document, "procedure.calibration.aiding.noise", noise);
@@ -167,7 +171,7 @@ fn calibration(document: &mut DocumentTable) {
         (None, Some((half_width, _))) => {
             UnitDimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0))
         }
-        (None, None) => "0.0005 deg/h/g".to_owned(),
+        (None, None) => by_case::G_DEPENDENT.to_owned(),
     };
     set(document, "procedure.calibration.prior.g_dependent", &prior);
 }

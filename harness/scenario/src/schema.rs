@@ -2,7 +2,9 @@
 
 use super::complete::expected;
 use super::document::parse_default;
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
+use super::keys::{
+    Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants, cases_in_words,
+};
 use super::quantity::UnitDimension;
 use crate::channel::Channel;
 use serde_json::{Map, Value, json};
@@ -54,6 +56,9 @@ fn property(key: &Key) -> Value {
             property["default"] = default;
         }
         Default::Derived(words) => description += &format!(" Default: {words}."),
+        Default::ByCase(cases) => {
+            description += &format!(" Default: {}.", cases_in_words(cases));
+        }
         Default::Absent(words) => description += &format!(" Left out: {words}."),
         Default::Required | Default::Section => {}
     }

@@ -4,7 +4,7 @@
 
 use super::complete::expected;
 use super::document::{join, parse_default, write_value};
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
+use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section, cases_in_words};
 use super::ports;
 use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
@@ -236,6 +236,7 @@ fn comment(key: &Key, out: &mut String) {
         }
         Default::Value(_) | Default::Section => {}
         Default::Derived(words) => text += &format!(" Default: {words}."),
+        Default::ByCase(cases) => text += &format!(" Default: {}.", cases_in_words(cases)),
         Default::Absent(words) => text += &format!(" Left out: {words}."),
         Default::Required => text += " Always given.",
     }
@@ -336,7 +337,7 @@ fn given(section: &Section) -> Vec<String> {
     let line = |key: &Key| match key.default {
         Default::Required => Some(format!("{} = {}", key.name, example_in_form(key))),
         Default::Value(text) => Some(format!("{} = {}", key.name, written(text))),
-        Default::Derived(_) | Default::Absent(_) | Default::Section => None,
+        Default::Derived(_) | Default::ByCase(_) | Default::Absent(_) | Default::Section => None,
     };
     section.keys.iter().filter_map(line).collect()
 }
@@ -406,7 +407,10 @@ pub fn fault_example(kind: &str) -> Option<String> {
                 Kind::Refused(_) => continue,
                 _ => r#""1 s""#.to_owned(),
             },
-            (None, Default::Absent(_) | Default::Derived(_) | Default::Section) => continue,
+            (
+                None,
+                Default::Absent(_) | Default::Derived(_) | Default::ByCase(_) | Default::Section,
+            ) => continue,
         };
         out += &format!("{} = {value}\n", key.name);
     }
@@ -481,6 +485,62 @@ mod tests {
             let header = format!("[{path}]");
             let named = tour.contains(&header) || block.contains(&format!("{name} = "));
             assert!(named, "{path} is not in the tour");
+        }
+    }
+
+    /// A figure in words would be another one than that of the code, some day.
+    #[test]
+    fn a_default_in_words_has_no_figure() {
+        let mut all = Vec::new();
+        paths(SCENARIO, "", &mut all);
+        for (path, key) in all {
+            if let Default::Derived(words) = key.default {
+                assert!(!words.contains(|c: char| c.is_ascii_digit()), "{path}: {words}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_default_by_case_is_the_one_that_a_scenario_gets() {
+        let at_dock = "motion = { kind = \"dockside\" }\n";
+        let coloured = "[procedure.calibration.aiding]\nsway = \"coloured\"\n";
+        let own = "source.uri = \"fmu:x.fmu\"\nsource.fmu.process = \"own\"\n";
+        let aiding = "procedure.calibration.aiding";
+        for (set, path, case) in [
+            ("", "screening.drift", "static"),
+            (at_dock, "screening.drift", "dockside"),
+            ("", &*format!("{aiding}.reference"), "static"),
+            (at_dock, &format!("{aiding}.reference"), "dockside"),
+            ("", &format!("{aiding}.sigma"), "velocities"),
+            (at_dock, &format!("{aiding}.sigma"), "dock-position"),
+            (
+                &format!("{at_dock}{coloured}"),
+                &format!("{aiding}.sigma"),
+                "with sway = \"coloured\"",
+            ),
+            ("", &format!("{aiding}.noise"), "velocities"),
+            (at_dock, &format!("{aiding}.noise"), "dock-position"),
+            (own, "source.fmu.time_limit", "in a process of its own"),
+            ("", "procedure.calibration.prior.g_dependent", "elsewhere"),
+        ] {
+            let text = format!("schema = 1\n{set}[procedure.calibration.least_squares]\n");
+            let mut document = document::parse(&text).unwrap();
+            super::super::derive::derive(&mut document);
+            let mut section = SCENARIO;
+            let (parent, name) = path.rsplit_once('.').unwrap();
+            for part in parent.split('.') {
+                section = section.key(part).unwrap().kind.section().unwrap();
+            }
+            let Default::ByCase(cases) = section.key(name).unwrap().default else {
+                panic!("{path} has no default by case")
+            };
+            let (_, value) = cases.iter().find(|(name, _)| *name == case).unwrap();
+            let mut got = String::new();
+            write_value(&document.at(path).unwrap().value, &mut got);
+            let (shown, got) =
+                (cases_in_words(&[(case, *value)]), got.trim_matches('"').to_owned());
+            let got = got.strip_suffix(".0").unwrap_or(&got);
+            assert_eq!(shown.replace('"', ""), format!("{case}: {got}").replace('"', ""), "{path}");
         }
     }
 

@@ -55,6 +55,20 @@ pub struct OpenOptions {
     pub program: Option<PathBuf>,
 }
 
+impl OpenOptions {
+    /// Describes the limits of time in the help of a command, with their defaults.
+    #[must_use]
+    pub fn limits_help() -> String {
+        let Self { time_limit, start_limit, .. } = Self::default();
+        format!(
+            "Longest wall time of a call in a process of its own, and of loading with instantiation; what takes longer \
+             counts as hung. By default {} s, and {} s for loading and initializing",
+            time_limit.as_secs(),
+            start_limit.as_secs()
+        )
+    }
+}
+
 impl Default for OpenOptions {
     fn default() -> Self {
         Self {

@@ -58,8 +58,10 @@ pub(super) struct Arguments {
     /// Working folder of a campaign on object storage, new or of an earlier run of it; by default a temporary one.
     #[arg(long, value_name = "FOLDER")]
     work: Option<PathBuf>,
-    /// Longest time for which a result waits until it is uploaded to object storage, s; by default 20.
-    #[arg(long, value_name = "SECONDS", value_parser = upload_every)]
+    #[arg(long, value_name = "SECONDS", value_parser = upload_every, help = format!(
+        "Longest time for which a result waits until it is uploaded to object storage, s; by default {}",
+        UPLOAD_EVERY.as_secs()
+    ))]
     upload_every: Option<Duration>,
 }
 

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
+use octant_fmu_host::instance::OpenOptions;
 use std::path::PathBuf;
 
 /// Step any FMU, with inputs from a file; or a core, with the samples of a scenario's source.
@@ -41,9 +42,7 @@ pub(super) struct Arguments {
     /// Run also an FMU that needs the tool that made it.
     #[arg(long)]
     pub(super) allow_tool: bool,
-    /// Longest wall time of a call in a process of its own, and of loading with instantiation; what
-    /// takes longer counts as hung. By default 10 s, and 1 min for loading and initializing.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", help = OpenOptions::limits_help())]
     pub(super) time_limit: Option<String>,
     /// File for the outputs, CSV or MCAP; with --source a recording in MCAP.
     #[arg(long, value_name = "FILE")]

@@ -732,7 +732,7 @@ class EndpointFmu(Section):
     """Where the FMU runs. Takes one of "own", "shared". Default: "own"."""
     time_limit: str
     """Wall time that one call of the FMU may take; longer, and it counts as hung. Takes a time such as "12 h".
-    Default: "10 s" in a process of its own; in the shared one nothing can end a call."""
+    Default: in a process of its own: "10 s"; in the shared one: none, nothing can end a call."""
     tolerance: float
     """Relative tolerance of the FMU's solver, or of Octant's in model exchange. Takes a number from 1e-14 to
     0.1. Left out: that of the FMU's default experiment."""
@@ -1363,7 +1363,7 @@ class ProcedureCalibrationAiding(Section):
 
     noise: str
     """Standard deviation of the white noise that the reference really has. Takes a velocity such as "1 mm/s" or
-    a length such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.01 m."""
+    a length such as "0.15 m". Default: velocities: "1 mm/s"; dock-position: "0.01 m"."""
     period: str
     """Time between measurements: a multiple of the sample period. Takes a time such as "12 h". Default: "1 s"."""
     reference: Literal["zero-velocity", "velocity", "dock-position"]
@@ -1371,7 +1371,8 @@ class ProcedureCalibrationAiding(Section):
     velocity"; dockside: "dock-position"."""
     sigma: str
     """Standard deviation of each axis, as the filter believes it. Takes a velocity such as "1 mm/s" or a length
-    such as "0.15 m". Default: velocities: 1 mm/s; dock-position: 0.15 m, with sway = "coloured" 0.01 m."""
+    such as "0.15 m". Default: velocities: "1 mm/s"; dock-position: "0.15 m"; with sway = "coloured": "0.01
+    m"."""
     sway: Literal["white", "coloured"]
     """What the sway of the ship is to the filter. Takes one of "white", "coloured". Default: "white"."""
 
@@ -1698,8 +1699,8 @@ class ProcedureCalibrationPrior(Section):
     """Attitude error north, east, down. Takes an array of 3, each an angle such as "40 arcsec". Default: ["60
     arcsec", "60 arcsec", "0.1 deg"]."""
     g_dependent: str
-    """g-dependent gyro biases. Takes a g-dependent gyro bias such as "0.0005 deg/h/g". Default: the standard
-    deviation from which imu.g_dependent is drawn, else 0.0005 deg/h/g."""
+    """g-dependent gyro biases. Takes a g-dependent gyro bias such as "0.0005 deg/h/g". Default: where
+    imu.g_dependent is drawn: its standard deviation; elsewhere: "0.0005 deg/h/g"."""
     gyro_bias: str
     """Gyro biases. Takes an angular rate such as "0.005 deg/h". Default: "0.005 deg/h"."""
     gyro_misalignment: str
@@ -1899,7 +1900,7 @@ class Screening(Section):
     "on"."""
     drift: Literal["off"] | float
     """Correction of a parameter over a stretch of the calibration, in its standard deviations, above which the
-    calibration is refused. Takes "off", or a number above 0. Default: static: 6; dockside: 8."""
+    calibration is refused. Takes "off", or a number above 0. Default: static: 5; dockside: 6."""
     gate: Literal["off"] | Mapping[str, Any]
     """Innovation gate. Takes "off", or a table with nis, rejections, recovery. Default: {}."""
     gimbals: Literal["on", "off"]
@@ -2230,7 +2231,7 @@ class SourceFmu(Section):
     motion is interpolated. Takes a time such as "12 h". Default: the sample period."""
     time_limit: str
     """Wall time that one call of the FMU may take; longer, and it counts as hung. Takes a time such as "12 h".
-    Default: "10 s" in a process of its own; in the shared one nothing can end a call."""
+    Default: in a process of its own: "10 s"; in the shared one: none, nothing can end a call."""
     tolerance: float
     """Relative tolerance of the FMU's solver, or of Octant's in model exchange. Takes a number from 1e-14 to
     0.1. Left out: that of the FMU's default experiment."""
@@ -2812,7 +2813,7 @@ class TurntableDrive(Section):
     """Which run drives the table. Takes one of "this run", "another run". Default: "this run"."""
     guard: str
     """Silence of the program after which a process of its own stops the table. 0 s: there is none. Takes a time
-    such as "12 h". Default: 1 s where the system has guards, 0 s elsewhere."""
+    such as "12 h". Default: where the system has guards: "1 s"; elsewhere: "0 s"."""
     home: bool
     """Whether both axes find their reference before the run. Takes true or false. Default: false."""
     look: str

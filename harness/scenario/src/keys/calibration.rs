@@ -1,5 +1,6 @@
 //! Keys of the procedure: alignment, calibration, navigation, screening, baseline.
 
+use super::by_case::{G_DEPENDENTS, NOISES, REFERENCE_CASES, SIGMAS};
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use super::further::FurtherKeys;
 use super::table::{
@@ -209,7 +210,7 @@ keys! {
             "Gyro misalignments.";
         g_dependent: f64
             = si(&[UnitDimension::G_DEPENDENT], Bounds::Positive),
-            derived("the standard deviation from which imu.g_dependent is drawn, else 0.0005 deg/h/g"),
+            by_case(G_DEPENDENTS),
             "g-dependent gyro biases.";
         accel_bias: f64 = si(&[UnitDimension::ACCEL_BIAS], Bounds::Positive), "100 ug",
             "Accelerometer biases.";
@@ -227,7 +228,7 @@ keys! {
                 "zero-velocity" => Reference::ZeroVelocity, "the ground or dock doesn't move; knows nothing of sway";
                 "velocity" => Reference::Velocity, "true velocity of the instrument over ground";
                 "dock-position" => Reference::DockPosition, "position of the dock, from which sway moves the instrument";
-            }, derived("static: \"zero-velocity\"; dockside: \"dock-position\""),
+            }, by_case(REFERENCE_CASES),
             "What is measured.";
         period: At<f64> = time(1e-4, 3600.0, "above 0, up to 1 h"), "1 s",
             "Time between measurements: a multiple of the sample period.";
@@ -239,11 +240,11 @@ keys! {
             "What the sway of the ship is to the filter.";
         sigma: At<f64>
             = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], Bounds::Positive),
-            derived("velocities: 1 mm/s; dock-position: 0.15 m, with sway = \"coloured\" 0.01 m"),
+            by_case(SIGMAS),
             "Standard deviation of each axis, as the filter believes it.";
         noise: At<f64>
             = si(&[UnitDimension::VELOCITY, UnitDimension::LENGTH], Bounds::NotNegative),
-            derived("velocities: 1 mm/s; dock-position: 0.01 m"),
+            by_case(NOISES),
             "Standard deviation of the white noise that the reference really has.";
     }
 }

@@ -31,10 +31,33 @@ pub(crate) enum Default {
     Value(&'static str),
     /// A value that depends on other keys, described in words.
     Derived(&'static str),
+    /// A value that depends on other keys: each case with its value.
+    ByCase(&'static [(&'static str, CaseValue)]),
     /// No value; its meaning is described in words.
     Absent(&'static str),
     /// A table with the defaults of its own keys.
     Section,
+}
+
+/// Value of a default in one of its cases.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum CaseValue {
+    /// A value, as TOML; texts without quotes.
+    Value(&'static str),
+    /// A plain number.
+    Number(f64),
+    /// Where the value is from, in words.
+    Told(&'static str),
+}
+
+/// Cases of a default in words: `CASE: VALUE; CASE: VALUE`.
+pub(crate) fn cases_in_words(cases: &[(&str, CaseValue)]) -> String {
+    let words = cases.iter().map(|(case, value)| match value {
+        CaseValue::Value(value) => format!("{case}: \"{value}\""),
+        CaseValue::Number(value) => format!("{case}: {value}"),
+        CaseValue::Told(words) => format!("{case}: {words}"),
+    });
+    words.collect::<Vec<_>>().join("; ")
 }
 
 /// Kind of a key's values.

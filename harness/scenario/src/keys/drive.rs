@@ -1,5 +1,6 @@
 //! Keys of a real table.
 
+use super::by_case::GUARDS;
 use super::definition::Bounds;
 use super::table::{At, Of, boolean, choice, integer, keys, si, si_array, text, time};
 use crate::model::TableDriver;
@@ -41,7 +42,7 @@ keys! {
             "How far a sample may be from the nearest look and still get its gimbal angles; beyond it they are flagged invalid.";
         reply: f64 = wait(), "500 ms",
             "How long a reply of the controller is waited for; then the table is stopped.";
-        guard: At<f64> = silence(), derived("1 s where the system has guards, 0 s elsewhere"),
+        guard: At<f64> = silence(), by_case(GUARDS),
             "Silence of the program after which a process of its own stops the table. 0 s: there is none.";
         watchdog: At<f64> = silence(), "0 s",
             "Silence after which the controller stops the table by itself. 0 s: it isn't told to.";

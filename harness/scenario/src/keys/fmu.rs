@@ -1,5 +1,6 @@
 //! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
+use super::by_case::TIME_LIMITS;
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use super::table::{At, Of, Raw, boolean, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
@@ -38,7 +39,7 @@ macro_rules! fmu {
                             "in Octant's own process: faster, and a crash takes Octant with it";
                     }, "own", "Where the FMU runs.";
                 time_limit: Option<f64> = time(1e-3, 86400.0, "from 1 ms to 24 h"),
-                    derived("\"10 s\" in a process of its own; in the shared one nothing can end a call"),
+                    by_case(TIME_LIMITS),
                     "Wall time that one call of the FMU may take; longer, and it counts as hung.";
                 allow_tool: bool = boolean(), "false",
                     "Whether the FMU is run although it needs the tool that made it, which has to be installed.";

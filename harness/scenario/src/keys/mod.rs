@@ -5,6 +5,7 @@
 //! declared with `keys!`, which also gives the struct that it is read into, and a table with several
 //! forms with `forms!`, which gives an enum.
 
+pub(crate) mod by_case;
 mod calibration;
 mod campaign;
 mod columns;
@@ -34,7 +35,7 @@ pub(crate) use campaign::{
 };
 pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_section};
 pub use definition::SCHEMA;
-pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants};
+pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, cases_in_words};
 pub(crate) use drive::DriveKeys;
 pub use faults::dimension as fault_dimension;
 pub(crate) use faults::{

@@ -1,5 +1,6 @@
 //! Keys of the screening.
 
+use super::by_case::DRIFTS;
 use super::definition::{Bounds, Kind};
 use super::table::{Keys, Of, choice, integer, keys, number, or_text, si};
 use crate::quantity::UnitDimension;
@@ -20,7 +21,7 @@ keys! {
         gimbals: bool = on_off(), "on",
             "Turns by gyros and by encoders are compared, and encoders with the set point.";
         drift: Option<f64> = or_text!("off", "no test", Kind::Number(Bounds::Positive)),
-            derived("static: 6; dockside: 8"),
+            by_case(DRIFTS),
             "Correction of a parameter over a stretch of the calibration, in its standard deviations, \
              above which the calibration is refused.";
         checkpoints: bool = on_off(), "on",

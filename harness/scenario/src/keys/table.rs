@@ -13,7 +13,7 @@ use std::ops::Deref;
 
 /// Declares a table of a scenario, its keys in the order of the schema:
 /// `name: Type = kind, default, "Meaning.";`, where the default is TOML, `required`, `section`,
-/// `absent("its meaning")` or `derived("in words")`.
+/// `absent("its meaning")`, `derived("in words")` or `by_case(CASES)`.
 macro_rules! keys {
     ($(#[$attribute:meta])* $visible:vis struct $name:ident { $(
         $(#[$of_field:meta])*
@@ -107,6 +107,9 @@ macro_rules! default {
     };
     (derived($words:expr)) => {
         $crate::keys::Default::Derived($words)
+    };
+    (by_case($cases:expr)) => {
+        $crate::keys::Default::ByCase($cases)
     };
     ($value:expr) => {
         $crate::keys::Default::Value($value)
@@ -395,7 +398,7 @@ pub(crate) const fn row<T, F: Field<T>>(
     let fits = match default {
         Default::Required | Default::Value(_) | Default::Section => !F::OPTIONAL,
         Default::Absent(_) => F::OPTIONAL,
-        Default::Derived(_) => true,
+        Default::Derived(_) | Default::ByCase(_) => true,
     };
     assert!(fits, "a key that can be absent has an optional field, and no other has one");
     key(name, of.kind, default, doc)
