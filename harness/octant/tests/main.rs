@@ -84,6 +84,10 @@ mod observe_protection;
 mod operator;
 #[cfg(target_os = "linux")]
 mod operator_ways;
+#[cfg(target_os = "linux")]
+mod out_of_memory;
+#[cfg(unix)]
+mod outside_text;
 mod own_sequences;
 #[cfg(unix)]
 mod power;
@@ -116,6 +120,8 @@ mod shared_table;
 mod smooth;
 mod solution;
 mod source_uri;
+#[cfg(feature = "object-storage")]
+mod storage_lies;
 mod system;
 mod system_foreign;
 mod system_tuned;
