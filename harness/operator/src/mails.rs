@@ -4,7 +4,10 @@
 //! it and opened without following links, and a new file never takes the place of another: nothing outside is read or
 //! written, whatever is planted at any moment.
 
+#[cfg(unix)]
 use octant_base::regular::refuse_other;
+#[cfg(unix)]
+use rustix::fs::{AtFlags, Dir, Mode, OFlags, openat, renameat, unlinkat};
 use serde::Serialize;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -17,8 +20,7 @@ const LARGEST: u64 = 1 << 16;
 #[derive(Debug)]
 pub(crate) struct Mails {
     folder: PathBuf,
-    #[cfg(unix)]
-    held: std::os::fd::OwnedFd,
+    held: Held,
 }
 
 impl Mails {
@@ -33,11 +35,7 @@ impl Mails {
             let reason = format!("it is {what}, expected a folder");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
         }
-        Ok(Self {
-            #[cfg(unix)]
-            held: unix::folder(folder)?,
-            folder: folder.to_owned(),
-        })
+        Ok(Self { held: Held::of(folder)?, folder: folder.to_owned() })
     }
 
     /// Lists the names in the folder.
@@ -45,13 +43,7 @@ impl Mails {
     /// # Errors
     /// If the operating system refuses.
     pub(crate) fn names(&self) -> io::Result<Vec<String>> {
-        #[cfg(unix)]
-        return unix::names(&self.held);
-        #[cfg(not(unix))]
-        {
-            let entries = std::fs::read_dir(&self.folder)?;
-            Ok(entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect())
-        }
+        self.held.names()
     }
 
     /// Reads a file.
@@ -59,12 +51,8 @@ impl Mails {
     /// # Errors
     /// If it isn't there, is no regular file, is too long, or isn't UTF-8.
     pub(crate) fn read(&self, name: &str) -> io::Result<String> {
-        #[cfg(unix)]
-        let file = unix::open(&self.held, name)?;
-        #[cfg(not(unix))]
-        let file = octant_base::regular::open(&self.folder.join(name))?;
         let mut text = String::new();
-        file.take(LARGEST + 1).read_to_string(&mut text)?;
+        self.held.open(name)?.take(LARGEST + 1).read_to_string(&mut text)?;
         if text.len() as u64 > LARGEST {
             let reason = format!("it is longer than {LARGEST} bytes");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
@@ -79,8 +67,8 @@ impl Mails {
     pub(crate) fn put(&self, name: &str, content: &impl Serialize) -> io::Result<()> {
         let text = serde_json::to_string(content)?;
         let draft = format!(".{name}");
-        let mut file = self.make(&draft)?;
-        let written = file.write_all(text.as_bytes()).and_then(|()| self.rename(&draft, name));
+        let mut file = self.held.make(&draft)?;
+        let written = file.write_all(text.as_bytes()).and_then(|()| self.held.rename(&draft, name));
         if written.is_err() {
             let _ = self.remove(&draft);
         }
@@ -92,55 +80,39 @@ impl Mails {
     /// # Errors
     /// If it isn't there, or the operating system refuses.
     pub(crate) fn remove(&self, name: &str) -> io::Result<()> {
-        #[cfg(unix)]
-        return Ok(rustix::fs::unlinkat(&self.held, name, rustix::fs::AtFlags::empty())?);
-        #[cfg(not(unix))]
-        std::fs::remove_file(self.folder.join(name))
+        self.held.remove(name)
     }
 
     /// Returns whether the folder is still there.
     pub(crate) fn is_there(&self) -> bool {
         std::fs::symlink_metadata(&self.folder).is_ok_and(|found| found.is_dir())
     }
-
-    fn make(&self, name: &str) -> io::Result<File> {
-        #[cfg(unix)]
-        return unix::make(&self.held, name);
-        #[cfg(not(unix))]
-        File::create_new(self.folder.join(name))
-    }
-
-    fn rename(&self, from: &str, to: &str) -> io::Result<()> {
-        #[cfg(unix)]
-        return Ok(rustix::fs::renameat(&self.held, from, &self.held, to)?);
-        #[cfg(not(unix))]
-        std::fs::rename(self.folder.join(from), self.folder.join(to))
-    }
 }
 
+/// The folder by its open handle, which stays the same whatever takes its name.
 #[cfg(unix)]
-mod unix {
-    use super::{File, Path, io, refuse_other};
-    use rustix::fs::{Dir, Mode, OFlags, openat};
-    use std::os::fd::OwnedFd;
+#[derive(Debug)]
+struct Held(std::os::fd::OwnedFd);
 
-    pub(super) fn folder(path: &Path) -> io::Result<OwnedFd> {
+#[cfg(unix)]
+impl Held {
+    fn of(folder: &Path) -> io::Result<Self> {
         let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
-        Ok(rustix::fs::open(path, flags, Mode::empty())?)
+        Ok(Self(rustix::fs::open(folder, flags, Mode::empty())?))
     }
 
-    pub(super) fn names(held: &OwnedFd) -> io::Result<Vec<String>> {
+    fn names(&self) -> io::Result<Vec<String>> {
         let mut all = Vec::new();
-        for entry in Dir::read_from(held)? {
+        for entry in Dir::read_from(&self.0)? {
             all.push(entry?.file_name().to_string_lossy().into_owned());
         }
         Ok(all)
     }
 
-    pub(super) fn open(held: &OwnedFd, name: &str) -> io::Result<File> {
+    fn open(&self, name: &str) -> io::Result<File> {
         let flags =
             OFlags::RDONLY | OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY | OFlags::CLOEXEC;
-        let opened = openat(held, name, flags, Mode::empty()).map_err(|error| match error {
+        let opened = openat(&self.0, name, flags, Mode::empty()).map_err(|error| match error {
             rustix::io::Errno::LOOP => {
                 io::Error::new(io::ErrorKind::InvalidInput, "it is a link, expected a regular file")
             }
@@ -151,9 +123,50 @@ mod unix {
         Ok(file)
     }
 
-    pub(super) fn make(held: &OwnedFd, name: &str) -> io::Result<File> {
+    fn make(&self, name: &str) -> io::Result<File> {
         let flags =
             OFlags::WRONLY | OFlags::CREATE | OFlags::EXCL | OFlags::NOFOLLOW | OFlags::CLOEXEC;
-        Ok(File::from(openat(held, name, flags, Mode::from_raw_mode(0o666))?))
+        Ok(File::from(openat(&self.0, name, flags, Mode::from_raw_mode(0o666))?))
+    }
+
+    fn rename(&self, from: &str, to: &str) -> io::Result<()> {
+        Ok(renameat(&self.0, from, &self.0, to)?)
+    }
+
+    fn remove(&self, name: &str) -> io::Result<()> {
+        Ok(unlinkat(&self.0, name, AtFlags::empty())?)
+    }
+}
+
+/// The folder by its path.
+#[cfg(not(unix))]
+#[derive(Debug)]
+struct Held(PathBuf);
+
+#[cfg(not(unix))]
+impl Held {
+    fn of(folder: &Path) -> io::Result<Self> {
+        Ok(Self(folder.to_owned()))
+    }
+
+    fn names(&self) -> io::Result<Vec<String>> {
+        let entries = std::fs::read_dir(&self.0)?.flatten();
+        Ok(entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect())
+    }
+
+    fn open(&self, name: &str) -> io::Result<File> {
+        octant_base::regular::open(&self.0.join(name))
+    }
+
+    fn make(&self, name: &str) -> io::Result<File> {
+        File::create_new(self.0.join(name))
+    }
+
+    fn rename(&self, from: &str, to: &str) -> io::Result<()> {
+        std::fs::rename(self.0.join(from), self.0.join(to))
+    }
+
+    fn remove(&self, name: &str) -> io::Result<()> {
+        std::fs::remove_file(self.0.join(name))
     }
 }
