@@ -377,6 +377,8 @@ fn start(
         ChildEnded::TooLong => None,
         ChildEnded::Status(status) => status.code(),
     };
-    let summary = Summary::from_json(&outcome.out).ok();
+    // A summary of a run that ended otherwise than it says is no verdict: its folder may not be whole.
+    let agrees = |summary: &Summary| status == Some(i32::from(summary.verdict.exit_code()));
+    let summary = Summary::from_json(&outcome.out).ok().filter(agrees);
     Ok(Tried::Said(Box::new((status, summary, outcome.err))))
 }
