@@ -1,4 +1,4 @@
-"""Object storage for rigs: moto's S3, and a proxy before it that refuses, holds or loses what it is told to."""
+"""Object storage for rigs: moto's S3, and a proxy before it that refuses, holds, loses or forgets what it is told to."""
 
 import contextlib
 import http.client
@@ -30,6 +30,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 store.writing += 1
         if store.refusing:
             status, headers, answer = 503, [], b"<Error><Code>SlowDown</Code></Error>"
+        elif is_write and store.forgetting:
+            # Confirmed, and never stored.
+            status, headers, answer = 200, [("etag", '"0"')], b""
         else:
             if is_write:
                 store.free.wait()
@@ -43,6 +46,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
             answer = reply.read()
             status, headers = reply.status, reply.getheaders()
             server.close()
+            if store.endless and "list-type" in self.path:
+                # Every page leads to itself.
+                answer = answer.replace(b"<IsTruncated>false", b"<NextContinuationToken>on</NextContinuationToken><IsTruncated>true")
         with store.counting:
             store.log.append((self.command, self.path, status))
             if is_write:
@@ -83,6 +89,7 @@ class ObjectStore:
             [sys.executable, "-m", "moto.server", "-H", "127.0.0.1", "-p", str(self.inner)],
             stdout=log, stderr=log)
         self.refusing, self.losing, self.log = False, 0, []
+        self.forgetting = self.endless = False
         self.counting, self.writing = threading.Lock(), 0
         self.free = threading.Event()
         self.free.set()

@@ -180,6 +180,27 @@ def refused_for_good():
     merged(address, "a service that refused for good")
 
 
+def forgotten():
+    address, folder = new("forgotten"), work / "not forgotten"
+    store.forgetting = True
+    status, said = campaign("run", address, "--shard", "1/3", "--jobs", "2", "--work", folder, OCTANT_STORAGE_RETRY_S="1")
+    check("a service that confirms and stores nothing is status 4, and the results stay", status == 4 and has_result(folder)
+          and "the storage confirmed it, and reading it back found nothing" in said and str(folder) in said, said)
+    store.forgetting = False
+    status, said = campaign("run", address, "--jobs", "2", "--work", folder)
+    there = int(re.search(r"(\d+) with a result already", said).group(1))
+    check("they are uploaded later", status in (0, 1) and there == CASES // 3, said)
+    merged(address, "a service that forgot")
+
+
+def endless():
+    address = new("endless")
+    store.endless = True
+    status, said = campaign("status", address)
+    store.endless = False
+    check("a list without an end is status 4", status == 4 and "expected one that ends" in said, said)
+
+
 def terminated():
     address, folder = new("terminated"), work / "terminated"
     worker = started("run", address, "--shard", "1/2", "--jobs", "1", "--upload-every", "600", "--work", folder)
@@ -319,6 +340,8 @@ try:
     answers_lost()
     refused_for_a_while()
     refused_for_good()
+    forgotten()
+    endless()
     terminated()
     refusals()
     kubernetes()

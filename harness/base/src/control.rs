@@ -15,6 +15,17 @@ pub struct Control {
     pub attendance: OnceLock<Arc<Attendance>>,
 }
 
+/// Sets a flag when it goes, also in a panic: a thread that waits for the flag then ends.
+#[derive(Debug)]
+#[must_use = "the flag is set when this goes"]
+pub struct SetAtEnd<'a>(pub &'a AtomicBool);
+
+impl Drop for SetAtEnd<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 impl Control {
     /// Stores how far the run is; true if its end was asked for.
     pub fn look(&self, epochs: u64) -> bool {

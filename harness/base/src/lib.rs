@@ -6,8 +6,11 @@
 //! | [`display`] | units in which errors are shown |
 //! | [`encoding`] | text of files whose encoding isn't said |
 //! | [`number`] | numbers as people read them |
+//! | [`not_finite`] | JSON of numbers that may not be finite |
+//! | [`printable`] | text from outside, without what acts on a terminal or breaks a file |
 //! | [`decimal`] | times as decimal text |
 //! | [`control`] | progress of a run, and the request to end it |
+//! | [`regular`] | regular files, opened as nothing else |
 //! | [`pool`] | tasks on several threads, their results in order |
 //! | [`chained_lines`] | files of lines that grow, by which an interrupted program goes on |
 //! | [`code`] | the file that this code is in |
@@ -30,7 +33,10 @@ pub mod encoding;
 pub mod hash;
 pub mod interrupt;
 pub mod names;
+pub mod not_finite;
 pub mod number;
 pub mod pool;
+pub mod printable;
+pub mod regular;
 pub mod serial;
 pub mod utc;

@@ -6,25 +6,29 @@ pub use super::result_error::ResultError;
 use super::plan::{Case, PlanError, PlannedScenario};
 use super::store::error::ResultPlace;
 use octant_base::control::Control;
+use octant_base::not_finite;
 use octant_requirements::{Comparison, Verdict};
 use octant_run::method::MethodError;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::Method;
 use octant_score::rederive;
-use octant_score::summary::Summary;
+use octant_score::summary::{self, Summary};
 use octant_score::verdict::RequirementResult;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Version of the result file.
-pub const SCHEMA: u32 = 2;
+/// Newest version of the result file, which this program reads.
+pub const SCHEMA: u32 = 3;
+/// First version whose summary may have null for a number that isn't finite, which older programs can't read; a result
+/// without one is of the version before.
+const NOT_FINITE: u32 = 3;
 /// First version whose results contain the hashes of their inputs; older ones are read without.
 const CHAINED: u32 = 2;
 
 /// Result of a case. If it has a summary, it contains nothing of host or clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseResult {
-    /// Version of this form: [`SCHEMA`].
+    /// Version of this form, 1 to [`SCHEMA`].
     pub schema: u32,
     /// The case.
     pub case: String,
@@ -102,8 +106,9 @@ impl CaseResult {
         case_blake3: Option<String>,
         summary: Summary,
     ) -> Result<Self, serde_json::Error> {
+        let is_finite = summary.schema < summary::NOT_FINITE;
         Ok(Self {
-            schema: SCHEMA,
+            schema: if is_finite { CHAINED } else { NOT_FINITE },
             case: case.to_owned(),
             case_blake3,
             summary_blake3: Some(hash_of_summary(&serde_json::to_value(&summary)?)),
@@ -117,7 +122,7 @@ impl CaseResult {
     #[must_use]
     pub fn broken(case: &str, error: String) -> Self {
         Self {
-            schema: SCHEMA,
+            schema: CHAINED,
             case: case.to_owned(),
             case_blake3: None,
             summary_blake3: None,
@@ -183,7 +188,7 @@ impl CaseResult {
             let place = place.clone();
             return Err(ResultError::Version { place, found: schema, newest: SCHEMA });
         }
-        let result: Self = serde_json::from_slice(bytes).map_err(form)?;
+        let result: Self = not_finite::from_slice(bytes).map_err(form)?;
         if place.case() != result.case {
             return Err(ResultError::Name { place: place.clone(), case: result.case });
         }

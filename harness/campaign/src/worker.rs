@@ -6,7 +6,7 @@
 use super::case::CaseResult;
 use super::execution::{CaseDone, ExecuteError};
 use super::plan::{Case, Plan};
-use super::process::command;
+use super::process::{OUT_OF_MEMORY, command};
 use super::status::StatusError;
 use super::store::writer::PartWriter;
 use super::store::{CampaignResults, StoreOutcome, has_at, keep_in};
@@ -172,7 +172,8 @@ impl<'a> Worker<'a> {
 /// Describes why a process stored nothing.
 fn failure(status: ExitStatus, words: &str, memory_mib: u64) -> String {
     let said = said(words);
-    if words.contains("memory allocation of") {
+    // The second words are those of `std`, in a program whose allocator says nothing.
+    if [OUT_OF_MEMORY, "memory allocation of"].iter().any(|said| words.contains(said)) {
         return format!("it wanted more than its {memory_mib} MiB of memory");
     }
     match status.code() {

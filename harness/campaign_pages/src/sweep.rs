@@ -106,7 +106,7 @@ pub fn figure(sweep: &Sweep) -> String {
             (at, at - 8.0, name.as_str(), drawing(sweep, cells))
         })
         .collect();
-    html! {
+    let svg = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } width=(width) height=(height)
             role="img" aria-label={ "sweep of " (sweep.fault) } {
             style { (PreEscaped(STYLE)) }
@@ -121,8 +121,8 @@ pub fn figure(sweep: &Sweep) -> String {
                 (number::plain(sweep.harmful_shift_sigma, 2)) " σ or more"
             }
         }
-    }
-    .into_string()
+    };
+    octant_base::printable::printable(&svg.0).into_owned()
 }
 
 /// Colours of a self-contained figure: those of the page.

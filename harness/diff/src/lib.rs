@@ -63,7 +63,8 @@ pub fn runs(first: &DiffSide, second: &DiffSide) -> Result<RunDiff, DiffError> {
     for side in [first, second] {
         let path = side.about.path.display();
         if side.summary.is_none() {
-            notes.push(format!("{path} has no summary.json: its scores aren't compared"));
+            notes
+                .push(format!("{path} has no summary of an ended run: its scores aren't compared"));
         }
         if side.about.truncated {
             notes.push(format!("{path} is truncated: it is compared up to its end"));

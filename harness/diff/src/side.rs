@@ -2,6 +2,7 @@
 
 use super::error::DiffError;
 use octant_evidence::Manifest;
+use octant_evidence::ended;
 use octant_evidence::inside::SUMMARY;
 use octant_evidence::manifest::FILE_NAME as MANIFEST;
 use octant_recorder::reader::{Info, Recording};
@@ -45,7 +46,7 @@ pub struct DiffSide {
     pub info: Info,
     /// Resolved scenario.
     pub scenario: toml::Table,
-    /// Summary; `None` of a recording alone, and of a run that was killed.
+    /// Summary; `None` of a recording alone, and of a run whose folder isn't whole.
     pub summary: Option<Summary>,
 }
 
@@ -69,7 +70,7 @@ impl DiffSide {
             DiffError::File { path: recording.clone(), reason }
         })?;
         let (summary, manifest) = match path.is_dir() {
-            true => (summary(&path.join(SUMMARY))?, manifest(path)?),
+            true => (summary(path)?, manifest(path)?),
             false => (None, None),
         };
         let about = SideAbout {
@@ -95,13 +96,12 @@ impl DiffSide {
     }
 }
 
-fn summary(path: &Path) -> Result<Option<Summary>, DiffError> {
-    if !path.exists() {
-        return Ok(None);
-    }
-    let wrong = |reason: String| DiffError::File { path: path.to_owned(), reason };
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    Summary::from_json(&text).map(Some).map_err(|error| wrong(error.to_string()))
+fn summary(folder: &Path) -> Result<Option<Summary>, DiffError> {
+    let wrong = |error: octant_evidence::ManifestError| DiffError::File {
+        path: folder.join(SUMMARY),
+        reason: error.to_string(),
+    };
+    ended::summary(folder).map_err(wrong)
 }
 
 fn manifest(folder: &Path) -> Result<Option<Manifest>, DiffError> {

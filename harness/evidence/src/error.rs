@@ -38,6 +38,21 @@ pub enum FolderError {
         /// The path.
         path: PathBuf,
     },
+    /// A run was put aside for another, which couldn't take its place.
+    #[error(
+        "rename {} to {}: {source}; the run that it was to replace is in {}",
+        .new.display(), .path.display(), .old.display()
+    )]
+    NotReplaced {
+        /// Folder of the new run.
+        new: PathBuf,
+        /// Name that it was to have.
+        path: PathBuf,
+        /// Present folder of the previous run.
+        old: PathBuf,
+        /// Error of the operating system.
+        source: io::Error,
+    },
     /// The operating system refused.
     #[error("{action} {path}: {source}")]
     System {

@@ -6,10 +6,12 @@
 
 use super::error::ManifestError;
 use super::names::{LOCK, MANIFEST, SECOND, SIGNATURE};
+pub(crate) use octant_base::regular::open;
+pub use octant_base::regular::read;
+use octant_base::regular::what;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{File, FileType};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -75,55 +77,6 @@ impl Entries {
         }
         Ok(found)
     }
-}
-
-/// Names the kind of an entry that is neither a file nor a folder.
-fn what(kind: FileType) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        if kind.is_fifo() {
-            return "a FIFO";
-        }
-        if kind.is_socket() {
-            return "a socket";
-        }
-        if kind.is_block_device() || kind.is_char_device() {
-            return "a device";
-        }
-    }
-    if kind.is_symlink() { "a link" } else { "no regular file" }
-}
-
-/// Opens a regular file and nothing else, even if the entry is replaced at this moment.
-pub(crate) fn open(path: &Path) -> io::Result<File> {
-    let kind = std::fs::symlink_metadata(path)?.file_type();
-    if !kind.is_file() {
-        let what = if kind.is_dir() { "a folder" } else { what(kind) };
-        let reason = format!("it is {what}, expected a regular file");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
-    }
-    let mut options = File::options();
-    options.read(true);
-    #[cfg(unix)]
-    {
-        use rustix::fs::OFlags;
-        use std::os::unix::fs::OpenOptionsExt;
-        let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY;
-        options.custom_flags(i32::try_from(flags.bits()).unwrap_or(0));
-    }
-    let file = options.open(path)?;
-    if file.metadata()?.is_file() {
-        return Ok(file);
-    }
-    Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file any more"))
-}
-
-/// Reads a regular file.
-pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    open(path)?.read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// Hashes a file of a folder.

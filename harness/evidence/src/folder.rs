@@ -13,6 +13,9 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Suffix of a folder's name while its run is in progress.
+pub const PARTIAL: &str = ".partial";
+
 /// Treatment of an existing folder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Existing {
@@ -44,7 +47,7 @@ impl RunFolder {
             return Err(FolderError::NoName { path: path.into() });
         };
         let mut partial_name = name.to_owned();
-        partial_name.push(".partial");
+        partial_name.push(PARTIAL);
         let partial = path.with_file_name(partial_name);
         leftover::clean(path)?;
         // Reported at the start, not after hours of simulation.
@@ -148,12 +151,10 @@ impl RunFolder {
         // Closed first: Windows doesn't rename a folder with an open file in it.
         drop(lock);
         system("remove", &lock_path, fs::remove_file(&lock_path))?;
-        let aside = if finished.exists() { Some(leftover::put_aside(&finished)?) } else { None };
-        system("rename", &partial, fs::rename(&partial, &finished))?;
-        // The run is there under its name: remains of the previous one are not its failure, and the
-        // next run removes them.
-        if let Some(aside) = aside {
-            let _ = fs::remove_dir_all(aside);
+        if finished.exists() {
+            leftover::replace(&finished, &partial)?;
+        } else {
+            system("rename", &partial, fs::rename(&partial, &finished))?;
         }
         Ok(finished)
     }

@@ -98,6 +98,23 @@ pub fn put_aside(folder: &Path) -> Result<PathBuf, FolderError> {
     Ok(aside)
 }
 
+/// Replaces the folder of a run by another, which takes its name.
+///
+/// # Errors
+/// If the operating system refuses. The previous run is back under its name then, or where the error says.
+pub fn replace(folder: &Path, new: &Path) -> Result<(), FolderError> {
+    let aside = put_aside(folder)?;
+    if let Err(source) = fs::rename(new, folder) {
+        let back = fs::rename(&aside, folder).is_ok();
+        let old = if back { folder.to_owned() } else { aside };
+        return Err(FolderError::NotReplaced { new: new.into(), path: folder.into(), old, source });
+    }
+    // The run is there under its name: remains of the previous one are not its failure, and the
+    // next run removes them.
+    let _ = fs::remove_dir_all(aside);
+    Ok(())
+}
+
 /// Removes a folder; its name disappears in one step.
 pub(super) fn discard(folder: &Path) -> Result<(), FolderError> {
     let aside = put_aside(folder)?;

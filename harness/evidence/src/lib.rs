@@ -6,6 +6,7 @@ pub mod build;
 mod difference;
 pub mod discrepancy;
 pub mod disposition;
+pub mod ended;
 mod error;
 mod facts;
 pub mod files;

@@ -9,6 +9,7 @@ pub use super::names::MANIFEST as FILE_NAME;
 
 use super::files::{self, Entries, system};
 use super::inputs::InputFacts;
+use octant_base::printable::printable;
 use octant_operator::{OperatorRecord, journal};
 use octant_realtime::schedule::Granted;
 use octant_requirements::equipment::Equipment;
@@ -243,7 +244,8 @@ impl Manifest {
             ManifestError::Content { path: path.clone(), reason: error.to_string() }
         })?;
         text.push('\n');
-        system("write", &path, std::fs::write(&path, text))?;
+        // The escapes are those of JSON: the same text is read.
+        system("write", &path, std::fs::write(&path, &*printable(&text)))?;
         if let Some(key) = &facts.key {
             key.sign(&path)?;
         }

@@ -1,6 +1,6 @@
 //! Folders of runs, and what kills leave of them.
 
-use octant_evidence::leftover::put_aside;
+use octant_evidence::leftover::{self, put_aside};
 use octant_evidence::{Existing, FolderError, LOCK, RunFolder};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -171,4 +171,26 @@ fn a_folder_that_is_no_run_is_never_removed() {
     assert!(matches!(error, FolderError::NotARun { .. }), "{error}");
     let error = RunFolder::create(Path::new("/"), Existing::Replace).unwrap_err();
     assert!(matches!(error, FolderError::NoName { .. }), "{error}");
+}
+
+#[test]
+fn a_replacement_that_fails_leaves_the_previous_run_and_says_where_it_is() {
+    let here = tempfile::tempdir().unwrap();
+    let (old, new) = (here.path().join("run"), here.path().join("run.partial"));
+    std::fs::create_dir(&old).unwrap();
+    std::fs::write(old.join("manifest.json"), "the previous one").unwrap();
+    let error = leftover::replace(&old, &new).unwrap_err();
+    let FolderError::NotReplaced { old: kept, .. } = &error else { panic!("{error}") };
+    assert_eq!(std::fs::read_to_string(kept.join("manifest.json")).unwrap(), "the previous one");
+    let said = error.to_string();
+    assert!(
+        said.ends_with(&format!("the run that it was to replace is in {}", kept.display())),
+        "{said}"
+    );
+    // The new folder went while its run was being finished.
+    let run = RunFolder::create(&old, Existing::Replace).unwrap();
+    std::fs::write(run.path().join("manifest.json"), "{}").unwrap();
+    let finished = run.finish().unwrap();
+    assert_eq!(std::fs::read_to_string(finished.join("manifest.json")).unwrap(), "{}");
+    assert_eq!(std::fs::read_dir(here.path()).unwrap().count(), 1, "nothing is left beside it");
 }

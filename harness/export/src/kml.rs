@@ -8,6 +8,7 @@ use super::error::ExportFailure;
 use super::job::{EXPORT_VERSION, Job, NewFile};
 use super::rows::each_row;
 use super::table::{ExportCell, ExportTable};
+use octant_base::printable::printable;
 use octant_sample::Mode;
 use octant_topics::solution::is_solution;
 use quick_xml::Writer;
@@ -150,7 +151,7 @@ impl<W: Write> Xml<W> {
 
     fn text(&mut self, name: &str, words: &str) -> std::io::Result<()> {
         self.open(name, &[])?;
-        self.put(Event::Text(BytesText::new(words)))?;
+        self.put(Event::Text(BytesText::new(&printable(words))))?;
         self.close(name)
     }
 

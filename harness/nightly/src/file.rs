@@ -1,6 +1,7 @@
 //! Files of a history: JSON with a version, written whole or not at all.
 
 use super::error::NightError;
+use octant_base::not_finite;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -24,7 +25,7 @@ pub(super) fn versioned<T: serde::de::DeserializeOwned>(
             expected: schema,
         });
     }
-    serde_json::from_str(text).map_err(wrong)
+    not_finite::from_str(text).map_err(wrong)
 }
 
 /// Writes a file: whole or not at all.

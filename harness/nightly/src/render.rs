@@ -4,6 +4,7 @@ use super::compare::{Change, NightComparison, Tested, TurnedCase};
 use super::night::{CampaignNight, Night, Program};
 use super::suite::SuiteResult;
 use octant_base::number::{counted, plain, significant};
+use octant_base::printable::printable;
 use octant_requirements::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -425,5 +426,5 @@ fn in_words(campaign: &str, scenario: &str, tests: &[&Tested]) -> String {
 
 /// Escapes a text for a cell of a table, on one line.
 fn escaped(text: &str) -> String {
-    text.replace('|', "\\|").replace(['\n', '\r'], " ")
+    printable(&text.replace('|', "\\|").replace(['\n', '\r'], " ")).into_owned()
 }

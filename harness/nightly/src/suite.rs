@@ -7,6 +7,7 @@
 use super::error::NightError;
 use super::file::write;
 use octant_base::child::{ChildEnded, finish};
+use octant_base::not_finite;
 use octant_base::pool::in_order;
 use octant_campaign::process::{self, TRIES};
 use octant_requirements::Verdict;
@@ -204,7 +205,7 @@ impl<'a> Case<'a> {
         let mut stored = None;
         if file.exists() {
             let text = std::fs::read_to_string(&file).map_err(NightError::of("read", &file))?;
-            let result: SuiteResult = serde_json::from_str(&text).map_err(|source| {
+            let result: SuiteResult = not_finite::from_str(&text).map_err(|source| {
                 NightError::Form { path: file.clone(), expected: "a result of the suite", source }
             })?;
             stored = (result.scenario_blake3 == scenario_blake3 && result.expected == case.expect)
@@ -376,6 +377,8 @@ fn start(
         ChildEnded::TooLong => None,
         ChildEnded::Status(status) => status.code(),
     };
-    let summary = Summary::from_json(&outcome.out).ok();
+    // A summary of a run that ended otherwise than it says is no verdict: its folder may not be whole.
+    let agrees = |summary: &Summary| status == Some(i32::from(summary.verdict.exit_code()));
+    let summary = Summary::from_json(&outcome.out).ok().filter(agrees);
     Ok(Tried::Said(Box::new((status, summary, outcome.err))))
 }

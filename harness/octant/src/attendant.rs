@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::operator_page::{BoundOperatorPage, OperatorPage};
 use crate::operator_terminal::{OperatorTerminal, TypedLine};
 use crate::terminal::note;
-use octant_base::control::Control;
+use octant_base::control::{Control, SetAtEnd};
 use octant_operator::mailbox::Mailbox;
 use octant_operator::script::{self, ScriptAnswer};
 use octant_operator::step::runs_on;
@@ -146,9 +146,8 @@ impl Attendant {
         let done = &done;
         std::thread::scope(|scope| {
             scope.spawn(move || self.serve(controls, done));
-            let result = work();
-            done.store(true, Ordering::Relaxed);
-            result
+            let _done = SetAtEnd(done);
+            work()
         })
     }
 
@@ -160,7 +159,11 @@ impl Attendant {
             if !is_last {
                 self.desk.look();
             }
-            self.mailbox.serve(|request| request.apply(&self.desk, AnswerWay::Command));
+            let problems =
+                self.mailbox.serve(|request| request.apply(&self.desk, AnswerWay::Command));
+            for problem in problems {
+                note!("octant: {problem}");
+            }
             for record in self.desk.records_from(told) {
                 told += 1;
                 self.tell(&record);

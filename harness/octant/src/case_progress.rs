@@ -1,6 +1,7 @@
 //! Progress of many cases on a terminal: rate, time left, slow cases and failures as they come.
 
 use crate::progress_bar::ProgressBar;
+use octant_base::control::SetAtEnd;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -207,8 +208,9 @@ impl CaseBar {
                     }
                 })
             });
+            let done = SetAtEnd(&self.done);
             let result = work();
-            self.done.store(true, Ordering::Relaxed);
+            drop(done);
             if let Some(ticker) = ticker {
                 ticker.thread().unpark();
             }

@@ -139,7 +139,7 @@ impl std::error::Error for RefusedCommand {}
 /// Prints help, the version, or the error of a command line, as clap does it.
 fn help(told: &clap::Error) -> u8 {
     // The style of the program's own errors: fragments without a full stop.
-    let text = told.render().to_string();
+    let text = printable(&told.render().to_string()).into_owned();
     let text = text.replace("For more information, try '--help'.", "try --help for all options");
     let text = text.replace("invalid digit found in string", "expected a whole number");
     // A reader that has gone (`| head`) is no failure.
@@ -163,6 +163,7 @@ pub(crate) fn say_build() {
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {
+    crate::memory::on_no_thread();
     ExitCode::from(status())
 }
 

@@ -218,11 +218,14 @@ fn outcome(
 }
 
 fn summary_of(run: &Path) -> Result<Summary, Failure> {
-    let path = run.join("summary.json");
-    let text = std::fs::read_to_string(&path)
-        .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
-    Summary::from_json(&text)
-        .map_err(|error| Failure::input(format!("failed to {error} ({})", path.display())))
+    let summary =
+        octant_evidence::ended::summary(run).map_err(|error| Failure::input(error).failed())?;
+    summary.ok_or_else(|| {
+        Failure::input(format!(
+            "found no manifest.json in {}, expected the folder of a run that has ended",
+            run.display()
+        ))
+    })
 }
 
 fn what_broke(arguments: &Arguments, summary: &Summary) -> Result<Broken, Failure> {

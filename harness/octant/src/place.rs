@@ -72,7 +72,7 @@ impl CampaignPlace {
     }
 
     /// Stores what a command has written into the folder.
-    pub(crate) fn put_back(&self) -> Result<(), Failure> {
+    pub(crate) fn put_back(&mut self) -> Result<(), Failure> {
         match self {
             Self::Folder(_) => Ok(()),
             Self::Stored(stored) => stored.put_back(),

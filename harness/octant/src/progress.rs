@@ -2,7 +2,7 @@
 
 use crate::case_progress::duration;
 use crate::progress_bar::ProgressBar;
-use octant_base::control::Control;
+use octant_base::control::{Control, SetAtEnd};
 use octant_base::interrupt;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -72,9 +72,8 @@ impl Follower<'_> {
                     }
                 }
             });
-            let result = work();
-            done.store(true, Ordering::Relaxed);
-            result
+            let _done = SetAtEnd(done);
+            work()
         })
     }
 }

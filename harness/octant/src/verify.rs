@@ -10,6 +10,7 @@ use octant_base::number::counted;
 use octant_campaign as campaign;
 use octant_evidence::attestation;
 use octant_evidence::disposition;
+use octant_evidence::ended::is_partial;
 use octant_evidence::files;
 use octant_evidence::inside::{self, Inside};
 use octant_evidence::manifest::{self, FolderDifference, Manifest};
@@ -290,14 +291,6 @@ fn second(
         ));
     }
     Ok(found)
-}
-
-/// Returns whether a folder has the name of an unfinished one, by whatever path it is given.
-fn is_partial(folder: &Path) -> bool {
-    let named = |path: &Path| {
-        path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(".partial"))
-    };
-    named(folder) || std::fs::canonicalize(folder).is_ok_and(|path| named(&path))
 }
 
 fn text(found: &Found) -> String {

@@ -36,7 +36,7 @@ fn equal_recordings_are_equal() {
     }
     let text = diff(folder.path(), &["a.mcap", "b.mcap"], 0);
     assert!(text.contains("settings: the same") && text.ends_with("\nequal\n"), "{text}");
-    assert!(text.contains("a.mcap has no summary.json"), "{text}");
+    assert!(text.contains("a.mcap has no summary of an ended run"), "{text}");
 }
 
 #[test]

@@ -106,7 +106,23 @@ fn a_summary() {
     let next = format!("\"schema\": {}", newest + 1);
     let (_folder, newer) = changed("run/summary.json", "\"schema\": 1", &next);
     let text = std::fs::read_to_string(newer).unwrap();
-    assert_refused(&Summary::from_json(&text).unwrap_err().to_string());
+    let refusal = Summary::from_json(&text).unwrap_err().to_string();
+    let expected = format!("schema {} found, 1 to {newest} expected", newest + 1);
+    assert!(refusal.contains(&expected), "{refusal}");
+}
+
+/// Null in the place of a number is NaN. The programs before schema 3 wrote it, and couldn't read it.
+#[test]
+fn a_summary_with_a_number_that_is_not_finite() {
+    let (_folder, path) =
+        changed("run/summary.json", "\"estimate\": ", "\"estimate\": null, \"was\": ");
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut summary = Summary::from_json(&text).unwrap();
+    let parameters = &summary.calibration.as_ref().unwrap().parameters;
+    assert_eq!(parameters.values().filter(|one| one.estimate.is_nan()).count(), 1);
+    assert_eq!(summary.needed_schema().unwrap(), octant_score::summary::NOT_FINITE);
+    summary.calibration = None;
+    assert_eq!(summary.needed_schema().unwrap(), octant_score::summary::WITH_FINDINGS);
 }
 
 #[test]

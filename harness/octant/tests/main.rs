@@ -85,6 +85,10 @@ mod observe_protection;
 mod operator;
 #[cfg(target_os = "linux")]
 mod operator_ways;
+#[cfg(target_os = "linux")]
+mod out_of_memory;
+#[cfg(unix)]
+mod outside_text;
 mod own_sequences;
 mod page_figures;
 #[cfg(unix)]
@@ -118,6 +122,8 @@ mod shared_table;
 mod smooth;
 mod solution;
 mod source_uri;
+#[cfg(feature = "object-storage")]
+mod storage_lies;
 mod system;
 mod system_foreign;
 mod system_tuned;

@@ -1,6 +1,7 @@
 //! Power of a device: a simulated supply whose output starts and kills `octant serve`, so a cut is a real cold start.
 
 use crate::common::program::{OCTANT, ended, ends, json, octant};
+use crate::outside_text::{nothing_acts, nothing_acts_in};
 use octant_power::simulate::{Peculiarities, SimulatedInstrument, within};
 use serde_json::Value;
 use std::net::TcpListener;
@@ -246,6 +247,24 @@ fn the_twin_begins_with_a_cold_start_of_its_own() {
     assert_eq!(bench.starts(), 3);
     assert!(bench.instrument.is_on(2), "left on");
     assert!(bench.file("summary.json")["counterfactual"].is_object());
+}
+
+#[test]
+fn an_identity_with_control_characters_acts_nowhere() {
+    let bench = Bench::new("", SUPPLY, 20.0);
+    let hostile = Peculiarities { hostile: true, ..Peculiarities::default() };
+    bench.instrument.becomes(hostile);
+    let output = bench.run(&[]);
+    assert!(matches!(output.status.code(), Some(0 | 1 | 3)), "{}", said(&output));
+    let run = bench.folder.path().join("out");
+    nothing_acts_in(&run);
+    let page = std::fs::read_to_string(run.join("report.html")).unwrap();
+    assert!(page.contains("Octant,\\u001b[2Jsupply\\u0007"), "it is shown");
+    let port = bench.instrument.port();
+    let by_hand = octant(&["power", &port, "--channel", "2", "--reply", "20 s", "status"]);
+    for bytes in [&output.stdout, &output.stderr, &by_hand.stdout, &by_hand.stderr] {
+        nothing_acts("terminal", &String::from_utf8_lossy(bytes));
+    }
 }
 
 #[test]

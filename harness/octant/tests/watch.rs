@@ -228,6 +228,52 @@ fn a_run_that_was_killed_is_told_from_one_that_goes_on() {
     shows(&error, &["nobody writes it any more"]);
 }
 
+/// A run that was killed between its summary and its manifest, or before its folder got its name, has no verdict: every
+/// command that tells one says so.
+#[test]
+fn a_run_that_was_killed_before_its_folder_was_whole_has_no_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let scenario = SECONDS.replace("[realtime]\noverrun = \"10 s\"\n", "");
+    std::fs::write(here.join("s.toml"), scenario).unwrap();
+    ended(octant_in(here, &["run", "s.toml", "--out", "whole"]), 0);
+    ended(octant_in(here, &["watch", "whole", "--plain"]), 0);
+    // Without the manifest, under both names.
+    let manifest = std::fs::read(here.join("whole/manifest.json")).unwrap();
+    std::fs::remove_file(here.join("whole/manifest.json")).unwrap();
+    for name in ["whole", "killed.partial"] {
+        if name != "whole" {
+            std::fs::rename(here.join("whole"), here.join(name)).unwrap();
+        }
+        for how in ["--plain", "--once"] {
+            let (text, error) = ended(octant_in(here, &["watch", name, how]), 4);
+            assert!(!text.contains("ended"), "{text}");
+            shows(&error, &["without a verdict: its folder isn't whole"]);
+        }
+        for command in ["report", "rejudge", "verify"] {
+            let (text, error) = ended(octant_in(here, &[command, name]), 2);
+            assert!(text.is_empty() && error.contains("manifest.json"), "{command}: {text}{error}");
+        }
+        let (text, _) = ended(octant_in(here, &["diff", name, name]), 0);
+        shows(&text, &["has no summary of an ended run"]);
+        assert!(!text.contains("pass") && !text.contains("verdict none"), "{text}");
+    }
+    // Whole but for its name.
+    std::fs::write(here.join("killed.partial/manifest.json"), &manifest).unwrap();
+    let (_, error) = ended(octant_in(here, &["watch", "killed.partial", "--plain"]), 4);
+    shows(&error, &["without a verdict: its folder isn't whole"]);
+    let (_, error) = ended(octant_in(here, &["rejudge", "killed.partial"]), 2);
+    shows(&error, &["the folder is a .partial"]);
+    // A summary that isn't the one of the manifest.
+    std::fs::rename(here.join("killed.partial"), here.join("altered")).unwrap();
+    let summary = std::fs::read_to_string(here.join("altered/summary.json")).unwrap();
+    std::fs::write(here.join("altered/summary.json"), summary.replace("by the clock", "another"))
+        .unwrap();
+    ended(octant_in(here, &["watch", "altered", "--plain"]), 4);
+    let (_, error) = ended(octant_in(here, &["diff", "altered", "altered"]), 2);
+    shows(&error, &["it isn't what manifest.json names"]);
+}
+
 const SECONDS: &str = "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\n\
     method = \"given\"\n[procedure.navigation]\nduration = \"3 s\"\n\
     [realtime]\noverrun = \"10 s\"\n[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\n\

@@ -86,7 +86,9 @@ fn refused(action: &'static str, path: &Path, source: io::Error) -> JournalError
 /// If the file can't be read, or a line is no record of this version.
 pub fn read(folder: &Path) -> Result<Vec<OperatorRecord>, JournalError> {
     let path = folder.join(FILE_NAME);
-    let text = match std::fs::read_to_string(&path) {
+    let read = octant_base::regular::read(&path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
+    let text = match read {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         Err(source) => return Err(refused("read", &path, source)),

@@ -14,6 +14,7 @@ pub mod desk;
 mod http;
 pub mod journal;
 pub mod mailbox;
+mod mails;
 #[cfg(feature = "page")]
 pub mod page;
 pub mod record;

@@ -2,20 +2,23 @@
 //!
 //! A request is a file `ask-N.json` in the folder `operator`, written whole before it has its name. The run takes it away
 //! and leaves `told-N.json`, which the other process takes away. Unlike a socket this works on every system, over shared
-//! folders, and with paths of any length.
+//! folders, and with paths of any length. Links and anything else that is no regular file are refused.
 
 use crate::desk::Desk;
+use crate::mails::Mails;
 use crate::record::AnswerWay;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Name of the folder.
 pub const FOLDER: &str = "operator";
 
-/// Most bytes of a request.
-const LARGEST: u64 = 1 << 16;
+/// Most problems that stay and are told.
+const STAYING: usize = 20;
 
 /// Pause between two looks for a reply.
 const LOOK: Duration = Duration::from_millis(20);
@@ -84,6 +87,9 @@ impl DeskRequest {
 #[derive(Debug)]
 pub struct Mailbox {
     folder: PathBuf,
+    mails: Mails,
+    /// Problems that stay, each of which is told once.
+    told: Mutex<BTreeSet<String>>,
 }
 
 /// Reasons why a request wasn't taken.
@@ -123,58 +129,75 @@ impl Mailbox {
     /// If it can't be made.
     pub fn open(run: &Path) -> Result<Self, MailboxError> {
         let folder = run.join(FOLDER);
-        match std::fs::create_dir(&folder) {
-            Ok(()) => Ok(Self { folder }),
+        let made = std::fs::create_dir(&folder).and_then(|()| Mails::open(&folder));
+        match made {
+            Ok(mails) => Ok(Self { folder, mails, told: Mutex::default() }),
             Err(source) => Err(MailboxError::System { action: "make", path: folder, source }),
         }
     }
 
-    /// Takes the requests that are there, and replies to each.
-    pub fn serve(&self, mut reply: impl FnMut(DeskRequest) -> DeskReply) {
-        let Ok(entries) = std::fs::read_dir(&self.folder) else { return };
-        for entry in entries.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
+    /// Takes the requests that are there, and replies to each. Returns what was found there that is none, in words.
+    #[must_use]
+    pub fn serve(&self, mut reply: impl FnMut(DeskRequest) -> DeskReply) -> Vec<String> {
+        let names = match self.mails.names() {
+            Ok(names) => names,
+            Err(error) => {
+                let problem = format!("failed to list {}: {error}", self.folder.display());
+                return self.once(problem).into_iter().collect();
+            }
+        };
+        let mut problems = Vec::new();
+        for name in names {
             let Some(number) = name.strip_prefix("ask-") else { continue };
-            let path = entry.path();
-            let is_file = std::fs::symlink_metadata(&path)
-                .is_ok_and(|found| found.is_file() && found.len() <= LARGEST);
-            let text = if is_file { std::fs::read_to_string(&path).ok() } else { None };
-            // Gone: the other process gave up, and its request doesn't count.
-            if std::fs::remove_file(&path).is_err() {
+            let text = self.mails.read(&name);
+            if let Err(error) = self.mails.remove(&name) {
+                // Gone: the other process gave up, and its request doesn't count.
+                if error.kind() != io::ErrorKind::NotFound {
+                    let path = self.folder.join(&name);
+                    let problem = format!("{}: found no request of an operator", path.display());
+                    problems.extend(self.once(problem));
+                }
                 continue;
             }
-            let request = text.and_then(|text| serde_json::from_str(&text).ok());
-            let told = match request {
-                Some(request) => reply(request),
-                None => DeskReply::Refused("the request can't be read".to_owned()),
+            let mut problem = |problem: String| {
+                problems.push(format!("{}: {problem}", self.folder.join(&name).display()));
             };
-            // Where this fails the other process says that it heard nothing.
-            let _ = put(&self.folder, &format!("told-{number}"), &told);
+            let request = text.and_then(|text| Ok(serde_json::from_str(&text)?));
+            let told = match request {
+                Ok(request) => reply(request),
+                Err(error) => {
+                    problem(format!("found no request of an operator: {error}"));
+                    DeskReply::Refused(format!("the request can't be read: {error}"))
+                }
+            };
+            // The other process hears nothing then.
+            if let Err(error) = self.mails.put(&format!("told-{number}"), &told) {
+                problem(format!("its reply can't be written: {error}"));
+            }
         }
+        problems
+    }
+
+    /// Returns a problem that wasn't told before.
+    fn once(&self, problem: String) -> Option<String> {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        (told.len() < STAYING && told.insert(problem.clone())).then_some(problem)
     }
 }
 
 impl Drop for Mailbox {
     fn drop(&mut self) {
         // The last reply is for a process that looks for it many times a second.
-        let is_reply = |name: &std::ffi::OsStr| name.to_string_lossy().starts_with("told-");
         for _ in 0..LAST_LOOKS {
-            let Ok(mut entries) = std::fs::read_dir(&self.folder) else { return };
-            if !entries.any(|entry| entry.is_ok_and(|entry| is_reply(&entry.file_name()))) {
+            let Ok(names) = self.mails.names() else { break };
+            if !names.iter().any(|name| name.starts_with("told-")) {
                 break;
             }
             std::thread::sleep(LOOK);
         }
+        // Of a link that was put in its place, the link goes.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
-}
-
-/// Writes a file whole.
-fn put(folder: &Path, name: &str, content: &impl Serialize) -> io::Result<()> {
-    let text = serde_json::to_string(content)?;
-    let draft = folder.join(format!(".{name}"));
-    std::fs::write(&draft, text)?;
-    std::fs::rename(&draft, folder.join(name))
 }
 
 /// Sends a request to the run in this folder, and waits for its reply.
@@ -187,33 +210,35 @@ pub fn request(
     patience: Duration,
 ) -> Result<DeskReply, MailboxError> {
     let folder = run.join(FOLDER);
-    if !folder.is_dir() {
-        return Err(MailboxError::Nobody(run.to_owned()));
-    }
-    let number = number();
-    let asked = folder.join(format!("ask-{number}"));
-    let told = folder.join(format!("told-{number}"));
-    let system = |action, path: &Path| {
-        let path = path.to_owned();
-        move |source| MailboxError::System { action, path, source }
+    let system =
+        |action, path: PathBuf| move |source| MailboxError::System { action, path, source };
+    let mails = match Mails::open(&folder) {
+        Ok(mails) => mails,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(MailboxError::Nobody(run.to_owned()));
+        }
+        Err(error) => return Err(system("open", folder)(error)),
     };
-    put(&folder, &format!("ask-{number}"), request).map_err(system("write", &asked))?;
+    let number = number();
+    let asked = format!("ask-{number}");
+    let told = format!("told-{number}");
+    mails.put(&asked, request).map_err(system("write", folder.join(&asked)))?;
     let begun = Instant::now();
     loop {
-        match std::fs::read_to_string(&told) {
+        match mails.read(&told) {
             Ok(text) => {
-                let _ = std::fs::remove_file(&told);
+                let _ = mails.remove(&told);
                 let read = serde_json::from_str(&text).map_err(io::Error::from);
-                return read.map_err(system("read", &told));
+                return read.map_err(system("read", folder.join(&told)));
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(system("read", &told)(error)),
+            Err(error) => return Err(system("read", folder.join(&told))(error)),
         }
-        if !folder.is_dir() {
+        if !mails.is_there() {
             return Err(MailboxError::Nobody(run.to_owned()));
         }
         // Taken away: the run has not taken it, and won't.
-        if begun.elapsed() >= patience && std::fs::remove_file(&asked).is_ok() {
+        if begun.elapsed() >= patience && mails.remove(&asked).is_ok() {
             let folder = run.to_owned();
             return Err(MailboxError::Silent { folder, waited: patience });
         }

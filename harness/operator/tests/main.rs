@@ -1,6 +1,9 @@
 //! Steps, answers, the desk and its ways, without a run.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+#[cfg(unix)]
+mod planted;
+
 use octant_faults::trigger::Trigger;
 use octant_operator::desk::DeskRefusal;
 use octant_operator::mailbox::{self, DeskReply, DeskRequest, Mailbox, MailboxError};
@@ -226,13 +229,13 @@ fn requests_of_another_process_are_replied_to_and_bad_ones_refused() {
         Err(MailboxError::Silent { .. })
     ));
     // What was given up doesn't count later.
-    open.serve(|request| request.apply(&desk, AnswerWay::Command));
+    assert!(open.serve(|request| request.apply(&desk, AnswerWay::Command)).is_empty());
     assert!(!desk.attendance().is_closed(0));
     let (path, asked) = (folder.path().to_owned(), answer.clone());
     let other =
         std::thread::spawn(move || mailbox::request(&path, &asked, Duration::from_secs(20)));
     while !other.is_finished() {
-        open.serve(|request| request.apply(&desk, AnswerWay::Command));
+        assert!(open.serve(|request| request.apply(&desk, AnswerWay::Command)).is_empty());
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(
@@ -248,7 +251,7 @@ fn requests_of_another_process_are_replied_to_and_bad_ones_refused() {
     ] {
         std::fs::write(mails.join(name), text).unwrap();
     }
-    open.serve(|_| panic!("it can't be read"));
+    assert_eq!(open.serve(|_| panic!("it can't be read")).len(), 3);
     for name in ["told-1", "told-2", "told-3"] {
         assert!(std::fs::read_to_string(mails.join(name)).unwrap().contains("can't be read"));
         std::fs::remove_file(mails.join(name)).unwrap();

@@ -28,6 +28,8 @@ pub struct Peculiarities {
     pub no_number: bool,
     /// True if its error queue never ends.
     pub endless: bool,
+    /// True if its identity acts on a terminal.
+    pub hostile: bool,
 }
 
 impl Default for Peculiarities {
@@ -41,6 +43,7 @@ impl Default for Peculiarities {
             words: false,
             no_number: false,
             endless: false,
+            hostile: false,
         }
     }
 }
@@ -227,6 +230,9 @@ impl State {
         let selected = self.selected;
         let channel = self.channels.get(&selected).copied().unwrap_or(SimulatedChannel::new());
         match header {
+            "*IDN?" if how.hostile => {
+                Some("Octant,\u{1b}[2Jsupply\u{7},\u{9b}31m0,1.0\u{202e}".to_owned())
+            }
             "*IDN?" => Some("Octant,simulated supply,0,1.0".to_owned()),
             "*CLS" => {
                 self.errors.clear();

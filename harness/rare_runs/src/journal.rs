@@ -6,6 +6,7 @@
 use crate::error::RareError;
 use crate::outcome::RareOutcome;
 use octant_base::chained_lines::ChainedLines;
+use octant_base::not_finite;
 use octant_rare::point::RarePoint;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -92,7 +93,7 @@ impl RareJournal {
             &first,
             |found| refuse_other(identity, found),
             |json| {
-                let run: RunLine = serde_json::from_str(json)
+                let run: RunLine = not_finite::from_str(json)
                     .map_err(|error| format!("expected a run: {error}"))?;
                 let digest = unhex(&run.point);
                 let digest = digest

@@ -12,6 +12,7 @@ use octant_campaign::report::file_names::STATISTICS;
 use octant_campaign::status;
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{CampaignResults, StoredResult, keep_in};
+use octant_evidence::ended::is_partial;
 use octant_evidence::files;
 use octant_evidence::inside::{SUMMARY, certified};
 use octant_evidence::manifest::{self, FILE_NAME, Manifest, ManifestError};
@@ -155,8 +156,11 @@ pub fn folder(path: &Path) -> Result<Rejudged, RejudgeError> {
     let judged = if there(FILE_NAME) {
         let manifest = Manifest::read(path)?;
         let differences = manifest.verify(path)?;
-        if !differences.is_empty() {
-            let words: Vec<String> = differences.iter().map(ToString::to_string).collect();
+        let mut words: Vec<String> = differences.iter().map(ToString::to_string).collect();
+        if is_partial(path) {
+            words.push("the folder is a .partial: its run didn't finish".to_owned());
+        }
+        if !words.is_empty() {
             let differences = words.join("; ");
             return Err(RejudgeError::Differs { folder: path.to_owned(), differences });
         }

@@ -1,7 +1,9 @@
 //! Frame of every page: one file, no network access.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use octant_base::printable::printable;
 use octant_requirements::Verdict;
+use std::borrow::Cow;
 
 /// Parts of the script, in the order in which they need each other.
 const SCRIPT: [&str; 6] = [
@@ -21,9 +23,9 @@ const STYLE: [&str; 3] = [
 ];
 
 /// Renders a whole page. The script adds zoom, cursor and switches to the charts; without it no content
-/// is missing.
+/// is missing. Text from outside may be anywhere in the body: nothing in the page acts, and XML allows every character.
 pub fn page(title: &str, body: &Markup) -> String {
-    html! {
+    let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -44,7 +46,11 @@ pub fn page(title: &str, body: &Markup) -> String {
             }
         }
     }
-    .into_string()
+    .into_string();
+    match printable(&page) {
+        Cow::Borrowed(_) => page,
+        Cow::Owned(page) => page,
+    }
 }
 
 /// A section of a page, with an anchor and an entry in the contents.

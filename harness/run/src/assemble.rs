@@ -24,7 +24,8 @@ use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
-    AllanDeviation, AlteredStreamSummary, BaselineMethod, ParameterScore, SCHEMA, Summary, results,
+    AllanDeviation, AlteredStreamSummary, BaselineMethod, ParameterScore, Summary, WITH_FINDINGS,
+    results,
 };
 use octant_turntable::TableAxis;
 use std::collections::BTreeMap;
@@ -145,7 +146,7 @@ pub fn assemble_with(
     let baseline_calibration_errors =
         baseline.as_ref().map_or_else(SolutionSeries::default, filtered);
     let mut summary = Summary {
-        schema: SCHEMA,
+        schema: WITH_FINDINGS,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         numerics: Some(NUMERICS),
         scenario: scenario.title.clone(),
@@ -189,6 +190,7 @@ pub fn assemble_with(
         }
         scenario.decision.uncertainty(measure, &against)
     })?;
+    summary.schema = summary.needed_schema()?;
     let report = ReportData {
         solution: primary.watcher.solution.clone(),
         baseline_solution,

@@ -18,20 +18,27 @@ use super::finding::Finding;
 use super::reference::AnalyticReference;
 use super::verdict::RequirementResult;
 use super::work::Work;
+use octant_base::not_finite;
+use octant_base::printable::printable;
 use octant_requirements::Verdict;
 use octant_requirements::decision::Decided;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
-/// Schema version of `summary.json` that this program writes.
-pub const SCHEMA: u32 = 2;
+/// Newest schema version of `summary.json`, which this program reads.
+pub const SCHEMA: u32 = 3;
 
 /// First schema with findings, plan and work done: older files are read without them.
 pub const WITH_FINDINGS: u32 = 2;
 
+/// First schema in which a number may be null: it isn't finite. Older programs can't read it, so that a summary without
+/// such a number is of the schema before.
+pub const NOT_FINITE: u32 = 3;
+
 /// Summary of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// Schema version: [`SCHEMA`].
+    /// Schema version: that of [`Summary::needed_schema`].
     pub schema: u32,
     /// Version of the program that made the run.
     pub octant: String,
@@ -93,6 +100,16 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Finds the oldest schema that holds this summary: [`NOT_FINITE`] if a number isn't finite that readers of the schema
+    /// before need, else [`WITH_FINDINGS`].
+    ///
+    /// # Errors
+    /// If the summary can't be written as JSON.
+    pub fn needed_schema(&self) -> Result<u32, serde_json::Error> {
+        let document = serde_json::to_value(self)?;
+        Ok(if Self::deserialize(&document).is_ok() { WITH_FINDINGS } else { NOT_FINITE })
+    }
+
     /// Writes the bytes of `summary.json`: pretty JSON with a final newline. A number that is not
     /// finite becomes null.
     ///
@@ -101,10 +118,14 @@ impl Summary {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let mut text = rows_on_one_line(&serde_json::to_string_pretty(self)?);
         text.push('\n');
-        Ok(text)
+        // The escapes are those of JSON: the same text is read.
+        Ok(match printable(&text) {
+            Cow::Borrowed(_) => text,
+            Cow::Owned(text) => text,
+        })
     }
 
-    /// Reads a `summary.json`.
+    /// Reads a `summary.json`. Null in the place of a number is NaN.
     ///
     /// # Errors
     /// If it isn't JSON, isn't a summary, or has a newer `schema`.
@@ -118,7 +139,7 @@ impl Summary {
         if !(1..=SCHEMA).contains(&version.schema) {
             return Err(SummaryError::Schema { found: version.schema });
         }
-        serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))
+        not_finite::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))
     }
 }
 

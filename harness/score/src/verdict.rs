@@ -46,7 +46,7 @@ impl RequirementResult {
     /// inconclusive had a reason outside of the value, which is derived again where it belongs.
     #[must_use]
     pub(super) fn again(&self) -> Self {
-        let margin = self.value.map(|value| self.comparison.margin(value, self.limit));
+        let margin = margin(self.comparison, self.value, self.limit);
         let band = self.uncertainty.unwrap_or(0.0);
         let (verdict, reason) = match self.value {
             _ if !self.limit.is_finite() => (Verdict::Inconclusive, self.reason.clone()),
@@ -130,11 +130,16 @@ pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult 
         comparison: requirement.comparison,
         limit: requirement.limit,
         value,
-        margin: value.map(|v| requirement.comparison.margin(v, requirement.limit)),
+        margin: margin(requirement.comparison, value, requirement.limit),
         uncertainty: None,
         verdict,
         reason,
     }
+}
+
+/// Margin of a value to its limit; `None` without a value, and where the difference isn't a number that a file can hold.
+fn margin(comparison: Comparison, value: Option<f64>, limit: f64) -> Option<f64> {
+    value.map(|value| comparison.margin(value, limit)).filter(|margin| margin.is_finite())
 }
 
 /// Reason why a summary has no number at a path.

@@ -75,12 +75,13 @@ fn the_file_is_that_of_nextest() {
 }
 
 #[test]
-fn control_characters_are_left_out() {
+fn control_characters_are_escaped() {
     let suite = JunitSuite {
         name: "a\u{1b}[31m\0\u{ffff}b\t".to_owned(),
         properties: Vec::new(),
         cases: Vec::new(),
     };
     let xml = document("octant", &[suite]).expect("can be written");
-    assert!(xml.contains("name=\"a[31mb\""), "{xml}");
+    assert!(xml.contains("name=\"a\\u001b[31m\\u0000\\uffffb"), "{xml}");
+    assert!(!xml.contains(['\u{1b}', '\0', '\u{ffff}']), "{xml:?}");
 }

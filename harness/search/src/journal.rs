@@ -7,6 +7,7 @@ use crate::space::SearchSpace;
 use crate::space_file::to_toml;
 use crate::trial::FaultTrial;
 use octant_base::chained_lines::ChainedLines;
+use octant_base::not_finite;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -57,7 +58,7 @@ impl SearchJournal {
             &first,
             |found| refuse_other(identity, found),
             |json| {
-                let trial = serde_json::from_str(json);
+                let trial = not_finite::from_str(json);
                 known.push(trial.map_err(|error| format!("expected a trial: {error}"))?);
                 Ok(())
             },
@@ -133,7 +134,7 @@ pub(crate) fn read(
     ChainedLines::read(path, in_space, |json| {
         hasher.update(json.as_bytes());
         let trial: FaultTrial =
-            serde_json::from_str(json).map_err(|error| format!("expected a trial: {error}"))?;
+            not_finite::from_str(json).map_err(|error| format!("expected a trial: {error}"))?;
         let faults = &trial.candidate.faults;
         if faults.is_empty() || !faults.iter().all(|fault| fault.is_in(space)) {
             return Err("found no fault, or one that isn't in the space".to_owned());

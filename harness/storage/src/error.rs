@@ -49,6 +49,14 @@ pub enum StorageError {
         /// Words of the storage or of its client.
         reason: String,
     },
+    /// The storage confirmed an object that it doesn't have.
+    #[error("write {object}: the storage confirmed it, and reading it back {reason}")]
+    NotKept {
+        /// Address of the object.
+        object: String,
+        /// Found and expected.
+        reason: String,
+    },
     /// An object can't be what its name says.
     #[error("read {object}: {reason}")]
     Form {

@@ -3,9 +3,10 @@
 use super::address::{StorageAddress, StoragePlace};
 use super::error::StorageError;
 use super::layout::BUNDLE;
+use super::listing::pages;
 use futures_util::TryStreamExt;
 use futures_util::future::{Either, join_all, select};
-use object_store::aws::{AmazonS3Builder, Checksum};
+use object_store::aws::{AmazonS3, AmazonS3Builder, Checksum};
 use object_store::local::LocalFileSystem;
 use object_store::memory::InMemory;
 use object_store::path::Path as ObjectPath;
@@ -28,6 +29,8 @@ const RETRY: Duration = Duration::from_secs(180);
 const REQUEST: Duration = Duration::from_secs(500);
 /// Longest time in which nothing of an answer comes.
 const SILENCE: Duration = Duration::from_secs(30);
+/// Longest time in which an object that was written has to be there.
+const READ_BACK: Duration = Duration::from_secs(10);
 /// Objects that are read at a time.
 const AT_A_TIME: usize = 8;
 
@@ -78,6 +81,8 @@ pub enum PutOutcome {
 pub struct Storage {
     address: StorageAddress,
     store: Arc<dyn ObjectStore>,
+    /// The same, where lists come in pages.
+    in_pages: Option<AmazonS3>,
     prefix: ObjectPath,
     options: StorageOptions,
     runtime: Runtime,
@@ -90,9 +95,12 @@ impl Storage {
     /// # Errors
     /// If the environment describes no storage, or the folder isn't there.
     pub fn open(address: &StorageAddress, options: StorageOptions) -> Result<Self, StorageError> {
+        let mut in_pages = None;
         let (store, prefix): (Arc<dyn ObjectStore>, ObjectPath) = match &address.place {
             StoragePlace::S3 { bucket, prefix } => {
-                (Arc::new(s3(address, bucket, options.retry)?), prefix.clone())
+                let store = s3(address, bucket, options.retry)?;
+                in_pages = Some(store.clone());
+                (Arc::new(store), prefix.clone())
             }
             StoragePlace::Folder(folder) => {
                 let store = LocalFileSystem::new_with_prefix(folder)
@@ -100,7 +108,7 @@ impl Storage {
                 (Arc::new(store.with_fsync(true)), ObjectPath::default())
             }
         };
-        Self::with(address, store, prefix, options)
+        Ok(Self { in_pages, ..Self::with(address, store, prefix, options)? })
     }
 
     /// Makes a storage in the memory of this process, for tests.
@@ -126,7 +134,7 @@ impl Storage {
             object: address.to_string(),
             reason: error.to_string(),
         })?;
-        Ok(Self { address: address.clone(), store, prefix, options, runtime })
+        Ok(Self { address: address.clone(), store, in_pages: None, prefix, options, runtime })
     }
 
     /// Returns the address.
@@ -169,12 +177,19 @@ impl Storage {
     /// Lists the objects whose names begin with a folder, or all with an empty text, with their lengths.
     ///
     /// # Errors
-    /// If the storage refuses or can't be reached.
+    /// If the storage refuses or can't be reached, or the list doesn't end.
     pub fn list(&self, under: &str) -> Result<BTreeMap<String, u64>, StorageError> {
         let path = self.path(under)?;
         let path = Some(&path).filter(|path| !path.as_ref().is_empty());
-        let list = async { self.store.list(path).try_collect::<Vec<_>>().await };
-        let found = self.wait("list", under, true, list)?;
+        let list = async {
+            match &self.in_pages {
+                Some(store) => pages(store, path.map(|path| format!("{path}/")).as_deref()).await,
+                None => self.store.list(path).try_collect::<Vec<_>>().await.map(Ok),
+            }
+        };
+        let found = self.wait("list", under, true, list)?.map_err(|reason| {
+            StorageError::Failed { action: "list", object: self.address.of(under), reason }
+        })?;
         let name = |path: &ObjectPath| {
             let rest = path.as_ref().strip_prefix(self.prefix.as_ref())?;
             Some(rest.trim_start_matches('/').to_owned())
@@ -183,22 +198,24 @@ impl Storage {
         Ok(found.collect())
     }
 
-    /// Writes an object, over another of the same name if there is one.
+    /// Writes an object, over another of the same name if there is one, and reads it back.
     ///
     /// # Errors
-    /// If the storage refuses or can't be reached.
+    /// If the storage refuses or can't be reached, or hasn't kept the object.
     pub fn put(&self, name: &str, bytes: Vec<u8>) -> Result<(), StorageError> {
         let path = self.path(name)?;
-        let put = async { self.store.put(&path, PutPayload::from(bytes)).await };
-        self.wait("write", name, false, put).map(|_| ())
+        let payload = PutPayload::from(bytes.clone());
+        let put = async { self.store.put(&path, payload).await };
+        self.wait("write", name, false, put)?;
+        self.is_kept(name, &path, &bytes)
     }
 
-    /// Writes an object only if there is none of this name: two writers never replace each other's.
+    /// Writes an object only if there is none of this name, and reads it back: two writers never replace each other's.
     ///
     /// A request whose answer is lost may have written the object: it is tried again, and finds its own bytes.
     ///
     /// # Errors
-    /// If the storage refuses or can't be reached.
+    /// If the storage refuses or can't be reached, or hasn't kept the object.
     pub fn put_new(&self, name: &str, bytes: &[u8]) -> Result<PutOutcome, StorageError> {
         let path = self.path(name)?;
         let payload = PutPayload::from(bytes.to_vec());
@@ -208,7 +225,7 @@ impl Storage {
             let put = self.store.put_opts(&path, payload.clone(), PutMode::Create.into());
             let tried = self.runtime.block_on(put);
             let error = match tried {
-                Ok(_) => return Ok(PutOutcome::New),
+                Ok(_) => return self.is_kept(name, &path, bytes).map(|()| PutOutcome::New),
                 // Some services answer so too while another request for the name is under way.
                 Err(error @ Error::AlreadyExists { .. }) => match self.there(name, &path)? {
                     Some(there) if there == bytes => return Ok(PutOutcome::Same),
@@ -224,6 +241,36 @@ impl Storage {
             }
             std::thread::sleep(pause);
             pause = (2 * pause).min(Duration::from_secs(10));
+        }
+    }
+
+    /// Checks that an object which the storage has confirmed is there with its bytes. A storage of many hosts may have it a
+    /// moment later.
+    fn is_kept(&self, name: &str, path: &ObjectPath, bytes: &[u8]) -> Result<(), StorageError> {
+        let begun = Instant::now();
+        let mut pause = Duration::from_millis(100);
+        loop {
+            let found = self.there(name, path)?;
+            if found.as_deref() == Some(bytes) {
+                return Ok(());
+            }
+            if begun.elapsed() >= self.options.retry.min(READ_BACK) {
+                let hash = |bytes: &[u8]| blake3::hash(bytes).to_hex();
+                let found = found.map_or_else(
+                    || "found nothing".to_owned(),
+                    |found| format!("found {} bytes with BLAKE3 {}", found.len(), hash(&found)),
+                );
+                return Err(StorageError::NotKept {
+                    object: self.address.of(name),
+                    reason: format!(
+                        "{found}, expected {} bytes with BLAKE3 {}",
+                        bytes.len(),
+                        hash(bytes)
+                    ),
+                });
+            }
+            std::thread::sleep(pause);
+            pause *= 2;
         }
     }
 
@@ -288,11 +335,7 @@ async fn read(store: &dyn ObjectStore, path: &ObjectPath) -> Result<Option<Vec<u
 }
 
 /// Makes the client of an S3-compatible service.
-fn s3(
-    address: &StorageAddress,
-    bucket: &str,
-    retry: Duration,
-) -> Result<object_store::aws::AmazonS3, StorageError> {
+fn s3(address: &StorageAddress, bucket: &str, retry: Duration) -> Result<AmazonS3, StorageError> {
     // If another part of the program has chosen a provider already, that one serves as well.
     let _ = rustls::crypto::ring::default_provider().install_default();
     plain_http("AWS_ENDPOINT_URL_S3")?;

@@ -4,6 +4,7 @@ use super::about::About;
 use super::place::RunPlace;
 use super::state::RunState;
 use super::tail::{PollEnd, Tail, TailError};
+use octant_evidence::ended;
 use octant_recorder::reader::Item;
 use octant_requirements::Verdict;
 use octant_score::judge::derive;
@@ -30,7 +31,7 @@ pub enum Stage {
     Ended(Box<Summary>),
     /// The recording ends in the middle, and no program writes it any more.
     BrokenOff,
-    /// The recording is complete, no program works on the run any more, and it has no verdict.
+    /// The recording is complete, no program works on the run any more, and its folder isn't whole: it has no verdict.
     Unjudged,
 }
 
@@ -103,10 +104,10 @@ impl Follow {
             PollEnd::More => Stage::Running,
             PollEnd::Present if is_written && self.has_head => Stage::Running,
             PollEnd::Present if is_written => Stage::Starting,
-            // An interrupted run has a verdict too.
+            // An interrupted run has a verdict too. As long as a program writes the run, nothing in its folder is final.
+            PollEnd::End if is_written => Stage::Recorded,
             _ => match self.summary() {
                 Some(summary) => Stage::Ended(Box::new(summary)),
-                None if is_written => Stage::Recorded,
                 // A run that is being renamed has its verdict at the next poll.
                 None if !was_left => {
                     self.is_left = true;
@@ -160,11 +161,10 @@ impl Follow {
             .filter(|left_s| left_s.is_finite())
     }
 
-    /// Reads the verdict, once it is complete.
+    /// Reads the verdict, once the folder is whole.
     fn summary(&self) -> Option<Summary> {
-        let path = self.place.file("summary.json")?;
-        // A file that is being written isn't valid JSON yet, and is read again.
-        let mut summary: Summary = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+        // Files that are being written can't be read yet, and are read again.
+        let mut summary = ended::summary(self.place.folder()).ok()??;
         // A verdict that contradicts the summary's numbers isn't shown.
         let found = rederive::contradictions(&summary);
         if !found.is_empty() {

@@ -39,7 +39,9 @@ pub fn stage(follow: &Follow) -> String {
         Stage::Recorded => "recorded, and not judged yet".to_owned(),
         Stage::Ended(summary) => format!("ended: {}", summary.verdict.name()),
         Stage::BrokenOff => "broke off: nobody writes it any more".to_owned(),
-        Stage::Unjudged => "recorded to its end, without a verdict".to_owned(),
+        Stage::Unjudged => {
+            "recorded to its end, without a verdict: its folder isn't whole".to_owned()
+        }
     }
 }
 

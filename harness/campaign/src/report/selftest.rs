@@ -1,5 +1,6 @@
 //! Reads `selftest.json` in the folder of a campaign: the result of the program's self-test.
 
+use octant_base::not_finite;
 use octant_requirements::Verdict;
 use serde::Deserialize;
 use std::path::Path;
@@ -46,5 +47,5 @@ pub(super) fn read(folder: &Path) -> Result<Option<SelfTest>, String> {
             version.schema
         ));
     }
-    serde_json::from_str(&text).map(Some).map_err(wrong)
+    not_finite::from_str(&text).map(Some).map_err(wrong)
 }

@@ -9,6 +9,7 @@ use super::writer::{EXTENSION, FOLDER};
 use crate::case::{CaseResult, ResultError};
 use crate::facts::CaseFacts;
 use crate::plan::{Case, Plan};
+use octant_base::not_finite;
 use octant_base::pool::{each_in_order, processors};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -329,7 +330,7 @@ impl CampaignResults {
         let place = self.place_of(stored, &case.id);
         let head = self.at(record, read_head)?;
         let form = |source| ResultError::Form { place: place.clone(), source };
-        let facts: CaseFacts = serde_json::from_slice(&head.facts).map_err(form)?;
+        let facts: CaseFacts = not_finite::from_slice(&head.facts).map_err(form)?;
         facts.belongs(&place, plan.planned(case).ok(), case)?;
         Ok(Some(facts))
     }
@@ -349,7 +350,7 @@ impl CampaignResults {
         if let Stored::Record(record) = stored
             && record.has_facts
             && let Ok(head) = self.at(record, read_head)
-            && let Ok(facts) = serde_json::from_slice::<CaseFacts>(&head.facts)
+            && let Ok(facts) = not_finite::from_slice::<CaseFacts>(&head.facts)
         {
             return facts.error.is_some();
         }

@@ -31,8 +31,8 @@ impl From<MergeError> for Failure {
 
 /// Merges the tables of all parts, here or on object storage.
 pub(super) fn command(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
-    let place = CampaignPlace::of(folder, Needs::Results)?;
-    let folder = place.folder();
+    let mut place = CampaignPlace::of(folder, Needs::Results)?;
+    let folder = &place.folder().to_owned();
     let plan = read(folder)?;
     if place.is_stored() {
         tables(&plan, &place)?;

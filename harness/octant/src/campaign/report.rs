@@ -32,8 +32,8 @@ pub(super) struct Arguments {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let started = SystemTime::now();
-    let place = CampaignPlace::of(&arguments.folder, Needs::All)?;
-    let folder = place.folder();
+    let mut place = CampaignPlace::of(&arguments.folder, Needs::All)?;
+    let folder = &place.folder().to_owned();
     let plan = read(folder)?;
     // An invalid key is reported before anything is written.
     let key = if arguments.out.is_none() { signing_key()? } else { None };

@@ -3,6 +3,7 @@
 use super::outcome::{Outcome, name_of};
 use crate::failure::Failure;
 use crate::terminal::write;
+use octant_base::not_finite;
 use octant_design::Rotation;
 use octant_design::candidate::GridStop;
 use octant_design::measure::DesignMeasure;
@@ -38,7 +39,7 @@ impl<'a> States<'a> {
         let bytes = std::fs::read(path).map_err(|error| {
             Failure::input(format!("failed to read {}: {error}", path.display()))
         })?;
-        let all = serde_json::from_slice(&bytes).map_err(|error| {
+        let all = not_finite::from_slice(&bytes).map_err(|error| {
             Failure::input(format!(
                 "failed to read {}: {error}, expected the state of a search",
                 path.display()

@@ -30,7 +30,7 @@ impl StoredCampaign {
     }
 
     /// Never called.
-    pub(crate) fn put_back(&self) -> Result<(), Failure> {
+    pub(crate) fn put_back(&mut self) -> Result<(), Failure> {
         match *self {}
     }
 }

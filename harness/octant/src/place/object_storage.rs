@@ -3,6 +3,7 @@
 use super::Needs;
 use crate::failure::Failure;
 use crate::terminal::{note, print};
+use octant_base::control::SetAtEnd;
 use octant_base::interrupt;
 use octant_base::number::counted;
 use octant_campaign::execute::Shard;
@@ -40,6 +41,7 @@ impl From<StorageError> for Failure {
                 message: format!("failed to {error}"),
             },
             StorageError::Failed { .. }
+            | StorageError::NotKept { .. }
             | StorageError::Form { .. }
             | StorageError::Part(_)
             | StorageError::System { .. } => Self::bench(error).failed(),
@@ -70,10 +72,17 @@ impl StoredCampaign {
         self.storage.address().to_string()
     }
 
-    /// Stores what was written into the folder.
-    pub(crate) fn put_back(&self) -> Result<(), Failure> {
-        self.work.put_back(&self.storage)?;
-        Ok(())
+    /// Stores what was written into the folder, which stays if it can't be stored.
+    pub(crate) fn put_back(&mut self) -> Result<(), Failure> {
+        match self.work.put_back(&self.storage) {
+            Ok(_) => Ok(()),
+            Err(error) => {
+                let failure = Failure::from(error);
+                let folder = self.work.keep().display();
+                let message = format!("{}; its files are in {folder}", failure.message);
+                Err(Failure { message, ..failure })
+            }
+        }
     }
 }
 
@@ -143,7 +152,7 @@ pub(crate) fn run_part(
     let (ran, uploaded) = std::thread::scope(|scope| {
         let follow = scope.spawn(|| uploads.follow(&is_done, stop));
         let ran = {
-            let _done = Done(&is_done);
+            let _done = SetAtEnd(&is_done);
             run(work.path())
         };
         (ran, follow.join())
@@ -168,13 +177,4 @@ pub(crate) fn run_part(
         print(&format!("{results} uploaded to {} in {segments}\n", storage.address()))?;
     }
     ran
-}
-
-/// Sets a flag when it goes, whatever ends the work.
-struct Done<'a>(&'a AtomicBool);
-
-impl Drop for Done<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }

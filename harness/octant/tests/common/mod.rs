@@ -6,6 +6,7 @@ pub mod attended;
 pub mod epochs;
 pub mod foreign;
 pub mod program;
+pub mod readers;
 pub mod results;
 #[cfg(target_os = "linux")]
 pub mod running;

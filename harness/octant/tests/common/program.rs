@@ -1,5 +1,6 @@
 //! The program `octant`, started as a user starts it.
 
+use super::readers::read_written;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -14,14 +15,20 @@ pub fn program(arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs the program to its end.
+/// Runs the program to its end. What `octant run` has written is read by every reader.
+#[track_caller]
 pub fn octant(arguments: &[&str]) -> Output {
-    program(arguments).output().unwrap()
+    let output = program(arguments).output().unwrap();
+    read_written(arguments, Path::new(""), &output);
+    output
 }
 
-/// Runs the program to its end in a folder.
+/// Runs the program to its end in a folder, as [`octant`].
+#[track_caller]
 pub fn octant_in(folder: &Path, arguments: &[&str]) -> Output {
-    program(arguments).current_dir(folder).output().unwrap()
+    let output = program(arguments).current_dir(folder).output().unwrap();
+    read_written(arguments, folder, &output);
+    output
 }
 
 /// Checks the exit status; returns stdout and stderr.

@@ -8,6 +8,7 @@ mod answers;
 mod bench;
 mod fmu;
 mod honest;
+mod numbers;
 mod page;
 mod program;
 mod sessions;

@@ -147,8 +147,20 @@ class Run(Method):
 
     @property
     def verdict(self) -> str:
-        """Verdict: ``"pass"``, ``"fail"``, ``"inconclusive"`` or ``"error"``."""
+        """Verdict: ``"pass"``, ``"fail"``, ``"inconclusive"`` or ``"error"``.
+
+        Raises
+        ------
+        InputError
+            If the run goes on or was killed: a folder without its manifest has no verdict.
+        """
+        if not (self.path / "manifest.json").is_file():
+            raise InputError(f"{self.path} has no manifest.json: the run hasn't ended, and has no verdict")
         return self.summary["verdict"]
+
+    @property
+    def _shown_verdict(self) -> str:
+        return self.verdict if (self.path / "manifest.json").is_file() else "not ended"
 
     @property
     def reasons(self) -> list[str]:
@@ -188,7 +200,7 @@ class Run(Method):
         return self.path / "report.html"
 
     def __repr__(self) -> str:
-        return f"Run({str(self.path)!r}, verdict={self.verdict!r})"
+        return f"Run({str(self.path)!r}, verdict={self._shown_verdict!r})"
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -199,7 +211,7 @@ class Run(Method):
             for row in self.requirements
         )
         head = "<tr><th>requirement</th><th>measure</th><th>value</th><th>limit</th><th>verdict</th></tr>"
-        return f"<p>{escape(str(self.path))}: <b>{escape(self.verdict)}</b></p><table>{head}{rows}</table>"
+        return f"<p>{escape(str(self.path))}: <b>{escape(self._shown_verdict)}</b></p><table>{head}{rows}</table>"
 
 
 class Campaign:

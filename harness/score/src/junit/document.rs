@@ -1,5 +1,6 @@
 //! JUnit XML, in the flavour of nextest that CI systems read.
 
+use octant_base::printable::printable;
 use octant_requirements::Verdict;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, Event};
@@ -181,13 +182,12 @@ fn properties(
     writer.write_event(Event::End(BytesEnd::new("properties")))
 }
 
-/// Makes a tag with attributes. Control characters are left out: XML has no form for most of them, and
+/// Makes a tag with attributes. Control characters are escaped: XML has no form for most of them, and
 /// a terminal would obey others.
 fn tag<'a>(name: &'a str, attributes: &[(&str, &str)]) -> BytesStart<'a> {
-    let fits = |c: &char| *c == '\n' || !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'));
     let mut tag = BytesStart::new(name);
     for (key, value) in attributes {
-        tag.push_attribute((*key, value.chars().filter(fits).collect::<String>().as_str()));
+        tag.push_attribute((*key, &*printable(value)));
     }
     tag
 }
