@@ -14,6 +14,7 @@
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
+//! | [`printable`] | text from outside, escaped for a terminal |
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
 //! | [`utc`] | times of the host as text |
@@ -32,5 +33,6 @@ pub mod interrupt;
 pub mod names;
 pub mod number;
 pub mod pool;
+pub mod printable;
 pub mod serial;
 pub mod utc;

@@ -58,6 +58,8 @@ pub struct RunRequest {
     pub require: bool,
     /// Runs by the clock.
     pub realtime: bool,
+    /// Ends a run by the clock when its bench is lost.
+    pub stop_when_lost: bool,
     /// Leaves out the twins.
     pub no_twin: bool,
     /// Address at which the run is served to Foxglove.
@@ -118,6 +120,9 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
     let prepared = prepare(scenario, seed, twins)?;
+    if request.stop_when_lost {
+        prepared.stop_when_lost();
+    }
     let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
     follower.watch_interrupts();
@@ -205,6 +210,13 @@ impl Asked {
                 let file = request.scenario.display();
                 Failure::input(format!("{file}: --only-faults: {reason}"))
             })?;
+        }
+        if request.stop_when_lost && !scenario.realtime.by_clock {
+            return Err(Failure::input(format!(
+                "{}: --stop-when-lost: found a run in simulated time, whose bench can't be late; expected \
+                 --realtime with it, or realtime.pace = \"clock\" in the scenario",
+                request.scenario.display()
+            )));
         }
         let seed = request.seed.unwrap_or(scenario.seed);
         Ok(Self { scenario, seed, left_out })
@@ -412,6 +424,9 @@ fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
     }
     if request.realtime {
         line.push("--realtime".to_owned());
+    }
+    if request.stop_when_lost {
+        line.push("--stop-when-lost".to_owned());
     }
     if request.no_twin {
         line.push("--no-twin".to_owned());

@@ -1,6 +1,7 @@
 //! Results on stdout, notes on stderr, and files that are written whole.
 
 use crate::failure::Failure;
+pub(crate) use octant_base::printable::printable;
 
 /// Prints a line on stderr, with control characters escaped so that the terminal doesn't obey them.
 macro_rules! note {
@@ -8,26 +9,6 @@ macro_rules! note {
 }
 
 pub(crate) use note;
-
-/// Escapes the control characters of a text, except line breaks and tabs, so that the terminal
-/// doesn't obey them. Names come from files, devices and file systems.
-pub(crate) fn printable(text: &str) -> std::borrow::Cow<'_, str> {
-    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let is_bad = |c: char| turns(c) || (c.is_control() && !"\n\t".contains(c));
-    if !text.contains(is_bad) {
-        return text.into();
-    }
-    let mut all = String::with_capacity(text.len() + 8);
-    for c in text.chars() {
-        if is_bad(c) {
-            // In the form of JSON, because results may be JSON.
-            all += &format!("\\u{:04x}", u32::from(c));
-        } else {
-            all.push(c);
-        }
-    }
-    all.into()
-}
 
 /// Set while a person is asked on the terminal, which then has no bar of progress.
 static ASKING: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);

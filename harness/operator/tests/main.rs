@@ -1,6 +1,9 @@
 //! Steps, answers, the desk and its ways, without a run.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+#[cfg(feature = "page")]
+mod page;
+
 use octant_faults::trigger::Trigger;
 use octant_operator::desk::DeskRefusal;
 use octant_operator::mailbox::{self, DeskReply, DeskRequest, Mailbox, MailboxError};
