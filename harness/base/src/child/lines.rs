@@ -8,6 +8,9 @@ use std::time::{Duration, Instant};
 
 /// Longest line, bytes; a longer one is broken.
 const LINE_BYTES_MAX: usize = 1000;
+/// Bytes that have to be allowed after something was dropped, before more is passed on: a flood shows as whole lines
+/// from time to time.
+const RESUME_BYTES: u64 = 4 << 10;
 /// Interval at which the end of a thread is looked for.
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -55,7 +58,9 @@ impl<W: Write> ForeignLines<W> {
     /// Takes what the program wrote.
     pub fn take(&mut self, bytes: &[u8]) {
         self.allow();
-        let room = usize::try_from(self.left).unwrap_or(usize::MAX).min(bytes.len());
+        let waits = self.dropped > 0 && self.left < RESUME_BYTES.min(self.limit.bytes);
+        let left = if waits { 0 } else { self.left };
+        let room = usize::try_from(left).unwrap_or(usize::MAX).min(bytes.len());
         let (taken, rest) = bytes.split_at(room);
         self.left -= room as u64;
         if room > 0 {
