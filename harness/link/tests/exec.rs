@@ -70,7 +70,7 @@ fn a_program_that_does_not_read_holds_up_nothing_and_gets_whole_frames() {
     let wait = Duration::from_millis(10);
     let (sent, heard) = with(&body, move |port| {
         let mut sent = Vec::new();
-        let mut send = |port: &mut dyn Bytes, sent: &mut Vec<u8>| {
+        let send = |port: &mut dyn Bytes, sent: &mut Vec<u8>| {
             let frame = [(sent.len() / 1000) as u8; 1000];
             let taken = port.send(&frame, wait).unwrap();
             if taken {

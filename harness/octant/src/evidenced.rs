@@ -121,7 +121,7 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
     }
     let prepared = prepare(scenario, seed, twins)?;
     if request.stop_when_lost {
-        prepared.stop_when_lost();
+        prepared.stop_when_lost().map_err(Failure::input)?;
     }
     let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
@@ -210,13 +210,6 @@ impl Asked {
                 let file = request.scenario.display();
                 Failure::input(format!("{file}: --only-faults: {reason}"))
             })?;
-        }
-        if request.stop_when_lost && !scenario.realtime.by_clock {
-            return Err(Failure::input(format!(
-                "{}: --stop-when-lost: found a run in simulated time, whose bench can't be late; expected \
-                 --realtime with it, or realtime.pace = \"clock\" in the scenario",
-                request.scenario.display()
-            )));
         }
         let seed = request.seed.unwrap_or(scenario.seed);
         Ok(Self { scenario, seed, left_out })

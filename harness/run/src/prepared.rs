@@ -45,6 +45,14 @@ pub enum PreparedError {
     Panicked,
 }
 
+/// Reason why no run can be ended at the loss of its bench.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "--stop-when-lost: found a run in simulated time, whose bench can't be late; expected --realtime with it, or \
+     realtime.pace = \"clock\" in the scenario"
+)]
+pub struct NeverLost;
+
 impl<'a> Prepared<'a> {
     /// Prepares the methods of a scenario. With `twins`, each is compared with the same run without
     /// the scenario's faults, if there are any.
@@ -83,10 +91,14 @@ impl<'a> Prepared<'a> {
     }
 
     /// Ends all runs at the moment at which the bench of one breaks a real-time limit.
-    pub fn stop_when_lost(&self) {
+    ///
+    /// # Errors
+    /// If none goes by the clock.
+    pub fn stop_when_lost(&self) -> Result<(), NeverLost> {
         for control in &self.controls {
             control.stop_when_lost.store(true, Ordering::Relaxed);
         }
+        self.scenario.realtime.by_clock.then_some(()).ok_or(NeverLost)
     }
 
     /// Keeps runs from beginning after one whose bench was lost.
