@@ -106,6 +106,15 @@ mod tests {
     }
 
     #[test]
+    fn the_page_has_the_names_of_the_rule() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/endpoints.md");
+        let page = std::fs::read_to_string(page).unwrap();
+        for name in environment::names() {
+            assert!(page.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+
+    #[test]
     fn foreign_lines_are_marked_escaped_and_limited() {
         let passed = |limit: OutputLimit, pieces: &[&[u8]]| {
             let mut out = Vec::new();

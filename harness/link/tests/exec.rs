@@ -94,3 +94,16 @@ fn a_program_that_does_not_read_holds_up_nothing_and_gets_whole_frames() {
     });
     assert!(sent.len() > 4096 && sent == heard);
 }
+
+#[test]
+fn the_page_has_the_limits_of_the_program() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/endpoints.md");
+    let page = fs::read_to_string(page).unwrap();
+    let limit = port::ERROR_OUTPUT;
+    let words = format!(
+        "{} KiB are shown at once and {} KiB more for each further second",
+        limit.bytes >> 10,
+        limit.bytes_per_s >> 10
+    );
+    assert!(page.contains(&words), "{words}");
+}

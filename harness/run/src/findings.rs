@@ -52,7 +52,7 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
         };
         reasons.push(format!("the bench failed at {at}{place}: {}; {then}", broke.reason));
     } else if run.ended == Ended::Lost {
-        reasons.push(format!("not begun{place}: the bench had failed before"));
+        reasons.push(format!("nothing was done{place}: the bench had failed before"));
     }
     // The unit isn't responsible for the missing rest of a file.
     reasons.extend(run.cut_short.iter().map(|cut_short| format!("{cut_short}{place}")));

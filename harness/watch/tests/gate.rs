@@ -102,3 +102,10 @@ fn origins_that_may_read_are_those_of_foxglove_and_of_this_host() {
         assert!(!may_read(bad, own), "{bad}");
     }
 }
+
+#[test]
+fn the_page_has_the_number_of_clients() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/watching.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains(&format!("There are {CLIENTS_MAX} places for\nclients")));
+}

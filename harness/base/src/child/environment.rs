@@ -30,6 +30,12 @@ pub fn is_secret(name: &OsStr, value: &OsStr) -> bool {
         || has_password(&value.to_string_lossy())
 }
 
+/// Returns the names of the rule, with the beginnings first.
+#[cfg(test)]
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    BEGINNINGS.into_iter().chain(ENDS).chain(WORDS)
+}
+
 /// Returns whether a text has `://USER:PASSWORD@`.
 fn has_password(text: &str) -> bool {
     text.split("://").skip(1).any(|rest| {

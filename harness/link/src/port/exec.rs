@@ -18,8 +18,8 @@ const PIECE_BYTES: usize = 4096;
 const END_MAX: Duration = Duration::from_secs(1);
 /// Interval at which the end of a program is looked for.
 const LOOK: Duration = Duration::from_millis(1);
-/// Limit of what a program's standard error shows.
-const ERROR_OUTPUT: OutputLimit = OutputLimit { bytes: 64 << 10, bytes_per_s: 4 << 10 };
+/// Limit of what is shown of a program's standard error.
+pub const ERROR_OUTPUT: OutputLimit = OutputLimit { bytes: 64 << 10, bytes_per_s: 4 << 10 };
 /// Beginning of the lines of a program's standard error.
 const ORIGIN: &str = "device";
 
