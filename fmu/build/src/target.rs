@@ -26,7 +26,7 @@ pub(super) fn library(target: &str) -> Result<PathBuf, BuildError> {
         }
     };
     standard_library(triple, &source).map_err(failed)?;
-    let output = octant_base::child::command("cargo")
+    let output = octant_base::child::foreign("cargo")
         .arg(if zig { "zigbuild" } else { "build" })
         .args(["--release", "--package", "octant-fmu", "--lib", "--target", target])
         .arg("--message-format=json-render-diagnostics")
@@ -56,13 +56,13 @@ fn source_tree() -> Result<PathBuf, BuildError> {
 
 fn has_zigbuild(source: &Path) -> bool {
     let asked =
-        octant_base::child::command("cargo-zigbuild").arg("--version").current_dir(source).output();
+        octant_base::child::foreign("cargo-zigbuild").arg("--version").current_dir(source).output();
     asked.is_ok_and(|output| output.status.success())
 }
 
 /// Checks that the compiler has the standard library of a target.
 fn standard_library(triple: &str, source: &Path) -> Result<(), String> {
-    let output = octant_base::child::command("rustc")
+    let output = octant_base::child::foreign("rustc")
         .args(["--print", "target-libdir", "--target", triple])
         .current_dir(source)
         .output()

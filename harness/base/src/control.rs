@@ -11,6 +11,10 @@ pub struct Control {
     pub epochs: AtomicU64,
     /// Set to end the run at its next look.
     pub cancel: AtomicBool,
+    /// Set to end the run when its bench breaks a real-time limit.
+    pub stop_when_lost: AtomicBool,
+    /// Set when the bench of an earlier run was lost: this one isn't begun.
+    pub lost: AtomicBool,
     /// Desk of the person who attends to the run, if anybody does.
     pub attendance: OnceLock<Arc<Attendance>>,
 }

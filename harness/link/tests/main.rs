@@ -10,6 +10,8 @@ mod clients;
 mod clock;
 mod common;
 #[cfg(unix)]
+mod exec;
+#[cfg(unix)]
 mod faults;
 mod hostile;
 mod load;

@@ -62,6 +62,16 @@ fn a_device_serves_one_harness_after_the_other() {
     }
 }
 
+/// The device end of TCP has one connection at a time.
+#[test]
+fn an_idle_connection_gives_way_to_a_harness() {
+    let (_served, uri) = Served::on("tcp:0", facts());
+    let address = uri.to_string().replace("tcp:", "");
+    let idle = std::net::TcpStream::connect(&address).unwrap();
+    drive(&mut harness(&uri), 40);
+    drop(idle);
+}
+
 #[test]
 fn a_harness_that_is_gone_without_a_word_is_given_up() {
     let short = Facts {

@@ -59,6 +59,8 @@ pub struct RunRequest {
     pub require: bool,
     /// Runs by the clock.
     pub realtime: bool,
+    /// Ends a run by the clock when its bench is lost.
+    pub stop_when_lost: bool,
     /// Leaves out the twins.
     pub no_twin: bool,
     /// Address at which the run is served to Foxglove.
@@ -119,6 +121,9 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
     let prepared = prepare(scenario, seed, twins)?;
+    if request.stop_when_lost {
+        prepared.stop_when_lost().map_err(Failure::input)?;
+    }
     let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
     follower.watch_interrupts();
@@ -417,6 +422,9 @@ fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
     }
     if request.realtime {
         line.push("--realtime".to_owned());
+    }
+    if request.stop_when_lost {
+        line.push("--stop-when-lost".to_owned());
     }
     if request.no_twin {
         line.push("--no-twin".to_owned());

@@ -44,6 +44,10 @@ pub(super) struct Arguments {
     /// Run in real time: every sample is sent at its own time, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
+    /// End a run by the clock at the moment at which its bench breaks a limit of [realtime], and don't begin what would
+    /// follow: the baseline, the twin.
+    #[arg(long)]
+    stop_when_lost: bool,
     /// Skip the twin run without faults, with which a run with faults is compared.
     #[arg(long)]
     no_twin: bool,
@@ -114,6 +118,7 @@ impl Arguments {
             planned_faults: false,
             require: self.require,
             realtime: self.realtime,
+            stop_when_lost: self.stop_when_lost,
             no_twin: self.no_twin,
             live: self.live.clone(),
             json: self.json,
@@ -136,6 +141,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--units", arguments.units.is_some()),
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
+        ("--stop-when-lost", arguments.stop_when_lost),
         ("--no-twin", arguments.no_twin),
         ("--only-faults", arguments.only_faults.is_some()),
         ("--live", arguments.live.is_some()),

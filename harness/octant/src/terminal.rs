@@ -1,6 +1,7 @@
 //! Results on stdout, notes on stderr, and files that are written whole.
 
 use crate::failure::Failure;
+pub(crate) use octant_base::printable::printable;
 
 /// Prints a line on stderr, with control characters escaped so that the terminal doesn't obey them.
 macro_rules! note {

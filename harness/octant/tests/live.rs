@@ -200,6 +200,41 @@ fn a_program_that_ends_or_is_not_there_ends_the_run() {
 }
 
 #[test]
+fn a_device_program_gets_no_secret_and_its_words_are_marked_and_escaped() {
+    let bench = Bench::new(SHORT);
+    let (script, seen) = (bench.folder.path().join("dev"), bench.folder.path().join("seen"));
+    let body = format!(
+        "env > '{}'\nprintf '\\033]0;owned\\007\\033[31mverdict: pass\\n' >&2\n\
+         head -c 1000000 /dev/zero | tr '\\0' x >&2\nexit 3\n",
+        seen.display()
+    );
+    std::fs::write(&script, body).unwrap();
+    let output = Command::new(OCTANT)
+        .args(["run", bench.scenario.to_str().unwrap(), "--out"])
+        .arg(bench.folder.path().join("out"))
+        .arg("--endpoint")
+        .arg(format!("exec:sh {}", script.display()))
+        .env("AWS_SECRET_ACCESS_KEY", "hunter2")
+        .env("GITHUB_TOKEN", "hunter2")
+        .env("http_proxy", "http://ann:hunter2@proxy:3128")
+        .env("DEVICE_SERIAL", "0042")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{said}");
+    let environment = std::fs::read_to_string(seen).unwrap();
+    assert!(!environment.contains("hunter2"), "{environment}");
+    assert!(environment.contains("DEVICE_SERIAL=0042"), "{environment}");
+    let line = r"device: \u001b]0;owned\u0007\u001b[31mverdict: pass";
+    assert!(said.lines().any(|said| said == line), "{said}");
+    assert!(!said.contains('\u{1b}'), "{said}");
+    // Its last words stand before the message about its end.
+    assert!(said.find(line) < said.find("the program ended: exit status: 3"), "{said}");
+    // Of the flood after them a part is shown.
+    assert!(said.len() < 500_000 && said.contains("bytes of its output were dropped"));
+}
+
+#[test]
 fn a_line_full_of_faults_gives_the_same_bits_and_receipts() {
     let faults = |kinds: &[&str]| {
         let one = |kind: &&str| {

@@ -107,6 +107,31 @@ fn a_bench_that_was_too_late_proves_nothing() {
     assert!(reason.contains("the lateness of 99 % of the samples is"), "{reason}");
 }
 
+#[test]
+fn a_run_whose_bench_is_lost_ends_there_where_it_is_told_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    // A minute by the clock, of which no sample leaves in time; and a twin.
+    let text = SECONDS.replace("\"2 s\"", "\"60 s\"").replace("\"10 s\"", "\"1 ns\"");
+    let file = scenario(here, "lost.toml", &format!("{text}{FAULTS}"));
+    let lost = run(here, &file, "lost", &["--realtime", "--stop-when-lost"], 3);
+    assert!(lost["pacing"]["frames"].as_u64().unwrap() < 12_000, "{}", lost["pacing"]);
+    assert_eq!((&lost["verdict"], &lost["counterfactual"]), (&"inconclusive".into(), &Value::Null));
+    let reasons: Vec<&str> =
+        lost["reasons"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(reasons[0].starts_with("the bench failed at 0 s: a sample left "), "{reasons:?}");
+    assert!(
+        reasons[0].ends_with("; the run was ended there, as --stop-when-lost asks"),
+        "{reasons:?}"
+    );
+    assert!(reasons.contains(&"navigation: planned 60 s, done 0 s"), "{reasons:?}");
+    let manifest = json(&here.join("lost/manifest.json"));
+    assert!(manifest["rerun"].as_str().unwrap().contains("--realtime --stop-when-lost"));
+    // In simulated time nothing is late: the option would do nothing.
+    let (_, said) = ends(&["run", &file, "--stop-when-lost"], 2);
+    assert!(said.contains("--stop-when-lost: found a run in simulated time"), "{said}");
+}
+
 /// Core whose answers to some epochs are delayed.
 struct Slow {
     inside: InProcess,

@@ -24,6 +24,8 @@ pub(crate) struct Request {
     pub(crate) path: String,
     /// Value of the header that was asked for.
     pub(crate) header: Option<String>,
+    /// True if a page of another origin made the request: its browser says so.
+    pub(crate) foreign: bool,
     pub(crate) body: Vec<u8>,
 }
 
@@ -100,12 +102,21 @@ pub(crate) fn parse(bytes: &[u8], header: &str) -> Result<Option<Request>, u16> 
         return Ok(None);
     }
     let path = parsed.path.unwrap_or_default();
+    let foreign =
+        value("Origin")?.is_some_and(|origin| !is_of(origin, value("Host").ok().flatten()));
     Ok(Some(Request {
         method: parsed.method.unwrap_or_default().to_owned(),
         path: path.split(['?', '#']).next().unwrap_or_default().to_owned(),
         header: value(header)?.map(|text| text.trim().to_owned()),
+        foreign,
         body: body[..length].to_vec(),
     }))
+}
+
+/// Returns whether an origin, `SCHEME://HOST:PORT`, is the host that was asked.
+fn is_of(origin: &str, host: Option<&str>) -> bool {
+    let authority = origin.trim().split_once("://").map(|(_, authority)| authority);
+    authority.zip(host).is_some_and(|(origin, host)| origin.eq_ignore_ascii_case(host.trim()))
 }
 
 /// Sends a reply, after which the connection ends.
@@ -126,7 +137,7 @@ pub(crate) fn reply(stream: &mut TcpStream, status: u16, kind: &str, text: &str)
     let head = format!(
         "HTTP/1.1 {status} {reason}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\n\
          Connection: close\r\nCache-Control: no-store\r\nContent-Security-Policy: {policy}\r\n\
-         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\r\n",
+         X-Content-Type-Options: nosniff\r\nReferrer-Policy: same-origin\r\n\r\n",
         text.len()
     );
     stream.set_write_timeout(Some(DEADLINE))?;

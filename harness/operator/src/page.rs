@@ -10,9 +10,10 @@ use crate::http::{self, NoRequest};
 use crate::mailbox::{DeskReply, DeskRequest};
 use crate::record::AnswerWay;
 use serde::Serialize;
-use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::collections::VecDeque;
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -22,8 +23,11 @@ pub const DEFAULT_ADDRESS: &str = "127.0.0.1:0";
 /// Name of the header with the token.
 const TOKEN: &str = "X-Octant-Token";
 
-/// Most connections at a time; further ones are refused.
-const CONNECTIONS: usize = 16;
+/// Most connections at a time without the token. A further one takes the place of the oldest.
+const STRANGERS_MAX: usize = 16;
+
+/// Most connections at a time with the token, beside the others; further ones are refused.
+const KNOWN_MAX: usize = 16;
 
 /// Pause between two looks for a connection.
 const LOOK: Duration = Duration::from_millis(20);
@@ -147,9 +151,82 @@ struct Shown {
     desk: Arc<Desk>,
 }
 
+/// Connections that are open. Those that haven't shown the token can't keep out one that will: they give way to it.
+#[derive(Debug, Default)]
+struct Connections(Mutex<Open>);
+
+#[derive(Debug, Default)]
+struct Open {
+    /// Connections without the token so far, the oldest first, by their number.
+    strangers: VecDeque<(u64, TcpStream)>,
+    taken: u64,
+    /// Number of connections with the token.
+    known: usize,
+}
+
+/// Place of a connection, free again when it is dropped.
+struct ConnectionPlace {
+    of: Arc<Connections>,
+    number: u64,
+    known: bool,
+}
+
+impl Connections {
+    fn open(&self) -> MutexGuard<'_, Open> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Gives a connection a place, and ends the oldest stranger where there is no other.
+    fn take(self: &Arc<Self>, stream: &TcpStream) -> std::io::Result<ConnectionPlace> {
+        let stream = stream.try_clone()?;
+        let mut open = self.open();
+        if open.strangers.len() >= STRANGERS_MAX
+            && let Some((_, oldest)) = open.strangers.pop_front()
+        {
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        open.taken += 1;
+        let number = open.taken;
+        open.strangers.push_back((number, stream));
+        Ok(ConnectionPlace { of: Arc::clone(self), number, known: false })
+    }
+
+    /// Ends all strangers.
+    fn end(&self) {
+        for (_, stream) in self.open().strangers.drain(..) {
+            let _ = stream.shutdown(Shutdown::Both);
+        }
+    }
+}
+
+impl ConnectionPlace {
+    /// Moves a connection with the token among those. False: there are too many.
+    fn known(&mut self) -> bool {
+        let mut open = self.of.open();
+        if open.known >= KNOWN_MAX {
+            return false;
+        }
+        open.strangers.retain(|(number, _)| *number != self.number);
+        open.known += 1;
+        self.known = true;
+        true
+    }
+}
+
+impl Drop for ConnectionPlace {
+    fn drop(&mut self) {
+        let mut open = self.of.open();
+        if self.known {
+            open.known -= 1;
+        } else {
+            open.strangers.retain(|(number, _)| *number != self.number);
+        }
+    }
+}
+
 /// Takes connections until the page is over, each on a thread of its own: a slow one delays no other, and not the end.
 fn listen(listener: &TcpListener, shown: &Arc<Shown>, over: &AtomicBool) {
-    let count = Arc::new(AtomicUsize::new(0));
+    let connections = Arc::new(Connections::default());
     while !over.load(Ordering::Relaxed) {
         let Ok((mut stream, _)) = listener.accept() else {
             std::thread::sleep(LOOK);
@@ -159,28 +236,21 @@ fn listen(listener: &TcpListener, shown: &Arc<Shown>, over: &AtomicBool) {
         if stream.set_nonblocking(false).is_err() {
             continue;
         }
-        if count.load(Ordering::Relaxed) >= CONNECTIONS {
-            let _ = http::reply(&mut stream, 503, TEXT, "too many connections\n");
-            continue;
-        }
-        count.fetch_add(1, Ordering::Relaxed);
-        let (shown, own) = (Arc::clone(shown), Arc::clone(&count));
-        let answer = move || {
-            answer(&mut stream, &shown);
-            own.fetch_sub(1, Ordering::Relaxed);
-        };
-        if std::thread::Builder::new().name("page request".to_owned()).spawn(answer).is_err() {
-            count.fetch_sub(1, Ordering::Relaxed);
-        }
+        let Ok(mut place) = connections.take(&stream) else { continue };
+        let shown = Arc::clone(shown);
+        let answer = move || answer(&mut stream, &shown, &mut place);
+        // Without a thread the connection ends.
+        let _ = std::thread::Builder::new().name("page request".to_owned()).spawn(answer);
     }
+    connections.end();
 }
 
 const TEXT: &str = "text/plain";
 
 /// Answers a request. A browser that went away is no failure.
-fn answer(stream: &mut TcpStream, shown: &Shown) {
+fn answer(stream: &mut TcpStream, shown: &Shown, place: &mut ConnectionPlace) {
     let (status, kind, text) = match http::read(stream, TOKEN) {
-        Ok(request) => replied(&request, shown),
+        Ok(request) => replied(&request, shown, place),
         Err(NoRequest::Bad(status)) => (status, TEXT, "the request can't be read\n".to_owned()),
         Err(NoRequest::Gone) => return,
     };
@@ -188,14 +258,24 @@ fn answer(stream: &mut TcpStream, shown: &Shown) {
 }
 
 /// Status, kind and text of a reply.
-fn replied(request: &http::Request, shown: &Shown) -> (u16, &'static str, String) {
+fn replied(
+    request: &http::Request,
+    shown: &Shown,
+    place: &mut ConnectionPlace,
+) -> (u16, &'static str, String) {
     let Shown { title, token, desk } = shown;
+    if request.foreign {
+        return (403, TEXT, "the request is of a page of another origin\n".to_owned());
+    }
     let asked = (request.method.as_str(), request.path.as_str());
     if asked == ("GET", "/") {
         return (200, "text/html", include_str!("page.html").to_owned());
     }
     if !request.header.as_ref().is_some_and(|given| is_same(given, token)) {
         return (403, TEXT, "the token is missing or wrong\n".to_owned());
+    }
+    if !place.known() {
+        return (503, TEXT, "too many connections\n".to_owned());
     }
     let (status, text) = match asked {
         ("GET", "/state") => {

@@ -1,6 +1,8 @@
 //! Steps, answers, the desk and its ways, without a run.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+#[cfg(feature = "page")]
+mod page;
 #[cfg(unix)]
 mod planted;
 

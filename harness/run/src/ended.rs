@@ -17,6 +17,8 @@ pub enum Ended {
     SourceEnded,
     /// Interrupted on request.
     Cancelled,
+    /// The bench was lost, and the run was to end there; or it was lost in an earlier run.
+    Lost,
     /// The core's answer broke the rules.
     Misbehaved,
     /// Source, endpoint or the disk of the recording failed.

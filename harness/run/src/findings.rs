@@ -46,10 +46,13 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
     let mut reasons = Vec::new();
     if let Some(broke) = &run.watcher.bench_broke {
         let at = duration(broke.at_s);
-        reasons.push(format!(
-            "the bench failed at {at}{place}: {}; nothing after it is judged",
-            broke.reason
-        ));
+        let then = match run.ended {
+            Ended::Lost => "the run was ended there, as --stop-when-lost asks",
+            _ => "nothing after it is judged",
+        };
+        reasons.push(format!("the bench failed at {at}{place}: {}; {then}", broke.reason));
+    } else if run.ended == Ended::Lost {
+        reasons.push(format!("nothing was done{place}: the bench had failed before"));
     }
     // The unit isn't responsible for the missing rest of a file.
     reasons.extend(run.cut_short.iter().map(|cut_short| format!("{cut_short}{place}")));

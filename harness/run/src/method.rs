@@ -144,7 +144,7 @@ pub fn run_as_far_as_it_goes(
         faulted.host = RunHost::new(scenario, &recording, &trouble)?;
     }
     // Before a port is opened and a table turns.
-    let begins = before_start(scenario, control)?;
+    let begins = !control.lost.load(Ordering::Relaxed) && before_start(scenario, control)?;
     let open = || octant_source::open(scenario, &plant).map_err(SetupError::Source);
     let opened = if begins { open()? } else { None };
     let open = || octant_endpoint::open(scenario, &core).map_err(SetupError::from);
@@ -289,6 +289,7 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
     let (ended, last, broken) = match driven {
         // Errors that came while the run was being stopped after a misbehaviour aren't its cause.
         _ if watcher.misbehaved.is_some() => (Ended::Misbehaved, None, None),
+        Ok((Ended::Cancelled, _)) if is_lost(control, watcher) => (Ended::Lost, None, None),
         Ok((ended, last)) => (ended, last, None),
         // An interrupt stopped the moving equipment without waiting for the run.
         Err(error)
@@ -324,6 +325,12 @@ pub(super) fn close<S: Source + ?Sized, E: Endpoint + ?Sized>(
         _ => (ended, broken),
     };
     Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, power, cut_short })
+}
+
+/// Returns whether a run that was stopped was stopped because its bench is lost, or was in an earlier run.
+fn is_lost(control: &Control, watcher: &Watcher) -> bool {
+    let here = control.stop_when_lost.load(Ordering::Relaxed) && watcher.bench_broke.is_some();
+    (here || control.lost.load(Ordering::Relaxed)) && !control.cancel.load(Ordering::Relaxed)
 }
 
 /// Builds the station of a scenario, with a host without targets; `None` without faults.

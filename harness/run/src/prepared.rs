@@ -1,6 +1,7 @@
 //! A scenario that is ready to run: its methods, and their twins without faults.
 
 use super::beginning::BranchPlan;
+use super::ended::Ended;
 use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
 use super::with_twin::run_with_twin;
 use octant_base::attendance::Attendance;
@@ -10,6 +11,7 @@ use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::thread::ScopedJoinHandle;
 
 /// Name of the recording of a method in the folder of its run.
@@ -42,6 +44,14 @@ pub enum PreparedError {
     #[error("run a method: its thread panicked")]
     Panicked,
 }
+
+/// Reason why no run can be ended at the loss of its bench.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "--stop-when-lost: found a run in simulated time, whose bench can't be late; expected --realtime with it, or \
+     realtime.pace = \"clock\" in the scenario"
+)]
+pub struct NeverLost;
 
 impl<'a> Prepared<'a> {
     /// Prepares the methods of a scenario. With `twins`, each is compared with the same run without
@@ -80,6 +90,24 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    /// Ends all runs at the moment at which the bench of one breaks a real-time limit.
+    ///
+    /// # Errors
+    /// If none goes by the clock.
+    pub fn stop_when_lost(&self) -> Result<(), NeverLost> {
+        for control in &self.controls {
+            control.stop_when_lost.store(true, Ordering::Relaxed);
+        }
+        self.scenario.realtime.by_clock.then_some(()).ok_or(NeverLost)
+    }
+
+    /// Keeps runs from beginning after one whose bench was lost.
+    fn note_lost(&self, run: &MethodRun) {
+        if run.ended == Ended::Lost {
+            self.controls.iter().for_each(|control| control.lost.store(true, Ordering::Relaxed));
+        }
+    }
+
     /// Progress of each method and twin, and the requests to end them.
     #[must_use]
     pub fn controls(&self) -> &[Control] {
@@ -109,7 +137,7 @@ impl<'a> Prepared<'a> {
         let tasks: Vec<(Method, &[Control])> =
             self.methods.iter().copied().zip(self.controls.chunks(each)).collect();
         if alone {
-            return tasks.iter().map(one).collect();
+            return tasks.iter().map(|task| one(task).inspect(|run| self.note_lost(run))).collect();
         }
         std::thread::scope(|scope| {
             let one = &one;
@@ -145,7 +173,7 @@ impl<'a> Prepared<'a> {
             return Ok(both?);
         }
         let (faulted, twin) = if alone {
-            let faulted = run(this, recording);
+            let faulted = run(this, recording).inspect(|run| self.note_lost(run));
             (faulted, run(clean, StreamKeeping::Hash))
         } else {
             std::thread::scope(|scope| {

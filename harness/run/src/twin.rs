@@ -16,7 +16,10 @@ pub fn difference(scenario: &Scenario, run: &MethodRun) -> Option<Counterfactual
 /// Returns the effects of a run's faults, compared with a twin that may be shared by many runs.
 #[must_use]
 pub fn between(scenario: &Scenario, run: &MethodRun, twin: &MethodRun) -> Option<Counterfactual> {
-    if [run, twin].iter().any(|side| matches!(side.ended, Ended::Cancelled | Ended::Broken)) {
+    if [run, twin]
+        .iter()
+        .any(|side| matches!(side.ended, Ended::Cancelled | Ended::Broken | Ended::Lost))
+    {
         return None;
     }
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;

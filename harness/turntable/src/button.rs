@@ -3,7 +3,8 @@
 //! A controller often accepts only one peer at a time, and an open serial port can't be opened again:
 //! while a harness drives a table, no other program reaches it. So the harness opens a socket for each
 //! table, in a folder of this host, with a thread that only waits for somebody to press. The thread
-//! takes no lock of the driver and needs no reply of the table. Every user of this host may stop a
+//! takes no lock of the driver and needs no reply of the table, and each connection has one of its own,
+//! so that a silent one holds up no stop. Every user of this host may stop a
 //! table this way, and can do nothing else to it. Runs that share the table knock at the same socket.
 
 use crate::{EmergencyStop, Error, TableHost};
@@ -34,7 +35,7 @@ mod unix {
     use std::os::unix::net::{UnixListener, UnixStream};
     use std::path::{Path, PathBuf};
     use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::thread::JoinHandle;
     use std::time::Duration;
 
@@ -47,6 +48,10 @@ mod unix {
     const KNOCK: &[u8] = b"join\n";
     /// Longest wait of either end for the other.
     const PATIENCE: Duration = Duration::from_secs(3);
+    /// Most connections that may take that long at a time.
+    const CONNECTIONS: usize = 32;
+    /// Longest wait for a further one. Whoever presses sends the word at once.
+    const HASTE: Duration = Duration::from_millis(50);
 
     /// Path of a port's socket: a hash, because paths of sockets have to be short.
     fn place(port: &str) -> PathBuf {
@@ -82,13 +87,27 @@ mod unix {
             let thread = std::thread::Builder::new()
                 .name("table button".into())
                 .spawn(move || {
+                    let waiting = Arc::new(AtomicUsize::new(0));
                     for stream in listener.incoming() {
                         if ended.load(Ordering::SeqCst) {
                             return;
                         }
-                        if let Ok(stream) = stream {
-                            // A peer that doesn't wait for the answer has still pressed the button.
-                            let _ = pressed(stream, &stop, &host, &name);
+                        let Ok(stream) = stream else { continue };
+                        let this = (stop.clone(), host.clone(), name.clone());
+                        // A peer that doesn't wait for the answer has still pressed the button.
+                        if waiting.load(Ordering::SeqCst) >= CONNECTIONS {
+                            let _ = pressed(stream, HASTE, &this);
+                            continue;
+                        }
+                        waiting.fetch_add(1, Ordering::SeqCst);
+                        let done = Arc::clone(&waiting);
+                        let serve = move || {
+                            let _ = pressed(stream, PATIENCE, &this);
+                            done.fetch_sub(1, Ordering::SeqCst);
+                        };
+                        let thread = std::thread::Builder::new().name("table button".into());
+                        if thread.spawn(serve).is_err() {
+                            waiting.fetch_sub(1, Ordering::SeqCst);
                         }
                     }
                 })
@@ -135,11 +154,10 @@ mod unix {
 
     fn pressed(
         mut stream: UnixStream,
-        stop: &EmergencyStop,
-        host: &TableHost,
-        port: &str,
+        wait: Duration,
+        (stop, host, port): &(EmergencyStop, TableHost, String),
     ) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_read_timeout(Some(wait))?;
         stream.set_write_timeout(Some(PATIENCE))?;
         let mut word = [0; WORD.len()];
         stream.read_exact(&mut word)?;

@@ -138,6 +138,23 @@ fn a_table_that_does_not_arrive_does_not_start() {
     assert_eq!(error, "roll 0.0000° is beyond its limits, 5° to 365°");
 }
 
+/// Connections that say nothing, more of them than have a place.
+#[cfg(unix)]
+#[test]
+fn silent_connections_hold_up_no_stop() {
+    let (server, name) = tcp_at(ensemble(), 1.0);
+    let table = start(&plan(&name));
+    let hash = name.bytes().fold(0xCBF2_9CE4_8422_2325u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+    });
+    let place = format!("/tmp/octant-tables/{hash:016x}");
+    let silent: Vec<_> =
+        (0..40).map(|_| std::os::unix::net::UnixStream::connect(&place).unwrap()).collect();
+    let pressed = press(Some(&name)).unwrap();
+    assert!(pressed[0].written && table.is_stopped());
+    drop((silent, server));
+}
+
 /// The controller accepts one peer at a time: only the driving program can stop it.
 #[cfg(unix)]
 #[test]

@@ -4,6 +4,7 @@
 //! a plot begins at the start of the run. A slow client loses messages, and never delays anything.
 
 use super::follow::Follow;
+use super::gate::{self, Gate};
 use super::published::{PublishedChannel, faults, messages};
 use super::state::RunState;
 use super::tail::TailError;
@@ -16,10 +17,11 @@ use octant_recorder::further::{FurtherChannel, FurtherMessages};
 use octant_recorder::reader::Item;
 use octant_topics::boundary::EpochBoundary;
 use octant_topics::standard::{StandardEpochs, StandardTopic};
-use std::net::{SocketAddr, ToSocketAddrs};
+use std::net::{SocketAddr, TcpListener, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
 
 /// Number of messages per channel that are kept for late subscribers.
 const HISTORY: usize = 1000;
@@ -30,6 +32,10 @@ const STANDARD: usize = StandardTopic::BRIEF.len();
 
 /// Time for the last messages to be sent before the connections end.
 const SETTLE: Duration = Duration::from_millis(300);
+/// Time in which the connections have to end; afterwards they are cut off.
+const END_MAX: Duration = Duration::from_secs(1);
+/// Threads of the server.
+const THREADS: usize = 2;
 
 /// Reasons why nothing is served.
 #[derive(Debug, thiserror::Error)]
@@ -91,6 +97,11 @@ impl History {
 /// Server with the channels of a run.
 pub struct FoxgloveServer {
     handle: WebSocketServerHandle,
+    gate: Gate,
+    /// Address that clients reach.
+    address: SocketAddr,
+    /// Its end ends every connection.
+    runtime: Runtime,
     channels: Vec<Arc<RawChannel>>,
     history: Vec<History>,
     subscribed: Receiver<(Option<SinkId>, String)>,
@@ -123,10 +134,19 @@ impl FoxgloveServer {
         let socket: SocketAddr = (address.to_socket_addrs().ok())
             .and_then(|mut addresses| addresses.next())
             .ok_or_else(|| FoxgloveServeError::Address { address: address.to_owned() })?;
-        let failed = |error: FoxgloveError| FoxgloveServeError::Start {
-            address: address.to_owned(),
-            reason: error.to_string(),
-        };
+        let reason =
+            |reason: String| FoxgloveServeError::Start { address: address.to_owned(), reason };
+        let failed = |error: FoxgloveError| reason(error.to_string());
+        let refused = |error: std::io::Error| reason(error.to_string());
+        let listener = TcpListener::bind(socket).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        let open = listener.local_addr().map_err(refused)?;
+        let runtime = Builder::new_multi_thread()
+            .worker_threads(THREADS)
+            .thread_name("foxglove")
+            .enable_all()
+            .build()
+            .map_err(refused)?;
         let context = Context::new();
         let (sender, subscribed) = channel();
         let standard = StandardTopic::BRIEF.map(StandardTopic::channel);
@@ -142,17 +162,29 @@ impl FoxgloveServer {
             })
             .collect::<Result<Vec<_>, _>>()
             .map_err(failed)?;
+        let hidden = gate::hidden_address().map_err(refused)?;
         let handle = WebSocketServer::new()
             .context(&context)
             .name("octant")
-            .bind(socket.ip().to_string(), socket.port())
+            .bind(hidden.to_string(), 0)
+            .tokio_runtime(runtime.handle())
             .capabilities([Capability::Time])
             .message_backlog_size(BACKLOG)
             .listener(Arc::new(Listener(Mutex::new(sender))))
             .start_blocking()
             .map_err(failed)?;
+        let gate = Gate::new((hidden, handle.port()).into());
+        let serve = gate.clone();
+        let listener = {
+            let _inside = runtime.enter();
+            tokio::net::TcpListener::from_std(listener).map_err(refused)?
+        };
+        runtime.spawn(serve.serve(listener));
         Ok(Self {
             handle,
+            gate,
+            address: open,
+            runtime,
             history: channels.iter().map(|_| History::default()).collect(),
             channels,
             subscribed,
@@ -166,7 +198,7 @@ impl FoxgloveServer {
     /// Returns the port that is served.
     #[must_use]
     pub fn port(&self) -> u16 {
-        self.handle.port()
+        self.address.port()
     }
 
     /// Reads the available messages of a run and publishes them. Returns true if more are there
@@ -239,13 +271,20 @@ impl FoxgloveServer {
         }
     }
 
-    /// Ends the connections in order.
+    /// Ends the connections, in order those whose clients take part.
     pub fn stop(self) {
+        let Self { handle, gate, runtime, .. } = self;
         // Messages that are still queued are dropped with the connection, and nothing reports when
         // they have been sent.
-        if self.handle.client_count() > 0 {
+        if handle.client_count() > 0 {
             std::thread::sleep(SETTLE);
         }
-        self.handle.stop().wait_blocking();
+        let end = async {
+            handle.stop().wait().await;
+            gate.empty().await;
+        };
+        // What doesn't end by itself ends with the runtime.
+        let _ = runtime.block_on(async { tokio::time::timeout(END_MAX, end).await });
+        runtime.shutdown_timeout(END_MAX);
     }
 }

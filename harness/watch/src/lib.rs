@@ -13,6 +13,8 @@ pub mod dashboard;
 pub mod follow;
 #[cfg(feature = "foxglove")]
 pub mod foxglove;
+#[cfg(feature = "foxglove")]
+pub mod gate;
 pub mod place;
 pub mod plain;
 pub mod tail;

@@ -3,4 +3,6 @@
 
 #[cfg(feature = "dashboard")]
 mod fit;
+#[cfg(feature = "foxglove")]
+mod gate;
 mod place;

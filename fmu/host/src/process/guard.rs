@@ -7,6 +7,8 @@
 
 use super::error::FmuServeError;
 use super::shared::{Shared, Word};
+use octant_base::child::{ForeignLines, OutputLimit};
+use octant_base::printable::printable;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, WaitOptions};
 use std::io::{self, PipeReader, Read, Write};
@@ -43,7 +45,7 @@ pub fn guard(name: &str) -> Result<(), FmuServeError> {
         .map_err(|error| watch(error.into()))?;
     let (output, theirs) = io::pipe().map_err(watch)?;
     let program = std::env::current_exe().map_err(watch)?;
-    let mut fmu = octant_base::child::command(program)
+    let mut fmu = octant_base::child::foreign(program)
         .args(["fmu", "host", "--unguarded"])
         .stderr(theirs)
         .process_group(0)
@@ -56,7 +58,9 @@ pub fn guard(name: &str) -> Result<(), FmuServeError> {
         Ok(rustix::stdio::dup2_stdout(&empty)?)
     };
     release().map_err(watch)?;
-    let mut passed = Output { name, pipe: output, left: OUTPUT_BYTES_MAX, dropped: 0, open: true };
+    let limit = OutputLimit { bytes: OUTPUT_BYTES_MAX, bytes_per_s: 0 };
+    let lines = ForeignLines::new(name, limit, io::stderr());
+    let mut passed = Output { name, pipe: output, lines, open: true };
     let own = Pid::from_child(&fmu);
     let watched = wait(&socket, own, &mut passed);
     // The FMU's process hasn't been waited for, so that no other process has its number. A process
@@ -154,9 +158,7 @@ fn children_of(parent: Pid) -> Vec<Pid> {
 struct Output<'a> {
     name: &'a str,
     pipe: PipeReader,
-    /// Bytes that may still be passed on.
-    left: u64,
-    dropped: u64,
+    lines: ForeignLines<io::Stderr>,
     /// False after the last process that could write has closed it.
     open: bool,
 }
@@ -177,11 +179,7 @@ impl Output<'_> {
                 return;
             }
         };
-        let room = usize::try_from(self.left).unwrap_or(usize::MAX).min(length);
-        // Nobody reads it, if it can't be written.
-        let _ = io::stderr().write_all(&buffer[..room]);
-        self.left -= room as u64;
-        self.dropped += (length - room) as u64;
+        self.lines.take(&buffer[..length]);
     }
 
     /// Passes on what is left after the end of all processes, and tells how much was dropped.
@@ -189,12 +187,13 @@ impl Output<'_> {
         while self.open && is_readable(&self.pipe) {
             self.pass();
         }
-        if self.dropped > 0 {
-            let Self { name, dropped, .. } = self;
+        let dropped = self.lines.end();
+        if dropped > 0 {
             let _ = writeln!(
                 io::stderr(),
-                "\noctant: {name}: {dropped} more bytes of its output were dropped, expected at \
-                 most {OUTPUT_BYTES_MAX}"
+                "octant: {}: {dropped} more bytes of its output were dropped, expected at most \
+                 {OUTPUT_BYTES_MAX}",
+                printable(self.name)
             );
         }
     }

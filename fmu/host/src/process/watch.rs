@@ -43,7 +43,7 @@ impl Watch {
             Some(program) => program.clone(),
             None => octant().map_err(|e| cannot(format!("can't be started: {e}")))?,
         };
-        let child = octant_base::child::command(&program)
+        let child = octant_base::child::foreign(&program)
             .args(["fmu", "host", "--name", name])
             .stdin(Stdio::from(OwnedFd::from(theirs)))
             .stdout(Stdio::from(memory))

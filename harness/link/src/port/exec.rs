@@ -4,17 +4,26 @@
 use super::{Bytes, PortError};
 use crate::Uri;
 use crate::uri::Exec;
+use octant_base::child::{InputPipe, OutputLimit, PassedOn};
 use std::io::{ErrorKind, Read, Write};
-use std::process::{Child, ChildStdin, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Pieces of output that are kept until they are received.
 const PIECES: usize = 64;
 /// Largest piece of output.
 const PIECE_BYTES: usize = 4096;
+/// Time in which a program that closed a pipe, or was killed, has to be over.
+const END_MAX: Duration = Duration::from_secs(1);
+/// Interval at which the end of a program is looked for.
+const LOOK: Duration = Duration::from_millis(1);
+/// Limit of what is shown of a program's standard error.
+pub const ERROR_OUTPUT: OutputLimit = OutputLimit { bytes: 64 << 10, bytes_per_s: 4 << 10 };
+/// Beginning of the lines of a program's standard error.
+const ORIGIN: &str = "device";
 
-/// A program that was started. What it writes to standard error goes where this program's goes.
+/// A program that was started. The lines that it writes to standard error are [passed on](PassedOn).
 #[derive(Debug)]
 pub struct ExecPort {
     uri: String,
@@ -25,8 +34,12 @@ pub struct ExecPort {
 #[derive(Debug)]
 struct Running {
     child: Child,
-    input: ChildStdin,
+    input: InputPipe,
+    /// Rest of a frame that the pipe had no room for.
+    unsent: Vec<u8>,
     output: Pieces,
+    /// `None` once it has ended.
+    errors: Option<PassedOn>,
 }
 
 /// Bytes of a pipe, read by a thread that ends with it.
@@ -80,7 +93,42 @@ impl Drop for Running {
     fn drop(&mut self) {
         // It has no more work: a program that ended before is only waited for.
         let _ = self.child.kill();
-        let _ = self.child.wait();
+        let _ = self.over(END_MAX);
+        if let Some(errors) = self.errors.take() {
+            errors.finish(END_MAX);
+        }
+    }
+}
+
+impl Running {
+    /// Waits for the end of the program within a time; `None`: it lives on.
+    fn over(&mut self, wait: Duration) -> std::io::Result<Option<ExitStatus>> {
+        let until = Instant::now() + wait;
+        loop {
+            match self.child.try_wait()? {
+                None if Instant::now() < until => std::thread::sleep(LOOK),
+                status => return Ok(status),
+            }
+        }
+    }
+
+    /// Sends bytes within a time; false: none of them were taken.
+    fn send(&mut self, bytes: &[u8], wait: Duration) -> std::io::Result<bool> {
+        let until = Instant::now() + wait;
+        if !self.unsent.is_empty() {
+            let taken = self.input.write_within(&self.unsent, wait)?;
+            self.unsent.drain(..taken);
+            if !self.unsent.is_empty() {
+                return Ok(false);
+            }
+        }
+        let left = until.saturating_duration_since(Instant::now());
+        let taken = self.input.write_within(bytes, left)?;
+        // The rest of a frame goes before the next one.
+        if taken > 0 {
+            self.unsent.extend_from_slice(&bytes[taken..]);
+        }
+        Ok(taken > 0 || bytes.is_empty())
     }
 }
 
@@ -107,40 +155,49 @@ fn explain(error: &std::io::Error) -> String {
 }
 
 fn start(exec: &Exec) -> std::io::Result<Running> {
-    let mut child = octant_base::child::command(&exec.program)
+    let mut child = octant_base::child::foreign(&exec.program)
         .args(&exec.arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
         .spawn()?;
-    let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
+    let (Some(input), Some(output), Some(errors)) =
+        (child.stdin.take(), child.stdout.take(), child.stderr.take())
+    else {
         return Err(ErrorKind::BrokenPipe.into());
     };
-    Ok(Running { child, input, output: Pieces::of(output)? })
+    Ok(Running {
+        child,
+        input: InputPipe::new(input)?,
+        unsent: Vec::new(),
+        output: Pieces::of(output)?,
+        errors: Some(PassedOn::start(ORIGIN, ERROR_OUTPUT, errors)?),
+    })
 }
 
-/// Error of a program that has ended, with its status.
-fn ended(uri: &str, running: &mut Running) -> PortError {
-    let reason = match running.child.wait() {
-        Ok(status) => format!("the program ended: {status}"),
+/// Error of a program that has closed a pipe, with its status if it has ended.
+fn ended(uri: &str, running: &mut Running, closed: &str) -> PortError {
+    let reason = match running.over(END_MAX) {
+        Ok(Some(status)) => format!("the program ended: {status}"),
+        Ok(None) => format!("the program closed its standard {closed} and goes on"),
         Err(error) => format!("the program ended: {error}"),
     };
+    // Its last words stand before the message.
+    if let Some(errors) = &running.errors {
+        errors.settle(END_MAX);
+    }
     PortError::gone(uri, reason)
 }
 
 impl Bytes for ExecPort {
-    /// A program that doesn't read its input holds up the harness when the pipe is full: after tens of
-    /// thousands of bytes, which no session leaves unanswered.
-    fn send(&mut self, bytes: &[u8], _: Duration) -> Result<bool, PortError> {
+    fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError> {
         let Some(running) = &mut self.running else { return Err(closed(&self.uri)) };
-        match running.input.write_all(bytes).and_then(|()| running.input.flush()) {
-            Ok(()) => Ok(true),
-            Err(_) => Err(ended(&self.uri, running)),
-        }
+        running.send(bytes, wait).map_err(|_| ended(&self.uri, running, "input"))
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         let Some(running) = &mut self.running else { return Err(closed(&self.uri)) };
-        running.output.receive(buffer, wait).map_err(|Over| ended(&self.uri, running))
+        running.output.receive(buffer, wait).map_err(|Over| ended(&self.uri, running, "output"))
     }
 
     fn datagrams(&self) -> bool {

@@ -16,7 +16,7 @@ mod udp_stamps;
 #[doc(hidden)]
 pub mod socket_can;
 
-pub use exec::{ExecPort, StdioPort};
+pub use exec::{ERROR_OUTPUT, ExecPort, StdioPort};
 pub use listen::{HeardFrame, Listener};
 pub use pty::Pty;
 pub use serial::SerialLine;

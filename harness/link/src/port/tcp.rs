@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 const CONNECT: Duration = Duration::from_secs(5);
 /// Time between two looks for a connection at the device end.
 const LOOK: Duration = Duration::from_millis(5);
+/// Time that a connection without a session has at the device end, before it gives way to one that waits.
+const IDLE: Duration = Duration::from_secs(2);
 
 /// A TCP connection: made by the harness, accepted by the device, one at a time.
 #[derive(Debug)]
@@ -23,6 +25,10 @@ pub struct TcpPort {
     stream: Option<TcpStream>,
     /// Present timeout of reading; `None`: not known.
     wait: Option<Duration>,
+    /// True while a session has the connection.
+    held: bool,
+    /// Time at which the connection was made, or its session ended.
+    idle_since: Instant,
 }
 
 impl TcpPort {
@@ -33,7 +39,16 @@ impl TcpPort {
     pub fn connect(tcp: &Tcp) -> Result<Self, PortError> {
         let uri = Uri::Tcp(tcp.clone()).to_string();
         let stream = connected(tcp).map_err(|reason| PortError::open(&uri, reason))?;
-        Ok(Self { uri, tcp: tcp.clone(), listener: None, stream: Some(stream), wait: None })
+        let stream = Some(stream);
+        Ok(Self {
+            uri,
+            tcp: tcp.clone(),
+            listener: None,
+            stream,
+            wait: None,
+            held: false,
+            idle_since: Instant::now(),
+        })
     }
 
     /// Listens at the device end.
@@ -47,7 +62,16 @@ impl TcpPort {
         let listener = TcpListener::bind(address).map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
         let uri = format!("tcp:{}", listener.local_addr().map_err(refused)?);
-        Ok(Self { uri, tcp: tcp.clone(), listener: Some(listener), stream: None, wait: None })
+        let listener = Some(listener);
+        Ok(Self {
+            uri,
+            tcp: tcp.clone(),
+            listener,
+            stream: None,
+            wait: None,
+            held: false,
+            idle_since: Instant::now(),
+        })
     }
 
     fn gone(&self, reason: impl ToString) -> PortError {
@@ -63,6 +87,7 @@ impl TcpPort {
                 Ok((stream, _)) => {
                     set_up(&stream).map_err(|error| self.gone(error))?;
                     (self.stream, self.wait) = (Some(stream), None);
+                    self.idle_since = Instant::now();
                     return Ok(true);
                 }
                 Err(error) if passes(&error) => {}
@@ -135,6 +160,10 @@ impl Bytes for TcpPort {
             self.accept(wait)?;
             return Ok(0);
         }
+        if self.listener.is_some() && !self.held && self.idle_since.elapsed() >= IDLE {
+            // One that waits takes its place; without one it stays.
+            self.accept(Duration::ZERO)?;
+        }
         let known = self.wait == Some(wait);
         let Some(stream) = &mut self.stream else { return Ok(0) };
         let read = (if known {
@@ -169,8 +198,10 @@ impl Bytes for TcpPort {
         self.uri.clone()
     }
 
-    /// A connection has only one other end.
-    fn hold_peer(&mut self, _: bool) {}
+    /// A connection has only one other end: while it is held, it gives way to no other.
+    fn hold_peer(&mut self, hold: bool) {
+        (self.held, self.idle_since) = (hold, Instant::now());
+    }
 
     fn close(&mut self) {
         (self.stream, self.wait) = (None, None);

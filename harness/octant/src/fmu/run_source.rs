@@ -70,6 +70,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
             Ended::Refused => "refused",
             Ended::SourceEnded => "source ended",
             Ended::Cancelled => "interrupted",
+            Ended::Lost => "bench lost",
             Ended::Misbehaved => "answered what no core may",
             Ended::Broken => "broken",
         },
@@ -89,7 +90,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
     }
     Ok(match run.ended {
         Ended::Refused | Ended::Misbehaved => Verdict::Fail,
-        Ended::Cancelled => Verdict::Inconclusive,
+        Ended::Cancelled | Ended::Lost => Verdict::Inconclusive,
         _ => Verdict::Pass,
     })
 }

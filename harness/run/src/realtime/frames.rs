@@ -217,7 +217,10 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         if let Some(attended) = &mut self.attended {
             attended.tell(done, output);
         }
-        Ok(self.control.look(done) || self.stop.load(Ordering::Relaxed))
+        // Once the keeper of the records has been told.
+        let lost =
+            self.broke == Promise::Told && self.control.stop_when_lost.load(Ordering::Relaxed);
+        Ok(self.control.look(done) || lost || self.stop.load(Ordering::Relaxed))
     }
 
     fn send(
