@@ -9,7 +9,6 @@ macro_rules! note {
 }
 
 pub(crate) use note;
-pub(crate) use octant_base::printable::printable;
 
 /// Set while a person is asked on the terminal, which then has no bar of progress.
 static ASKING: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
