@@ -56,6 +56,7 @@ mod fmu_check;
 mod fmu_config;
 mod fmu_exchange;
 mod fmu_instance;
+mod fmu_once;
 mod fmu_plant;
 #[cfg(target_os = "linux")]
 mod fmu_process;
