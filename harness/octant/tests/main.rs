@@ -87,6 +87,7 @@ mod operator;
 mod operator_ways;
 mod own_sequences;
 #[cfg(unix)]
+mod ports;
 mod power;
 mod progress_bar;
 mod qualification;
