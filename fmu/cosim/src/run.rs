@@ -4,7 +4,7 @@ use super::error::MasterError;
 use super::experiment::{GivenSettings, RunExperiment};
 use super::faults::{Faulting, looked_at};
 use super::flat::Flat;
-use super::open::{is_exchange, open_all};
+use super::open::{OpenedSystem, is_exchange, open_all};
 use super::order::SteppingOrder;
 use super::parameters;
 use super::record::{ConnectionHash, RowError, RowRecorder, signals};
@@ -19,6 +19,7 @@ use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
 use super::tuning::{TunedResult, Tuning, tunings};
 use octant_base::control::Control;
+use octant_fmu_host::OpenedFmu;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, ProcessPlace};
 use octant_mapping::settings::Starts;
@@ -102,7 +103,7 @@ pub struct PreparedSystem {
     order: SteppingOrder,
     seed: u64,
     instances: Vec<Box<dyn Instance>>,
-    descriptions: Vec<Description>,
+    fmus: Vec<OpenedFmu>,
     abilities: Vec<Abilities>,
     starts: Vec<Starts>,
     tunings: Vec<Tuning>,
@@ -122,10 +123,9 @@ impl PreparedSystem {
         let package = Package::open(&request.path)?;
         let structure = SystemStructure::read(&package)?;
         let flat = Flat::of(&structure)?;
-        let instances = open_all(&structure, &flat, request.place, request.allow_tool)?;
-        let descriptions: Vec<Description> =
-            instances.iter().map(|instance| instance.description().clone()).collect();
-        let described: Vec<&Description> = descriptions.iter().collect();
+        let OpenedSystem { instances, fmus } =
+            open_all(&structure, &flat, request.place, request.allow_tool)?;
+        let described: Vec<&Description> = fmus.iter().map(|fmu| &**fmu.description()).collect();
         let experiment = RunExperiment::of(&request.said, &structure, &flat, &described)
             .map_err(|error| SspError::of_file(&structure.file, error.to_string()))?;
         let names: Vec<&str> = flat.components.iter().map(|c| c.name.as_str()).collect();
@@ -190,7 +190,7 @@ impl PreparedSystem {
             order,
             seed,
             instances,
-            descriptions,
+            fmus,
             abilities,
             starts,
             tunings,
@@ -269,7 +269,8 @@ impl PreparedSystem {
         mut watch: impl FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
     ) -> Result<Results, PrepareError> {
         let Self { system, settings, instances, starts, abilities, faulting, requiring, .. } = self;
-        let described: Vec<&Description> = self.descriptions.iter().collect();
+        let described: Vec<&Description> =
+            self.fmus.iter().map(|fmu| &**fmu.description()).collect();
         let every = self.request.every.unwrap_or(settings.steps.div_ceil(ROWS_MAX)).max(1);
         let mut simulation =
             Simulation::new(&system, &settings, instances, abilities, Some(faulting));
@@ -308,7 +309,7 @@ impl PreparedSystem {
             fmus.push(FmuResult {
                 name: component.name.clone(),
                 source: component.source.clone(),
-                sha256: octant_base::hash::sha256(&component.file).ok(),
+                sha256: self.fmus[number].sha256().map(str::to_owned),
                 model: description.model_name.clone(),
                 token: description.token.clone(),
                 fmi: description.fmi_version.clone(),

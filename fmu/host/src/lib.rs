@@ -7,6 +7,7 @@
 //! | `exchange` | model exchange as co-simulation, with Octant's solver |
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`instance`] | a running FMU, of both standards and both kinds, behind one trait |
+//! | [`OpenedFmu`] | an FMU opened once, for its hash, its description and all its instances |
 //! | [`process`] | an FMU in a process of its own |
 
 pub mod archive;
@@ -15,6 +16,8 @@ pub mod description;
 mod exchange;
 pub mod instance;
 pub mod library;
+mod opened;
 pub mod process;
 
 pub use instance::open::{FmuOpenError, open, open_archive};
+pub use opened::OpenedFmu;

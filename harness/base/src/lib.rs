@@ -17,10 +17,12 @@
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
+//! | [`address`] | addresses of ports as text, the same for every device |
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
 //! | [`utc`] | times of the host as text |
 
+pub mod address;
 pub mod arrow;
 pub mod attendance;
 pub mod chained_lines;

@@ -22,6 +22,7 @@ use octant_calibration::state_machine::CoreConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
+use octant_mapping::OpenedFmus;
 use octant_mapping::stepper::UseError;
 use octant_power::PowerError;
 use octant_realtime::clock::MonotonicTime;
@@ -276,15 +277,15 @@ pub enum EndpointOpenError {
     },
 }
 
-/// Checks that the endpoint of a scenario can be opened. A device's port is opened only once, when
-/// the run begins: some devices restart when it is opened.
+/// Checks an endpoint without opening it, where it is a device: its port is opened only once, when the run begins,
+/// since some devices restart when it is opened. Returns whether it is one; any other is checked by [`open_with`].
 ///
 /// # Errors
 /// As [`open`].
-pub fn check(scenario: &Scenario, config: &CoreConfig) -> Result<(), EndpointOpenError> {
+pub fn check_live(scenario: &Scenario) -> Result<bool, EndpointOpenError> {
     match scenario.endpoint.device() {
-        Some(live) => LiveEndpoint::check(scenario, live),
-        None => open(scenario, config).map(drop),
+        Some(live) => LiveEndpoint::check(scenario, live).map(|()| true),
+        None => Ok(false),
     }
 }
 
@@ -297,6 +298,18 @@ pub fn open(
     scenario: &Scenario,
     config: &CoreConfig,
 ) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
+    open_with(scenario, config, &OpenedFmus::default())
+}
+
+/// Opens as [`open`], with FMUs that are opened or get opened.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(
+    scenario: &Scenario,
+    config: &CoreConfig,
+    fmus: &OpenedFmus,
+) -> Result<Option<AnyEndpoint>, EndpointOpenError> {
     if let scenario::SourceSpec::Solution(spec) = &scenario.source {
         let endpoint = SolutionEndpoint::open(scenario, spec).map_err(Box::new)?;
         return Ok(Some(endpoint.into()));
@@ -304,7 +317,7 @@ pub fn open(
     match &scenario.endpoint {
         scenario::EndpointSpec::InProcess => Ok(None),
         scenario::EndpointSpec::Fmu(fmu) => {
-            Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into()))
+            Ok(Some(FmuEndpoint::open(scenario, fmu, config, fmus)?.into()))
         }
         scenario::EndpointSpec::Live(live) => {
             Ok(Some(LiveEndpoint::open(scenario, live, config)?.into()))

@@ -3,20 +3,20 @@
 //! A name is `SCHEME:NAME?OPTION=VALUE&OPTION=VALUE`. Unknown names are refused, with the nearest known
 //! one.
 
-mod parts;
+pub use octant_base::address::AddressError as UriError;
+pub use octant_base::address::{HostPort, SerialAddress};
 
-pub use parts::UriError;
-
+use octant_base::address::HostForm;
+use octant_base::address::parts::AddressParts;
 use octant_faults::wire::Medium;
 use octant_wire::can::{Bus, CanVersion};
-use parts::Parts;
 use std::fmt;
 
 /// A port, by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Uri {
     /// A serial line: `serial:/dev/ttyUSB0?baud=921600`.
-    Serial(Serial),
+    Serial(SerialAddress),
     /// A new pseudo terminal, for the device end: `pty:`, or `pty:/tmp/device` with a link to it.
     Pty {
         /// Path of a link to the terminal; empty: no link.
@@ -29,20 +29,11 @@ pub enum Uri {
     /// UDP: `udp:host:port`, `udp:host:port?secret=FILE`.
     Udp(Udp),
     /// TCP: `tcp:host:port`.
-    Tcp(Tcp),
+    Tcp(HostPort),
     /// A program whose standard input and output are the line: `exec:./core --fast`.
     Exec(Exec),
     /// Standard input and output, for the device end of `exec:`: `stdio:`.
     Stdio,
-}
-
-/// A serial line.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Serial {
-    /// Name of the port.
-    pub path: String,
-    /// Bit rate, bit/s.
-    pub baud: u32,
 }
 
 /// A CAN interface.
@@ -73,7 +64,7 @@ impl Can {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SlcanUri {
     /// The serial line.
-    pub serial: Serial,
+    pub serial: SerialAddress,
     /// The bus behind it.
     pub bus: Bus,
 }
@@ -81,21 +72,10 @@ pub struct SlcanUri {
 /// A UDP address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Udp {
-    /// Host or address of the other end; at the device end, the address to listen at; empty: loopback.
-    pub host: String,
-    /// Port; at the device end, 0 is any free port.
-    pub port: u16,
+    /// Other end; at the device end, the address to listen at.
+    pub address: HostPort,
     /// File with the secret that both ends share; `None`: anyone may talk.
     pub secret: Option<String>,
-}
-
-/// A TCP address.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Tcp {
-    /// Host or address of the other end; at the device end, the address to listen at; empty: loopback.
-    pub host: String,
-    /// Port; at the device end, 0 is any free port.
-    pub port: u16,
 }
 
 /// A program with its arguments. In its text, spaces separate them; there are no quotes.
@@ -138,7 +118,7 @@ pub struct Scheme {
     /// Medium, which decides what faults it can have.
     pub medium: Medium,
     options: &'static [&'static str],
-    read: fn(&Parts<'_>) -> Result<Uri, UriError>,
+    read: fn(&AddressParts<'_>) -> Result<Uri, UriError>,
 }
 
 /// All schemes.
@@ -146,13 +126,11 @@ pub const SCHEMES: [Scheme; 8] = [SERIAL, CAN, SLCAN, UDP, TCP, EXEC, PTY, STDIO
 
 const SERIAL: Scheme = Scheme {
     name: "serial",
-    devices: Some("a device on a serial line: serial:/dev/ttyUSB0?baud=921600"),
+    devices: Some("a device on a serial line: serial:/dev/ttyUSB0?baud=921600 (the default rate)"),
     medium: Medium::Line,
     options: &["baud"],
     read: |parts| {
-        let path = parts.named("serial:PORT, such as serial:/dev/ttyUSB0")?;
-        let baud = parts.rate("baud")?.unwrap_or(DEFAULT_BAUD);
-        Ok(Uri::Serial(Serial { path, baud }))
+        Ok(Uri::Serial(SerialAddress::read(parts, DEFAULT_BAUD, &serial_form("serial"))?))
     },
 };
 
@@ -164,7 +142,7 @@ const CAN: Scheme = Scheme {
     read: |parts| {
         Ok(Uri::Can(Can {
             interface: parts.named("can:INTERFACE, such as can:can0")?,
-            format: parts.format()?,
+            format: format(parts)?,
             bitrate: parts.rate("bitrate")?,
             data_bitrate: parts.rate("data_bitrate")?,
         }))
@@ -177,9 +155,8 @@ const SLCAN: Scheme = Scheme {
     medium: Medium::Bus,
     options: &["baud", "bitrate", "fd", "data_bitrate"],
     read: |parts| {
-        let path = parts.named("slcan:PORT, such as slcan:/dev/ttyACM0")?;
-        let baud = parts.rate("baud")?.unwrap_or(DEFAULT_BAUD);
-        Ok(Uri::Slcan(SlcanUri { serial: Serial { path, baud }, bus: slcan_bus(parts)? }))
+        let serial = SerialAddress::read(parts, DEFAULT_BAUD, &serial_form("slcan"))?;
+        Ok(Uri::Slcan(SlcanUri { serial, bus: slcan_bus(parts)? }))
     },
 };
 
@@ -189,11 +166,8 @@ const UDP: Scheme = Scheme {
     medium: Medium::Datagrams,
     options: &["secret"],
     read: |parts| {
-        let (host, port) = address(parts.name).ok_or_else(|| UriError::Name {
-            found: parts.text.to_owned(),
-            expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
-        })?;
-        Ok(Uri::Udp(Udp { host, port, secret: parts.file("secret")? }))
+        let address = HostForm::Wire.read(parts, "udp")?;
+        Ok(Uri::Udp(Udp { address, secret: parts.file("secret")? }))
     },
 };
 
@@ -202,13 +176,7 @@ const TCP: Scheme = Scheme {
     devices: Some("a device on TCP: tcp:HOST:PORT"),
     medium: Medium::Line,
     options: &[],
-    read: |parts| {
-        let (host, port) = address(parts.name).ok_or_else(|| UriError::Name {
-            found: parts.text.to_owned(),
-            expected: "tcp:HOST:PORT, such as tcp:127.0.0.1:5005 or tcp:[::1]:5005",
-        })?;
-        Ok(Uri::Tcp(Tcp { host, port }))
-    },
+    read: |parts| Ok(Uri::Tcp(HostForm::Wire.read(parts, "tcp")?)),
 };
 
 const EXEC: Scheme = Scheme {
@@ -218,10 +186,8 @@ const EXEC: Scheme = Scheme {
     options: &[],
     read: |parts| {
         let mut words = parts.name.split_whitespace().map(str::to_owned);
-        let program = words.next().ok_or_else(|| UriError::Name {
-            found: parts.text.to_owned(),
-            expected: "exec:PROGRAM ARGUMENT..., such as exec:./core --fast",
-        })?;
+        let expected = "exec:PROGRAM ARGUMENT..., such as exec:./core --fast";
+        let program = words.next().ok_or_else(|| parts.form(expected))?;
         Ok(Uri::Exec(Exec { program, arguments: words.collect() }))
     },
 };
@@ -243,7 +209,7 @@ const STDIO: Scheme = Scheme {
         if parts.name.is_empty() {
             return Ok(Uri::Stdio);
         }
-        Err(UriError::Name { found: parts.text.to_owned(), expected: "stdio: alone" })
+        Err(parts.form("stdio: alone"))
     },
 };
 
@@ -261,11 +227,11 @@ impl std::str::FromStr for Uri {
         let Some(known) = SCHEMES.iter().find(|known| known.name == scheme) else {
             return Err(UriError::Scheme { found: scheme.to_owned(), known: schemes() });
         };
-        (known.read)(&Parts::read(text, rest, known.name, known.options)?)
+        (known.read)(&AddressParts::read(text, rest, known.name, known.options)?)
     }
 }
 
-fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
+fn slcan_bus(options: &AddressParts<'_>) -> Result<Bus, UriError> {
     let one_of = |option, found: Option<u32>, known: &[u32]| match found {
         Some(rate) if known.contains(&rate) => Ok(rate),
         found => Err(UriError::Value {
@@ -277,7 +243,7 @@ fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
             ),
         }),
     };
-    let format = options.format()?;
+    let format = format(options)?;
     let nominal_bps = one_of("bitrate", options.rate("bitrate")?, &SLCAN_BITRATES)?;
     let data_bps = match format {
         CanVersion::Classic => None,
@@ -289,11 +255,32 @@ fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
     Ok(Bus { nominal_bps, data_bps })
 }
 
-/// Parses `host:port`, `[v6]:port`, `:port` or `port`.
-fn address(name: &str) -> Option<(String, u16)> {
-    let (host, port) = name.rsplit_once(':').unwrap_or(("", name));
-    let host = host.strip_prefix('[').map_or(Some(host), |host| host.strip_suffix(']'))?;
-    Some((host.to_owned(), port.parse().ok()?))
+/// Form of an address on a serial line, with the default rate.
+fn serial_form(scheme: &str) -> String {
+    format!("{scheme}:PORT?baud=RATE ({DEFAULT_BAUD} by default), such as {scheme}:/dev/ttyUSB0")
+}
+
+/// Format given by `fd`; `data_bitrate` requires `fd=1`.
+fn format(parts: &AddressParts<'_>) -> Result<CanVersion, UriError> {
+    let format = match parts.get("fd") {
+        None | Some("0") => CanVersion::Classic,
+        Some("1") => CanVersion::Fd,
+        Some(found) => {
+            return Err(UriError::Value {
+                option: "fd",
+                found: found.to_owned(),
+                expected: "0 (classic CAN) or 1 (CAN FD)".to_owned(),
+            });
+        }
+    };
+    if let (CanVersion::Classic, Some(found)) = (format, parts.get("data_bitrate")) {
+        return Err(UriError::Value {
+            option: "data_bitrate",
+            found: found.to_owned(),
+            expected: "fd=1 with it: classic CAN has one bit rate".to_owned(),
+        });
+    }
+    Ok(format)
 }
 
 impl Uri {
@@ -348,7 +335,7 @@ impl fmt::Display for Uri {
     /// Writes the URI in the form that is parsed.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Serial(Serial { path, baud }) => write!(f, "serial:{path}?baud={baud}"),
+            Self::Serial(serial) => write!(f, "serial:{serial}"),
             Self::Pty { link } => write!(f, "pty:{link}"),
             Self::Can(Can { interface, format, bitrate, data_bitrate }) => {
                 write!(f, "can:{interface}?fd={}", u8::from(*format == CanVersion::Fd))?;
@@ -359,22 +346,18 @@ impl fmt::Display for Uri {
                 }
                 Ok(())
             }
-            Self::Slcan(SlcanUri { serial: Serial { path, baud }, bus }) => {
-                write!(f, "slcan:{path}?baud={baud}&bitrate={}", bus.nominal_bps)?;
+            Self::Slcan(SlcanUri { serial, bus }) => {
+                write!(f, "slcan:{serial}&bitrate={}", bus.nominal_bps)?;
                 match bus.data_bps {
                     Some(rate) => write!(f, "&fd=1&data_bitrate={rate}"),
                     None => Ok(()),
                 }
             }
-            Self::Udp(Udp { host, port, secret }) => {
-                match host.contains(':') {
-                    true => write!(f, "udp:[{host}]:{port}")?,
-                    false => write!(f, "udp:{host}:{port}")?,
-                }
+            Self::Udp(Udp { address, secret }) => {
+                write!(f, "udp:{address}")?;
                 secret.iter().try_for_each(|file| write!(f, "?secret={file}"))
             }
-            Self::Tcp(Tcp { host, port }) if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
-            Self::Tcp(Tcp { host, port }) => write!(f, "tcp:{host}:{port}"),
+            Self::Tcp(address) => write!(f, "tcp:{address}"),
             Self::Exec(Exec { program, arguments }) => {
                 write!(f, "exec:{program}")?;
                 arguments.iter().try_for_each(|argument| write!(f, " {argument}"))

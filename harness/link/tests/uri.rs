@@ -2,6 +2,7 @@
 
 use octant_link::Uri;
 use octant_link::uri::{DEFAULT_BAUD, SCHEMES};
+use proptest::prelude::*;
 
 fn refused(text: &str) -> String {
     text.parse::<Uri>().unwrap_err().to_string()
@@ -34,7 +35,7 @@ fn a_name_is_what_it_was_read_from() {
     let Uri::Serial(serial) = "serial:/dev/ttyS0".parse().unwrap() else { panic!() };
     assert_eq!(serial.baud, DEFAULT_BAUD);
     let Uri::Udp(udp) = "udp:5005".parse().unwrap() else { panic!() };
-    assert_eq!((udp.host.as_str(), udp.port), ("", 5005));
+    assert_eq!((udp.address.host.as_str(), udp.address.port), ("", 5005));
 }
 
 #[test]
@@ -52,7 +53,7 @@ fn what_is_not_known_is_refused_with_the_nearest() {
 
 #[test]
 fn values_are_checked() {
-    assert!(refused("serial:").contains("expected serial:PORT"));
+    assert!(refused("serial:").contains("expected serial:PORT?baud=RATE (921600 by default)"));
     assert!(refused("serial:/dev/ttyUSB0?baud=fast").contains("found baud=fast"));
     assert!(refused("serial:/dev/ttyUSB0?baud=0").contains("found baud=0"));
     assert!(refused("can:can0?fd=yes").contains("0 (classic CAN) or 1 (CAN FD)"));
@@ -65,6 +66,35 @@ fn values_are_checked() {
         assert!(refused(text).contains("udp:HOST:PORT"), "{text}");
     }
     assert!(refused("tcp:localhost").contains("tcp:HOST:PORT"));
+    assert!(
+        refused("tcp:::1:5005").contains("expected tcp:[::1]:5005: an IPv6 address is in brackets")
+    );
+    assert!(refused("udp:::1:5005").contains("expected udp:[::1]:5005"));
     assert!(refused("exec:").contains("exec:PROGRAM"));
     assert!(refused("exec:./core?fast=1").contains("it has no options"));
+}
+
+proptest! {
+    #[test]
+    fn every_text_is_read_without_a_panic_and_comes_back(text in any_text()) {
+        if let Ok(uri) = text.parse::<Uri>() {
+            prop_assert_eq!(uri.to_string().parse::<Uri>(), Ok(uri));
+        }
+    }
+}
+
+/// Texts of all kinds, most of them near to a name of a port.
+fn any_text() -> impl Strategy<Value = String> {
+    let schemes = prop::sample::select(SCHEMES.map(|scheme| scheme.name.to_owned()).to_vec());
+    let options = ["baud", "bitrate", "fd", "data_bitrate", "secret"].map(str::to_owned).to_vec();
+    let part = prop_oneof![
+        prop::sample::select(options),
+        prop::sample::select([":", "?", "=", "&", "[", "]", "::1", "%", "500000"].to_vec())
+            .prop_map(str::to_owned),
+        "[0-9]{0,6}",
+        "[a-z/]{0,6}",
+        any::<String>(),
+    ];
+    (prop_oneof![9 => schemes, 1 => any::<String>()], prop::collection::vec(part, 0..9))
+        .prop_map(|(scheme, parts)| format!("{scheme}:{}", parts.concat()))
 }

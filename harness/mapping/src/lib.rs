@@ -8,13 +8,17 @@
 //! | [`bind`] | channels bound to variables: place of each number |
 //! | [`settings`] | parameters, checked against the description |
 //! | [`open`] | from a scenario to an FMU that can be started |
+//! | [`OpenedFmus`] | FMUs of a run, each opened once |
 //! | [`stepper`] | a started FMU, stepped in time |
 
 pub mod bind;
 pub mod convert;
 pub mod find;
 pub mod open;
+mod opened;
 pub mod settings;
 pub mod stepper;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
+
+pub use opened::OpenedFmus;

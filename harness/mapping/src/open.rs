@@ -1,15 +1,13 @@
 //! Prepares the FMU of a scenario for its start.
 
+use super::opened::OpenedFmus;
 use super::settings::{Starts, ValueSettings};
 use super::stepper::UseError;
 use octant_calibration::CoreConfig;
-use octant_fmu_host::FmuOpenError;
-use octant_fmu_host::archive::{Archive, ArchiveError};
-use octant_fmu_host::description::{self, Description, DescriptionError};
+use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
 use octant_plant::config::PlantConfig;
 use octant_scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// An instance and its URI, for messages.
@@ -23,53 +21,24 @@ pub struct NamedInstance {
 /// Names and values of the variables of one of our own FMUs.
 pub type OwnVariables = Vec<(&'static str, Vec<f64>)>;
 
-/// Returns the path of a scenario's FMU.
-///
-/// # Errors
-/// If its name can't be expanded.
-pub fn path(scenario: &Scenario, fmu: &Fmu) -> Result<PathBuf, UseError> {
-    let problem = |reason: String| UseError::problems(&scenario.file, vec![fmu.at.problem(reason)]);
-    fmu.file.path(&scenario.folder).map_err(|reason| problem(format!("failed to {reason}")))
-}
-
-/// Opens the FMU of a scenario.
+/// Makes an instance of a scenario's FMU.
 ///
 /// # Errors
 /// If it can't be read, lacks the interface, or can't be loaded.
-pub fn instance(scenario: &Scenario, fmu: &Fmu) -> Result<NamedInstance, UseError> {
-    let path = path(scenario, fmu)?;
+pub fn instance(
+    scenario: &Scenario,
+    fmu: &Fmu,
+    fmus: &OpenedFmus,
+) -> Result<NamedInstance, UseError> {
+    let (opened, path) = fmus.of(scenario, fmu)?;
     let uri = format!("fmu:{}", path.display());
     // Our FMUs give the same answers without event mode, in a third of the time.
-    let own = describe(&path).is_ok_and(|description| is_made_here(&description));
+    let own = is_made_here(opened.description());
     let options = OpenOptions { event_mode: !own, ..options(fmu) };
-    let instance = octant_fmu_host::open(&path, &options).map_err(|error| match error {
-        FmuOpenError::Instance(error) => UseError::instance(&uri, &error),
-        other => UseError::Open { uri: uri.clone(), reason: other.to_string() },
-    })?;
-    Ok(NamedInstance { instance, uri })
-}
-
-/// Reason why the description of an FMU can't be read.
-#[derive(Debug, thiserror::Error)]
-pub enum DescribeError {
-    /// The archive can't be used.
-    #[error(transparent)]
-    Archive(#[from] ArchiveError),
-    /// The description can't be used.
-    #[error(transparent)]
-    Description(#[from] DescriptionError),
-}
-
-/// Reads the description of an FMU without opening it.
-///
-/// # Errors
-/// If it can't be read.
-pub fn describe(path: &Path) -> Result<Description, DescribeError> {
-    const NAME: &str = "modelDescription.xml";
-    let mut archive = Archive::open(path)?;
-    let bytes = archive.read(NAME)?;
-    let file = format!("{}/{NAME}", archive.file());
-    Ok(description::read_bytes(&bytes, &file)?)
+    match opened.instance(&options) {
+        Ok(instance) => Ok(NamedInstance { instance, uri }),
+        Err(error) => Err(UseError::open(&uri, error)),
+    }
 }
 
 /// Longest time for loading and initializing an FMU, in limits of one call: 1 min by default.
@@ -166,9 +135,9 @@ pub fn own_plant(
 
 /// Returns whether the file of an FMU holds our Plant; false if it can't be read.
 #[must_use]
-pub fn is_own_plant(scenario: &Scenario, fmu: &Fmu) -> bool {
-    let description = path(scenario, fmu).ok().and_then(|path| describe(&path).ok());
-    description.is_some_and(|of| is_own(&of, octant_fmu::plant::table::MODEL.name))
+pub fn is_own_plant(scenario: &Scenario, fmu: &Fmu, fmus: &OpenedFmus) -> bool {
+    let opened = fmus.of(scenario, fmu);
+    opened.is_ok_and(|(fmu, _)| is_own(fmu.description(), octant_fmu::plant::table::MODEL.name))
 }
 
 /// Returns whether an FMU is one of ours: made by this program, under this name.

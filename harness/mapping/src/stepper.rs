@@ -2,6 +2,7 @@
 
 use super::bind::{BindError, Bound};
 use super::settings::Starts;
+use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
 use octant_scenario::{Problem, ScenarioError};
 
@@ -33,6 +34,14 @@ impl UseError {
     /// Wraps problems with a scenario's settings.
     pub fn problems(file: &str, problems: Vec<Problem>) -> Self {
         Self::Mapping(ScenarioError { file: file.to_owned(), problems })
+    }
+
+    /// Wraps the reason why an FMU can't be opened.
+    pub(crate) fn open(uri: &str, error: FmuOpenError) -> Self {
+        match error {
+            FmuOpenError::Instance(error) => Self::instance(uri, &error),
+            other => Self::Open { uri: uri.to_owned(), reason: other.to_string() },
+        }
     }
 
     /// Wraps an instance's error from before the start.

@@ -7,6 +7,7 @@ use clap::Args;
 use octant_base::interrupt;
 use octant_link::Uri;
 use octant_link::port::{self, Bytes, Port};
+use octant_link::uri::DEFAULT_BAUD;
 use octant_requirements::Verdict;
 use octant_wire::message::EndRole;
 use std::fs::{File, OpenOptions};
@@ -16,8 +17,13 @@ use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct CaptureArguments {
-    /// Port of the instrument: serial:PORT?baud=N, udp:PORT (on loopback), udp:ADDRESS:PORT, tcp:PORT.
-    #[arg(value_name = "URI")]
+    #[arg(
+        value_name = "URI",
+        help = format!(
+            "Port of the instrument: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), udp:PORT (on loopback), \
+             udp:ADDRESS:PORT, tcp:PORT"
+        )
+    )]
     uri: String,
     /// New file for the bytes.
     #[arg(long, value_name = "FILE")]

@@ -6,9 +6,10 @@ pub use crate::attendant::OperatorWays;
 pub use crate::evidenced::{Evidence, RunRequest};
 pub use crate::failure::Failure;
 
-use crate::evidenced::{Answers, Asked, Begun, evidence};
+use crate::evidenced::{Answers, Asked, Begun, evidence, fmus};
 use crate::progress::Follower;
 use octant_base::control::Control;
+use octant_mapping::OpenedFmus;
 use octant_run::{Parts, SteppedRun, StreamKeeping};
 use octant_scenario::{Method, Scenario};
 
@@ -65,10 +66,12 @@ impl Bench {
                 "failed to step a run by the clock: expected realtime.pace = \"simulated\"",
             ));
         }
-        let begun = asked.begin(&request, 1)?;
+        let opened = OpenedFmus::default();
+        let begun = asked.begin(&request, fmus(&asked.scenario, 1, &opened)?)?;
         let path = begun.folder.path().join("recording.mcap");
         let file = StreamKeeping::File(&path);
-        let stepped = SteppedRun::new(&asked.scenario, Method::Primary, asked.seed, file, parts)
+        let (scenario, seed) = (&asked.scenario, asked.seed);
+        let stepped = SteppedRun::new(scenario, Method::Primary, seed, file, parts, &opened)
             .map_err(|error| {
                 // Nothing was run: a folder without a run is in nobody's way.
                 let _ = std::fs::remove_dir_all(begun.folder.path());

@@ -11,6 +11,7 @@ use crate::terminal::{note, print, write};
 use octant_base::number::counted;
 use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
+use octant_mapping::OpenedFmus;
 use octant_operator::OperatorRecord;
 use octant_recorder::event::PowerRecord;
 use octant_report as report;
@@ -19,10 +20,11 @@ use octant_requirements::equipment::Day;
 use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
+use octant_run::prepared::tasks;
 use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
-use octant_scenario::{FilePlaces, Method, Scenario, SourceSpec};
+use octant_scenario::resolve::{DrawnValues, Seeded};
+use octant_scenario::{FilePlaces, Scenario, SourceSpec};
 use octant_score::junit::junit;
-use octant_source::configure::configurations;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -120,14 +122,16 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
     if once && !request.no_twin && !scenario.faults.is_empty() {
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
-    let prepared = prepare(scenario, seed, twins)?;
+    let opened = OpenedFmus::default();
+    let fmus = fmus(scenario, tasks(scenario, twins), &opened)?;
+    let prepared = prepare(scenario, seed, twins, &opened)?;
     if request.stop_when_lost {
         prepared.stop_when_lost().map_err(Failure::input)?;
     }
     let plan = request.operator.plan(scenario)?;
     let mut live = request.live.as_deref().map(Live::start).transpose()?;
     follower.watch_interrupts();
-    let begun = asked.begin(request, prepared.tasks())?;
+    let begun = asked.begin(request, fmus)?;
     let folder = begun.folder.path();
     let attendant = plan.map(|plan| Attendant::open(plan, scenario, folder)).transpose()?;
     if let Some(live) = &mut live {
@@ -217,8 +221,11 @@ impl Asked {
     }
 
     /// Makes the folder of the run, with the resolved scenario in it.
-    pub(crate) fn begin(&self, request: &RunRequest, tasks: usize) -> Result<Begun, Failure> {
-        let fmus = fmus(&self.scenario, tasks)?;
+    pub(crate) fn begin(
+        &self,
+        request: &RunRequest,
+        fmus: Vec<FmuFacts>,
+    ) -> Result<Begun, Failure> {
         let inputs = octant_evidence::inputs(&self.scenario)
             .map_err(|error| Failure::input(format!("failed to {error}")))?;
         let key = crate::signing::signing_key()?;
@@ -230,8 +237,7 @@ impl Asked {
         let folder = RunFolder::create(&path, existing)
             .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))?;
         let started = SystemTime::now();
-        let (_, _, draws) = configurations(&self.scenario, Method::Primary, self.seed)
-            .map_err(|e| Failure::input(format!("failed to {e}")))?;
+        let draws = DrawnValues::of(&self.scenario, &Seeded(self.seed));
         let resolved = self.scenario.to_resolved_toml(self.seed, &draws);
         write(&folder.path().join("scenario.toml"), resolved)?;
         Ok(Begun { folder, started, fmus, inputs, key })
@@ -321,12 +327,13 @@ impl Asked {
 }
 
 /// Prepares the methods of a scenario.
-pub(crate) fn prepare(
-    scenario: &Scenario,
+pub(crate) fn prepare<'a>(
+    scenario: &'a Scenario,
     seed: u64,
     twins: bool,
-) -> Result<Prepared<'_>, Failure> {
-    Prepared::of(scenario, seed, twins)
+    fmus: &OpenedFmus,
+) -> Result<Prepared<'a>, Failure> {
+    Prepared::of(scenario, seed, twins, fmus)
         .map_err(|error| Failure::from(MethodError::from(error)).failed())
 }
 
@@ -352,9 +359,13 @@ pub(crate) fn execute(
 }
 
 /// Collects the manifest's facts about the FMUs of a run with a number of parallel tasks.
-fn fmus(scenario: &Scenario, tasks: usize) -> Result<Vec<FmuFacts>, Failure> {
-    let fmus =
-        octant_evidence::fmus(scenario).map_err(|e| Failure::input(format!("failed to {e}")))?;
+pub(crate) fn fmus(
+    scenario: &Scenario,
+    tasks: usize,
+    opened: &OpenedFmus,
+) -> Result<Vec<FmuFacts>, Failure> {
+    let fmus = octant_evidence::fmus(scenario, opened)
+        .map_err(|e| Failure::input(format!("failed to {e}")))?;
     match fmus.iter().find(|fmu| fmu.only_once && fmu.process == "shared") {
         Some(fmu) if tasks > 1 => Err(Failure::input(format!(
             "failed to run {tasks} instances of {}: a process can hold only one, expected \

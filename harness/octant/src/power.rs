@@ -12,8 +12,13 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Port of a supply or of relays, tcp:HOST, tcp:HOST:PORT or serial:DEVICE?baud=RATE, or a scenario with [power].
-    #[arg(value_name = "PORT")]
+    #[arg(
+        value_name = "PORT",
+        help = format!(
+            "Port of a supply or of relays, {}, or a scenario with [power]",
+            octant_power::POWER_PORT.expected()
+        )
+    )]
     port: String,
     /// Channel of the supply.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
@@ -57,7 +62,7 @@ enum Action {
 
 fn failure(error: &PowerError) -> Failure {
     match error {
-        PowerError::Address { .. } | PowerError::Relay { .. } => Failure::input(error),
+        PowerError::Address(_) | PowerError::Relay { .. } => Failure::input(error),
         _ => Failure::bench(format!("failed to reach the power: {error}")),
     }
 }

@@ -11,6 +11,7 @@ use octant_campaign::reexecute::{self, CONFIDENCE, altered_at_most};
 use octant_evidence::InputFacts;
 use octant_evidence::inside::SUMMARY;
 use octant_evidence::manifest::{Manifest, program_sha256};
+use octant_mapping::OpenedFmus;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
 use octant_run::assemble::{Choice, assemble_with};
@@ -113,7 +114,8 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     scenario.realtime.by_clock = false;
     // Nor have the operator's answers.
     scenario.operator.clear();
-    let fmus = match octant_evidence::fmus(&scenario) {
+    let opened = OpenedFmus::default();
+    let fmus = match octant_evidence::fmus(&scenario, &opened) {
         Ok(fmus) => fmus,
         Err(error) => return Ok(cannot(format!("not possible: failed to {error}"))),
     };
@@ -137,7 +139,7 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     let twins = !manifest.command_line.iter().any(|word| word == "--no-twin");
     let place = tempfile::tempdir()
         .map_err(|error| Failure::bench(format!("failed to create a folder: {error}")))?;
-    let prepared = prepare(&scenario, seed, twins)?;
+    let prepared = prepare(&scenario, seed, twins, &opened)?;
     let mut runs = execute(&prepared, &scenario, place.path(), &Follower::Terminal)?.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));

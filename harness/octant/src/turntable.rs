@@ -83,8 +83,13 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Table {
-    /// tcp:HOST:PORT, serial:DEVICE?baud=RATE, or a scenario with [turntable.drive].
-    #[arg(value_name = "TABLE")]
+    #[arg(
+        value_name = "TABLE",
+        help = format!(
+            "Port of the controller, {}, or a scenario with [turntable.drive]",
+            octant_turntable::TABLE_PORT.expected()
+        )
+    )]
     table: String,
     /// Command language of the controller: a name, or a file with a table of patterns.
     #[arg(long, value_name = "DIALECT")]
@@ -109,6 +114,7 @@ impl From<AxisName> for TableAxis {
 fn failure(error: &Error) -> Failure {
     match error {
         Error::Dialect { .. }
+        | Error::Address(_)
         | Error::Angle { .. }
         | Error::Rate { .. }
         | Error::Lacking { .. } => Failure::input(error),

@@ -5,6 +5,7 @@ use octant_base::control::Control;
 use octant_faults::FaultSpec;
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
+use octant_mapping::OpenedFmus;
 use octant_run::branches::{BranchPlan, first_alike, run_branches};
 use octant_run::method::{MethodError, MethodRun};
 use octant_run::stem::Stem;
@@ -228,7 +229,7 @@ fn with_twin_is_both_alone(scenario: &Scenario, seed: u64) {
         path
     };
     let (together, apart) = (folder("together"), folder("apart"));
-    let prepared = Prepared::of(scenario, seed, true).unwrap();
+    let prepared = Prepared::of(scenario, seed, true, &OpenedFmus::default()).unwrap();
     let mut both = prepared.run(&together).unwrap().remove(0);
     let twin = std::sync::Arc::into_inner(both.twin.take().unwrap()).unwrap();
     let control = Control::default();

@@ -193,7 +193,7 @@ const IMU: &str = "schema = 1\ntitle = \"foreign\"\n[procedure.calibration]\ndur
     gimbal_command.azimuth = \"table.to_azimuth\"\ngimbal_command.roll = \"table.to_elevation\"\n\
     [source.fmu.parameters]\nbase.omega = 1.5\nbase.rate = \"2 deg/s\"\n";
 
-fn imu(more: &str) -> String {
+pub(super) fn imu(more: &str) -> String {
     let fmu = foreign::fmu("imu_fmi2");
     format!("{}{more}", IMU.replace("IMU", fmu.to_str().unwrap()))
 }
@@ -284,7 +284,7 @@ const CORE: &str = "schema = 1\ntitle = \"another's core\"\n[imu]\nrate = \"100 
     gimbal_command.roll = \"table.roll\"\nmode = \"phase\"\nnavigation.latitude = \"lat\"\n\
     navigation.longitude = \"lon\"\nnavigation.height = \"h\"\nparameters.gyro_bias = \"bias\"\n";
 
-fn core(more: &str) -> String {
+pub(super) fn core(more: &str) -> String {
     let fmu = foreign::fmu("core_fmi2");
     CORE.replace("CORE", fmu.to_str().unwrap()).replace("turn_at", &format!("{more}turn_at"))
 }

@@ -56,6 +56,7 @@ mod fmu_check;
 mod fmu_config;
 mod fmu_exchange;
 mod fmu_instance;
+mod fmu_once;
 mod fmu_plant;
 #[cfg(target_os = "linux")]
 mod fmu_process;
@@ -92,6 +93,7 @@ mod outside_text;
 mod own_sequences;
 mod page_figures;
 #[cfg(unix)]
+mod ports;
 mod power;
 mod progress_bar;
 mod qualification;

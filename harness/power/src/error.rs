@@ -1,24 +1,18 @@
 //! Errors of a supply or a relay.
 
+use octant_base::address::AddressError;
 use std::time::Duration;
 
 /// Error of a supply or a relay.
 #[derive(Debug, thiserror::Error)]
 pub enum PowerError {
     /// The text is no port.
-    #[error(
-        "found the port {port:?}, {reason}; expected tcp:HOST, tcp:HOST:PORT or serial:DEVICE?baud=RATE"
-    )]
-    Address {
-        /// The port as it was given.
-        port: String,
-        /// Reason.
-        reason: String,
-    },
+    #[error(transparent)]
+    Address(AddressError),
     /// The port can't be opened.
     #[error("open {port}: {reason}")]
     Open {
-        /// The port.
+        /// The port, with every default.
         port: String,
         /// Reason.
         reason: String,

@@ -1,73 +1,24 @@
 //! Connection that carries lines of text: a TCP socket or a serial port.
 
 use crate::PowerError;
+use octant_base::address::{CONNECT_LIMIT, InstrumentAddress, InstrumentPort};
 use octant_base::serial::SerialPort;
 use std::fmt::Debug;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// Port that IANA lists as `scpi-raw`, where instruments take SCPI over a socket.
-const SCPI_RAW: u16 = 5025;
-/// Default rate of a serial port, bit/s.
-const BAUD: u32 = 9600;
+/// Ports of a supply. 5025 is the port that IANA lists as `scpi-raw`, where instruments take SCPI over a socket.
+pub const POWER_PORT: InstrumentPort =
+    InstrumentPort { default_port: Some(5025), default_baud: 9600 };
+
 /// Longest reply that is read, bytes.
 const REPLY_BYTES_MAX: usize = 4096;
-/// Longest time for making a connection.
-const CONNECT: Duration = Duration::from_secs(5);
 /// Pause between two looks at a serial port.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Address of an instrument.
-#[derive(Debug, PartialEq, Eq)]
-enum Address<'a> {
-    /// Host and port.
-    Tcp(&'a str, u16),
-    /// Device and rate, bit/s.
-    Serial(&'a str, u32),
-}
-
-fn address(port: &str) -> Result<Address<'_>, PowerError> {
-    let wrong =
-        |reason: &str| PowerError::Address { port: port.to_owned(), reason: reason.to_owned() };
-    if let Some(rest) = port.strip_prefix("tcp:") {
-        // The colons of an IPv6 address are in brackets.
-        let (host, number) = match rest.strip_prefix('[') {
-            Some(rest) => {
-                let (host, after) = rest.split_once(']').ok_or_else(|| wrong("without `]`"))?;
-                (host, after.strip_prefix(':').or(after.is_empty().then_some("")))
-            }
-            None => match rest.split_once(':') {
-                None => (rest, Some("")),
-                Some((host, number)) => (host, Some(number).filter(|number| !number.is_empty())),
-            },
-        };
-        let number = match number {
-            Some("") => Some(SCPI_RAW),
-            Some(text) => text.parse().ok().filter(|number| *number > 0),
-            None => None,
-        };
-        let number = number.ok_or_else(|| wrong("whose number is none from 1 to 65535"))?;
-        if host.is_empty() {
-            return Err(wrong("without a host"));
-        }
-        return Ok(Address::Tcp(host, number));
-    }
-    let Some(rest) = port.strip_prefix("serial:") else {
-        return Err(wrong("which begins with neither tcp: nor serial:"));
-    };
-    let (device, baud) = match rest.split_once('?') {
-        None => (rest, BAUD),
-        Some((device, option)) => {
-            let rate = option.strip_prefix("baud=").and_then(|rate| rate.parse().ok());
-            let rate = rate.filter(|rate| *rate > 0);
-            (device, rate.ok_or_else(|| wrong("whose option isn't baud=RATE"))?)
-        }
-    };
-    if device.is_empty() {
-        return Err(wrong("without a device"));
-    }
-    Ok(Address::Serial(device, baud))
+fn address(port: &str) -> Result<InstrumentAddress, PowerError> {
+    POWER_PORT.parse(port).map_err(PowerError::Address)
 }
 
 /// Checks that a text is a port of a supply, without opening it.
@@ -144,14 +95,17 @@ fn is_late(error: &io::Error) -> bool {
 impl Line {
     /// Opens a port; `wait` is the time limit of a line in either direction.
     pub(crate) fn open(name: &str, wait: Duration) -> Result<Self, PowerError> {
-        let failed = |reason: String| PowerError::Open { port: name.to_owned(), reason };
-        let port = match address(name)? {
-            Address::Tcp(host, number) => Port::Tcp(connected(host, number).map_err(failed)?),
-            Address::Serial(device, baud) => {
-                let port = SerialPort::open(device, baud);
-                Port::Serial(port.map_err(|error| failed(error.to_string()))?)
+        let address = address(name)?;
+        let opened = match &address {
+            InstrumentAddress::Tcp(address) => address.connect(CONNECT_LIMIT).map(Port::Tcp),
+            InstrumentAddress::Serial(line) => {
+                SerialPort::open(&line.path, line.baud).map(Port::Serial)
             }
         };
+        let port = opened.map_err(|error| PowerError::Open {
+            port: address.to_string(),
+            reason: error.to_string(),
+        })?;
         Ok(Self { name: name.to_owned(), port, rest: Vec::new(), wait })
     }
 
@@ -230,19 +184,4 @@ impl Line {
             }
         }
     }
-}
-
-fn connected(host: &str, number: u16) -> Result<TcpStream, String> {
-    let mut reason = "the name has no address".to_owned();
-    let found = (host, number).to_socket_addrs().map_err(|error| error.to_string())?;
-    for address in found {
-        match TcpStream::connect_timeout(&address, CONNECT) {
-            Ok(stream) => {
-                stream.set_nodelay(true).map_err(|error| error.to_string())?;
-                return Ok(stream);
-            }
-            Err(error) => reason = error.to_string(),
-        }
-    }
-    Err(reason)
 }

@@ -27,7 +27,7 @@ pub struct SupplySetting {
 /// Plan for the output that feeds a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerPlan {
-    /// Port: `tcp:HOST`, `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE`.
+    /// Port, by one of the addresses of [`POWER_PORT`](crate::POWER_PORT).
     pub port: String,
     /// The output.
     pub outlet: Outlet,

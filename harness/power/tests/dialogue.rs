@@ -137,16 +137,21 @@ fn ports_are_read_and_wrong_ones_are_told() {
         "tcp:psu:0",
         "tcp:psu:70000",
         "tcp:[fe80::1",
-        "tcp:fe80::1",
         "tcp:[]:1",
         "tcp:[fe80::1]x",
         "serial:",
-        "serial:COM3?baud=0",
-        "serial:COM3?rate=9600",
         "udp:psu:5025",
     ] {
         let error = check_power_port(port).unwrap_err().to_string();
         assert!(error.contains("expected tcp:HOST"), "{port}: {error}");
+    }
+    for (port, expected) in [
+        ("tcp:fe80::1", "expected tcp:[fe80::1]:PORT"),
+        ("serial:COM3?baud=0", "found baud=0"),
+        ("serial:COM3?rate=9600", "found option \"rate\" of serial:"),
+    ] {
+        let error = check_power_port(port).unwrap_err().to_string();
+        assert!(error.contains(expected), "{port}: {error}");
     }
 }
 

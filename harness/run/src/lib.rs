@@ -5,7 +5,7 @@
 //! faults of a run, [`host`] those of the host; [`watch`] collects observations: [`follow`] checks
 //! that answers follow their input, [`done`] counts the completed work, [`at_rest`] keeps the noise of
 //! the sensors, `attended` asks a person, [`filtered`] the σ of the filter; [`method`] runs one method from its scenario to its
-//! scores; [`mod@side_by_side`] runs the first steps with faults and without, for a picture;
+//! scores, `set_up` opens its source and endpoint once; [`mod@side_by_side`] runs the first steps with faults and without, for a picture;
 //! [`findings`] lists findings besides requirements that affect the verdict; [`assemble()`] builds
 //! summary and report of a run of one or two methods, [`scores_text`] writes scores for the terminal.
 //! [`stepped`] runs one method a step at a time, with parts that others made; [`branches`] runs many that
@@ -44,6 +44,7 @@ mod recording;
 pub mod replayed;
 pub mod rotation;
 pub mod scores_text;
+mod set_up;
 pub mod side_by_side;
 pub mod smoothed;
 pub mod smoothing_doubts;

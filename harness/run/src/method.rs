@@ -16,6 +16,7 @@ use super::in_time::drive_attended;
 use super::planned::estimator_name;
 use super::realtime::{self, TimeKeeping};
 use super::recording::recorder_options;
+use super::set_up::SetUp;
 use super::watch::Watcher;
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
@@ -24,6 +25,7 @@ use octant_calibration::config as core;
 use octant_calibration::table::CalibrationTable;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
+use octant_mapping::OpenedFmus;
 use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
 use octant_recorder::{
     Event, Recorder, RecorderError, RecorderOptions, RecorderSummary, RecorderTrouble, concluded,
@@ -91,8 +93,10 @@ pub fn core_of(
     seed: u64,
 ) -> Result<core::CoreConfig, MethodError> {
     let (plant, mut core, _) = configurations(scenario, method, seed).map_err(SetupError::from)?;
-    if scenario.source.is_recorded() {
-        settle(scenario, &plant, &mut core)?;
+    if scenario.source.is_recorded()
+        && let Some(parameters) = settled(scenario, &plant, &core)?
+    {
+        core.initial_parameters = parameters;
     }
     Ok(core)
 }
@@ -131,10 +135,20 @@ pub fn run_as_far_as_it_goes(
     recording: StreamKeeping<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
-    let (plant, mut core, draws) =
-        configurations(scenario, method, seed).map_err(SetupError::from)?;
+    let set_up = SetUp::of(scenario, method, seed, &OpenedFmus::default())?;
+    run_set_up(scenario, (method, seed), set_up, recording, control)
+}
+
+/// Runs as [`run_as_far_as_it_goes`] a method that was set up.
+pub(super) fn run_set_up(
+    scenario: &Scenario,
+    (method, seed): (Method, u64),
+    mut set_up: SetUp,
+    recording: StreamKeeping<'_>,
+    control: &Control,
+) -> Result<MethodRun, MethodError> {
     if scenario.source.is_recorded() {
-        settle(scenario, &plant, &mut core)?;
+        set_up.settle(settled(scenario, &set_up.plant, &set_up.core)?);
     }
     let trouble = RecorderTrouble::default();
     let mut faulted = faulted(scenario, seed)?;
@@ -145,10 +159,9 @@ pub fn run_as_far_as_it_goes(
     }
     // Before a port is opened and a table turns.
     let begins = !control.lost.load(Ordering::Relaxed) && before_start(scenario, control)?;
-    let open = || octant_source::open(scenario, &plant).map_err(SetupError::Source);
-    let opened = if begins { open()? } else { None };
-    let open = || octant_endpoint::open(scenario, &core).map_err(SetupError::from);
-    let elsewhere = if begins { open()? } else { None };
+    let opened = if begins { set_up.source(scenario)? } else { None };
+    let elsewhere = if begins { set_up.endpoint(scenario)? } else { None };
+    let SetUp { plant, core, draws, .. } = set_up;
     let true_parameters = opened.as_ref().map_or(begins, |source| source.has_true_parameters());
     let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let told = (true_parameters, tells);
@@ -347,18 +360,19 @@ pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupE
 
 /// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
 /// initial parameters, and a real instrument's errors can be large: the samples are passed
-/// repeatedly until the parameters settle, and the recorded run is one more pass.
-pub(super) fn settle(
+/// repeatedly until the parameters settle, and the recorded run is one more pass. Returns the initial parameters of
+/// that pass, where they are others than those of `core`.
+pub(super) fn settled(
     scenario: &Scenario,
     plant: &octant_plant::config::PlantConfig,
-    core: &mut core::CoreConfig,
-) -> Result<(), MethodError> {
+    core: &core::CoreConfig,
+) -> Result<Option<Parameters>, MethodError> {
     let least_squares = core
         .calibration
         .as_ref()
         .is_some_and(|c| matches!(c.estimator, core::Estimator::LeastSquares(_)));
     if !least_squares {
-        return Ok(());
+        return Ok(None);
     }
     let open = || match octant_source::open(scenario, plant)? {
         Some(source) => Ok(source),
@@ -371,10 +385,7 @@ pub(super) fn settle(
         PassError::Config(error) => MethodError::Setup(SetupError::Core(error)),
         PassError::Run(error) => MethodError::Run(error),
     })?;
-    if passes.core.table().is_some() {
-        core.initial_parameters = *passes.core.parameters();
-    }
-    Ok(())
+    Ok(passes.core.table().map(|_| *passes.core.parameters()))
 }
 
 /// Scores the observations and closes the recording.

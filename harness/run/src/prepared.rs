@@ -2,16 +2,17 @@
 
 use super::beginning::BranchPlan;
 use super::ended::Ended;
-use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_far_as_it_goes};
+use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_set_up};
+use super::set_up::SetUp;
 use super::with_twin::run_with_twin;
 use octant_base::attendance::Attendance;
 use octant_base::control::Control;
 use octant_base::pool::spawn;
+use octant_mapping::OpenedFmus;
 use octant_scenario::{Method, Scenario};
-use octant_source::configure::configurations;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::ScopedJoinHandle;
 
 /// Name of the recording of a method in the folder of its run.
@@ -30,6 +31,10 @@ pub struct Prepared<'a> {
     clean: Option<Scenario>,
     seed: u64,
     methods: Vec<Method>,
+    /// FMUs of all methods and twins, each opened once.
+    fmus: OpenedFmus,
+    /// Each method as it was checked, for its first run.
+    set_up: Vec<Mutex<Option<SetUp>>>,
     /// Of each method, followed by that of its twin where there are twins.
     controls: Vec<Control>,
 }
@@ -57,18 +62,25 @@ impl<'a> Prepared<'a> {
     /// Prepares the methods of a scenario. With `twins`, each is compared with the same run without
     /// the scenario's faults, if there are any.
     ///
-    /// Each method is set up as in a run and discarded again, so that contradictions, and sources that
-    /// can't be opened, are found before anything is written.
+    /// Each method is set up here, so that contradictions, and sources that can't be opened, are found before anything
+    /// is written; its run begins with what was set up. `fmus` are FMUs that are opened or get opened.
     ///
     /// # Errors
     /// If a method can't be set up.
-    pub fn of(scenario: &'a Scenario, seed: u64, twins: bool) -> Result<Self, SetupError> {
-        let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
-        let methods: Vec<Method> = std::iter::once(Method::Primary).chain(baseline).collect();
+    pub fn of(
+        scenario: &'a Scenario,
+        seed: u64,
+        twins: bool,
+        fmus: &OpenedFmus,
+    ) -> Result<Self, SetupError> {
+        let methods = methods(scenario);
+        let mut set_up = Vec::with_capacity(methods.len());
         for method in &methods {
-            set_up(scenario, *method, seed)?;
+            let mut one = SetUp::of(scenario, *method, seed, fmus)?;
+            one.check(scenario)?;
+            set_up.push(Mutex::new(Some(one)));
         }
-        let clean = (twins && !scenario.faults.is_empty()).then(|| {
+        let clean = has_twins(scenario, twins).then(|| {
             // Results don't depend on the clock, so a twin needn't run in real time.
             let mut clean = scenario.without_faults();
             clean.realtime.by_clock = false;
@@ -76,9 +88,8 @@ impl<'a> Prepared<'a> {
             clean.operator.clear();
             clean
         });
-        let tasks = methods.len() * if clean.is_some() { 2 } else { 1 };
-        let controls = (0..tasks).map(|_| Control::default()).collect();
-        Ok(Self { scenario, clean, seed, methods, controls })
+        let controls = (0..tasks(scenario, twins)).map(|_| Control::default()).collect();
+        Ok(Self { scenario, clean, seed, methods, fmus: fmus.clone(), set_up, controls })
     }
 
     /// Lets a person attend to the methods. Twins are compared with them, and ask nobody.
@@ -130,12 +141,10 @@ impl<'a> Prepared<'a> {
         // By the clock, one method would delay another. A device can only do one run at a time.
         let alone = self.scenario.realtime.by_clock || self.scenario.endpoint.device().is_some();
         let each = self.controls.len() / self.methods.len().max(1);
-        let one = |(method, controls): &(Method, &[Control])| {
-            let path = folder.join(recording(*method));
-            self.one(*method, &path, controls, alone)
-        };
-        let tasks: Vec<(Method, &[Control])> =
-            self.methods.iter().copied().zip(self.controls.chunks(each)).collect();
+        let one =
+            |(number, controls): &(usize, &[Control])| self.one(*number, folder, controls, alone);
+        let tasks: Vec<(usize, &[Control])> =
+            (0..self.methods.len()).zip(self.controls.chunks(each)).collect();
         if alone {
             return tasks.iter().map(|task| one(task).inspect(|run| self.note_lost(run))).collect();
         }
@@ -147,20 +156,27 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Runs a method, and its twin.
+    /// Runs the method with this number, and its twin.
     fn one(
         &self,
-        method: Method,
-        path: &Path,
+        number: usize,
+        folder: &Path,
         controls: &[Control],
         alone: bool,
     ) -> Result<MethodRun, PreparedError> {
-        let (seed, recording) = (self.seed, StreamKeeping::File(path));
+        let (method, seed) = (self.methods[number], self.seed);
+        let path = folder.join(recording(method));
+        let recording = StreamKeeping::File(&path);
         let plan = |scenario, control| BranchPlan { scenario, method, seed, control };
-        let run = |plan: BranchPlan<'_>, keeping| {
+        let run = |plan: BranchPlan<'_>, set_up: Option<SetUp>, keeping| {
             let BranchPlan { scenario, method, seed, control } = plan;
-            Ok(run_as_far_as_it_goes(scenario, method, seed, keeping, control)?)
+            let set_up = match set_up {
+                Some(set_up) => set_up,
+                None => SetUp::of(scenario, method, seed, &self.fmus).map_err(MethodError::from)?,
+            };
+            Ok(run_set_up(scenario, (method, seed), set_up, keeping, control)?)
         };
+        let checked = self.set_up[number].lock().unwrap_or_else(PoisonError::into_inner).take();
         let (control, clean) = match (controls, &self.clean) {
             ([control, of_twin], Some(clean)) => (control, Some(plan(clean, of_twin))),
             ([control, ..], _) => (control, None),
@@ -168,37 +184,38 @@ impl<'a> Prepared<'a> {
             ([], _) => return Err(PreparedError::Panicked),
         };
         let this = plan(self.scenario, control);
-        let Some(clean) = clean else { return run(this, recording) };
+        let Some(clean) = clean else { return run(this, checked, recording) };
         if let Some(both) = run_with_twin(this, clean, recording) {
             return Ok(both?);
         }
         let (faulted, twin) = if alone {
-            let faulted = run(this, recording).inspect(|run| self.note_lost(run));
-            (faulted, run(clean, StreamKeeping::Hash))
+            let faulted = run(this, checked, recording).inspect(|run| self.note_lost(run));
+            (faulted, run(clean, None, StreamKeeping::Hash))
         } else {
             std::thread::scope(|scope| {
-                let twin = spawn(scope, || run(clean, StreamKeeping::Hash));
-                (run(this, recording), joined(twin))
+                let twin = spawn(scope, || run(clean, None, StreamKeeping::Hash));
+                (run(this, checked, recording), joined(twin))
             })
         };
         Ok(MethodRun { twin: Some(Arc::new(twin?)), ..faulted? })
     }
+}
 
-    /// Runs that take place: methods and twins.
-    #[must_use]
-    pub fn tasks(&self) -> usize {
-        self.controls.len()
-    }
+/// Number of the runs that take place for a scenario: methods and twins.
+#[must_use]
+pub fn tasks(scenario: &Scenario, twins: bool) -> usize {
+    methods(scenario).len() * if has_twins(scenario, twins) { 2 } else { 1 }
+}
+
+fn methods(scenario: &Scenario) -> Vec<Method> {
+    let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
+    std::iter::once(Method::Primary).chain(baseline).collect()
+}
+
+fn has_twins(scenario: &Scenario, twins: bool) -> bool {
+    twins && !scenario.faults.is_empty()
 }
 
 fn joined<T>(thread: ScopedJoinHandle<'_, Result<T, PreparedError>>) -> Result<T, PreparedError> {
     thread.join().unwrap_or(Err(PreparedError::Panicked))
-}
-
-/// Sets up a method as a run does, and discards it again.
-fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), SetupError> {
-    let (plant, core, _) = configurations(scenario, method, seed)?;
-    octant_calibration::Core::new(&core)?;
-    octant_source::check(scenario, &plant)?;
-    Ok(octant_endpoint::check(scenario, &core)?)
 }

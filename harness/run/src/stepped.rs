@@ -19,17 +19,18 @@ use super::interfere::{Functions, Interfered, Interferes};
 use super::method::{self, MethodRun};
 use super::recording::StreamKeeping;
 use super::recording::recorder_options;
+use super::set_up::SetUp;
 use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::station::Delivered;
+use octant_mapping::OpenedFmus;
 use octant_recorder::{Recorder, RecorderOptions, RecorderTrouble};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters, Truth};
 use octant_scenario::resolve::DrawnValues;
 use octant_scenario::{Method, Scenario};
 use octant_score::trace::RunTrace;
-use octant_source::configure::configurations;
 use octant_source::{PlantSource, Source};
 
 /// Parts of a run that the host program made, in place of the scenario's.
@@ -95,7 +96,8 @@ pub enum AheadError {
 }
 
 impl SteppedRun {
-    /// Sets up a method of a scenario with a seed and with parts that others made.
+    /// Sets up a method of a scenario with a seed and with parts that others made. `fmus` are FMUs that are opened or
+    /// get opened.
     ///
     /// # Errors
     /// If it can't be set up, as [`super::run_method`].
@@ -105,14 +107,14 @@ impl SteppedRun {
         seed: u64,
         recording: StreamKeeping<'_>,
         parts: Parts,
+        fmus: &OpenedFmus,
     ) -> Result<Self, MethodError> {
         if let Some(step) = scenario.operator.first() {
             return Err(SetupError::Unattended { id: step.id.clone() }.into());
         }
-        let (plant, mut core, draws) =
-            configurations(scenario, method, seed).map_err(SetupError::from)?;
+        let mut set_up = SetUp::of(scenario, method, seed, fmus)?;
         if scenario.source.is_recorded() && parts.source.is_none() {
-            method::settle(scenario, &plant, &mut core)?;
+            set_up.settle(method::settled(scenario, &set_up.plant, &set_up.core)?);
         }
         let trouble = RecorderTrouble::default();
         let mut faulted = method::faulted(scenario, seed)?;
@@ -122,21 +124,22 @@ impl SteppedRun {
         let foreign_source = parts.source.is_some();
         let source: Box<dyn Source + Send> = match parts.source {
             Some(source) => source,
-            None => match octant_source::open(scenario, &plant).map_err(SetupError::Source)? {
+            None => match set_up.source(scenario)? {
                 Some(source) => Box::new(source),
                 None => {
                     let samples = scenario.samples().unwrap_or(u64::MAX);
-                    Box::new(PlantSource::new(&plant, samples).map_err(SetupError::Plant)?)
+                    Box::new(PlantSource::new(&set_up.plant, samples).map_err(SetupError::Plant)?)
                 }
             },
         };
         let (unit, endpoint): (Option<String>, Box<dyn Endpoint + Send>) = match parts.unit {
             Some((name, unit)) => (Some(name), unit),
-            None => match octant_endpoint::open(scenario, &core).map_err(SetupError::from)? {
+            None => match set_up.endpoint(scenario)? {
                 Some(endpoint) => (None, Box::new(endpoint)),
-                None => (None, Box::new(InProcess::new(&core).map_err(SetupError::Core)?)),
+                None => (None, Box::new(InProcess::new(&set_up.core).map_err(SetupError::Core)?)),
             },
         };
+        let SetUp { core, draws, .. } = set_up;
         let tells = if unit.is_some() { Tells::ALL } else { endpoint.tells() };
         let told = (source.has_true_parameters(), tells);
         let options =

@@ -1,8 +1,9 @@
 //! Configurations of plant and core: from the scenario, the seed's draws, and the source's own truth.
 
-use super::SourceError;
+use super::{AnySource, Source, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
+use octant_mapping::OpenedFmus;
 use octant_plant::{Plant, config as plant};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario, SourceSpec as SourceKind};
@@ -21,6 +22,18 @@ pub enum ConfigurationError {
     NoBaseline,
 }
 
+/// Configurations of plant and core of one method, and what was opened to know them.
+pub struct Configured {
+    /// Configuration of the plant.
+    pub plant: plant::PlantConfig,
+    /// Configuration of the core.
+    pub core: core::CoreConfig,
+    /// Values that the seed draws.
+    pub draws: DrawnValues,
+    /// The source at its start, where it had to be opened and asked for the truth: an FMU that moves the case.
+    pub source: Option<AnySource>,
+}
+
 /// Configurations of plant and core of one method of a scenario.
 ///
 /// # Errors
@@ -30,12 +43,32 @@ pub fn configurations(
     method: Method,
     seed: u64,
 ) -> Result<(plant::PlantConfig, core::CoreConfig, DrawnValues), ConfigurationError> {
+    let Configured { plant, core, draws, source: _ } =
+        configured(scenario, method, seed, &OpenedFmus::default())?;
+    Ok((plant, core, draws))
+}
+
+/// Configures as [`configurations`], with FMUs that are opened or get opened.
+///
+/// # Errors
+/// As [`configurations`].
+pub fn configured(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+    fmus: &OpenedFmus,
+) -> Result<Configured, ConfigurationError> {
     let draws = DrawnValues::of(scenario, &Seeded(seed));
     let plant = scenario.plant(seed, &draws);
+    let mut source = None;
     // On a ship the attitude at the start depends on the phases that were drawn, or on the ship.
     let truth = match &scenario.source {
         SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
-        SourceKind::Fmu(fmu) => crate::fmu::truth_at_start(scenario, fmu, &plant)?,
+        SourceKind::Fmu(fmu) if fmu.is_motion() => {
+            source = crate::open_with(scenario, &plant, fmus)?;
+            source.as_ref().and_then(AnySource::truth)
+        }
+        SourceKind::Fmu(fmu) => crate::fmu::truth_at_start(scenario, fmu, &plant, fmus)?,
         SourceKind::Replay { .. }
         | SourceKind::Text(_)
         | SourceKind::Log(_)
@@ -52,5 +85,5 @@ pub fn configurations(
     };
     let core =
         scenario.core(method, &draws, &q_nb, &velocity).ok_or(ConfigurationError::NoBaseline)?;
-    Ok((plant, core, draws))
+    Ok(Configured { plant, core, draws, source })
 }

@@ -6,21 +6,23 @@ use super::measured::{MeasuredReference, ReferenceRows};
 use super::reference_mcap::ReferenceMcap;
 use super::reference_text::ReferenceText;
 use super::{AnySource, LiveSource, LogSource, Replay, SolutionSource, SourceError, TextSource};
+use octant_mapping::OpenedFmus;
 use octant_plant::config::PlantConfig;
 use octant_scenario::recorded::{TextFiles, TextMapping};
 use octant_scenario::reference::{ReferencePlace, ReferenceSpec};
 use octant_scenario::{self as scenario, FileName, Scenario};
 use std::path::{Path, PathBuf};
 
-/// Checks that the source of a scenario can be opened. An instrument's port is opened only once:
-/// data sent in between would be lost.
+/// Checks a source without opening it, where it may be opened only once and not before the run: data that an
+/// instrument sends in between would be lost. Returns whether it is such a source; any other is checked by
+/// [`open_with`].
 ///
 /// # Errors
 /// As [`open`].
-pub fn check(scenario: &Scenario, plant: &PlantConfig) -> Result<(), SourceError> {
+pub fn check_live(scenario: &Scenario) -> Result<bool, SourceError> {
     match scenario.source.instrument() {
-        Some(instrument) => LiveSource::check(scenario, instrument),
-        None => open(scenario, plant).map(drop),
+        Some(instrument) => LiveSource::check(scenario, instrument).map(|()| true),
+        None => Ok(false),
     }
 }
 
@@ -31,7 +33,19 @@ pub fn check(scenario: &Scenario, plant: &PlantConfig) -> Result<(), SourceError
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
 pub fn open(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
-    let Some(opened) = open_itself(scenario, plant)? else { return Ok(None) };
+    open_with(scenario, plant, &OpenedFmus::default())
+}
+
+/// Opens as [`open`], with FMUs that are opened or get opened.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(
+    scenario: &Scenario,
+    plant: &PlantConfig,
+    fmus: &OpenedFmus,
+) -> Result<Option<AnySource>, SourceError> {
+    let Some(opened) = open_itself(scenario, plant, fmus)? else { return Ok(None) };
     Ok(Some(opened.with_reference(reference(scenario)?)))
 }
 
@@ -67,7 +81,11 @@ fn reference(scenario: &Scenario) -> Result<Option<AddedReference>, SourceError>
     })
 }
 
-fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySource>, SourceError> {
+fn open_itself(
+    scenario: &Scenario,
+    plant: &PlantConfig,
+    fmus: &OpenedFmus,
+) -> Result<Option<AnySource>, SourceError> {
     let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
     match &scenario.source {
         scenario::SourceSpec::Plant => Ok(None),
@@ -95,6 +113,6 @@ fn open_itself(scenario: &Scenario, plant: &PlantConfig) -> Result<Option<AnySou
         scenario::SourceSpec::Live(instrument) => {
             Ok(Some(LiveSource::of(scenario, instrument)?.into()))
         }
-        scenario::SourceSpec::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
+        scenario::SourceSpec::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant, fmus)?)),
     }
 }

@@ -26,7 +26,7 @@ mod text;
 mod traffic;
 
 pub use any::AnySource;
-pub use from_scenario::{check, open};
+pub use from_scenario::{check_live, open, open_with};
 pub use live::LiveSource;
 pub use log::LogSource;
 pub use plant::PlantSource;

@@ -1,21 +1,25 @@
 //! Errors of a table.
 
 use crate::TableAxis;
+use octant_base::address::AddressError;
 use std::time::Duration;
 
 /// Error of a table.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// The text is no port.
+    #[error(transparent)]
+    Address(AddressError),
     /// A port can't be opened.
-    #[error("open {port}: {reason}, expected tcp:HOST:PORT or serial:DEVICE?baud=RATE")]
+    #[error("open {port}: {reason}")]
     Open {
-        /// The port as it was given.
+        /// The port, with every default.
         port: String,
         /// Reason.
         reason: String,
     },
     /// A simulated table can't listen.
-    #[error("listen at {port}: {reason}, expected tcp:HOST:PORT or pty:LINK")]
+    #[error("listen at {port}: {reason}")]
     Listen {
         /// Address.
         port: String,

@@ -1,7 +1,7 @@
 //! `octant-turntable`: a simulated controller, the guard, and a stop by hand.
 
 use octant_turntable::simulate::listen;
-use octant_turntable::{Dialect, Error, run_guard, stop_by_hand};
+use octant_turntable::{Dialect, Error, TABLE_PORT, run_guard, stop_by_hand};
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ usage: octant-turntable simulate [--tcp HOST:PORT | --pty LINK] [--dialect FILE]
 
 simulate  simulates the controller of a table: on a TCP port (default 127.0.0.1:8000), or on a
           pseudo-terminal with the link LINK to it
-stop      stops a table: PORT is tcp:HOST:PORT or serial:DEVICE?baud=RATE
+stop      stops a table
 guard     is started by the harness
 
 The dialect is a file with a table of patterns; the default is that of Aerotech's Ensemble.
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage) => {
-            let _ = stderr.write_all(USAGE.as_bytes());
+            let _ = write!(stderr, "{USAGE}\nPORT is {}.\n", TABLE_PORT.expected());
             ExitCode::from(2)
         }
         Err(Failure::Input(message)) => {
@@ -55,7 +55,7 @@ enum Failure {
 
 fn bench(error: Error) -> Failure {
     match error {
-        Error::Dialect { .. } => Failure::Input(error.to_string()),
+        Error::Dialect { .. } | Error::Address(_) => Failure::Input(error.to_string()),
         _ => Failure::Bench(error.to_string()),
     }
 }

@@ -1,6 +1,7 @@
 //! Ports of a table's controller.
 
 use crate::Error;
+use octant_base::address::{CONNECT_LIMIT, InstrumentAddress, InstrumentPort};
 use octant_base::serial::SerialPort;
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -76,62 +77,33 @@ impl TablePort for Box<dyn TablePort> {
     }
 }
 
-/// Address of a port.
-enum Address<'a> {
-    Tcp(&'a str),
-    Serial(&'a str, u32),
-}
-
-fn address(uri: &str) -> Result<Address<'_>, Error> {
-    let failed = |reason: String| Error::Open { port: uri.into(), reason };
-    if let Some(address) = uri.strip_prefix("tcp:") {
-        let port = address.rsplit_once(':').and_then(|(host, port)| {
-            port.parse::<u16>().ok().filter(|port| *port > 0 && !host.is_empty())
-        });
-        return match port {
-            Some(_) => Ok(Address::Tcp(address)),
-            None => Err(failed(format!("`{address}` is not HOST:PORT"))),
-        };
-    }
-    let Some(serial) = uri.strip_prefix("serial:") else {
-        return Err(failed("the address has neither tcp: nor serial:".into()));
-    };
-    let (device, baud) = match serial.split_once('?') {
-        None => (serial, 115_200),
-        Some((device, query)) => {
-            let rate = query.strip_prefix("baud=").and_then(|rate| rate.parse().ok());
-            (device, rate.ok_or_else(|| failed(format!("`{query}` is not baud=RATE")))?)
-        }
-    };
-    if device.is_empty() || baud == 0 {
-        return Err(failed("the address has no device, or no rate".into()));
-    }
-    Ok(Address::Serial(device, baud))
-}
+/// Ports of a table's controller. A TCP port has to be written: it belongs to the controller, of which there are many.
+pub const TABLE_PORT: InstrumentPort = InstrumentPort { default_port: None, default_baud: 115_200 };
 
 /// Checks that a text is the address of a table, without opening it.
 ///
 /// # Errors
 /// If the text is no such address.
 pub fn check_port(uri: &str) -> Result<(), Error> {
-    address(uri).map(|_| ())
+    TABLE_PORT.parse(uri).map(drop).map_err(Error::Address)
 }
 
-/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; the default rate is 115200).
+/// Opens a port of a table, [`TABLE_PORT`], within a limit of time (serial lines 8N1, exclusive).
 ///
 /// # Errors
 /// If the text is no such address, or the port can't be opened.
 pub fn open(uri: &str) -> Result<Box<dyn TablePort>, Error> {
-    let failed = |reason: String| Error::Open { port: uri.into(), reason };
-    let (device, baud) = match address(uri)? {
-        Address::Tcp(address) => {
-            let stream = TcpStream::connect(address).map_err(|error| failed(error.to_string()))?;
-            stream.set_nodelay(true).map_err(|error| failed(error.to_string()))?;
-            return Ok(Box::new(stream));
+    let address = TABLE_PORT.parse(uri).map_err(Error::Address)?;
+    let opened: io::Result<Box<dyn TablePort>> = match &address {
+        InstrumentAddress::Tcp(address) => {
+            address.connect(CONNECT_LIMIT).map(|stream| Box::new(stream) as _)
         }
-        Address::Serial(device, baud) => (device, baud),
+        InstrumentAddress::Serial(line) => {
+            SerialPort::open(&line.path, line.baud).map(|mut port| {
+                port.set_wait(Duration::from_millis(20));
+                Box::new(port) as _
+            })
+        }
     };
-    let mut port = SerialPort::open(device, baud).map_err(|error| failed(error.to_string()))?;
-    port.set_wait(Duration::from_millis(20));
-    Ok(Box::new(port))
+    opened.map_err(|error| Error::Open { port: address.to_string(), reason: error.to_string() })
 }

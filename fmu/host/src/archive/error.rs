@@ -79,4 +79,14 @@ pub enum ArchiveError {
         /// Error of the system.
         error: io::Error,
     },
+    /// The file can't be copied.
+    #[error("failed to copy {file} to {}: {error}", .path.display())]
+    Copy {
+        /// File name.
+        file: String,
+        /// Folder of the copy.
+        path: PathBuf,
+        /// Error of the system.
+        error: io::Error,
+    },
 }

@@ -17,10 +17,14 @@ pub use error::ArchiveError;
 pub use limits::ArchiveLimits;
 
 use names::NameProblem;
+use octant_base::hash::sha256_of_copy;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use zipped::Zipped;
+
+/// Largest copy of an archive that is held in memory, bytes; a larger one is a temporary file.
+const MEMORY_MAX: usize = 64 << 20;
 
 /// An archive or an unpacked folder whose entries are known.
 #[derive(Debug)]
@@ -85,6 +89,41 @@ impl Archive {
         }
         let source = fs::File::open(path).map_err(open)?;
         Self::survey_zip(file.clone(), Box::new(io::BufReader::new(source)), limits)
+    }
+
+    /// Opens a copy of an archive as it is now, and returns its SHA-256: whatever happens to the file later, the
+    /// hashed bytes are the ones that are read and unpacked. A folder is opened as it is, and has no hash.
+    ///
+    /// # Errors
+    /// As [`Self::open`], or if the copy can't be written.
+    pub fn open_copy(path: &Path) -> Result<(Self, Option<String>), ArchiveError> {
+        let file = path.display().to_string();
+        let limits = ArchiveLimits::DEFAULT;
+        let open = |error| ArchiveError::Open { file: file.clone(), error };
+        if fs::metadata(path).map_err(open)?.is_dir() {
+            let folder = Self::survey_folder(path, file, limits)?.without_problems()?;
+            return Ok((folder, None));
+        }
+        let mut source = fs::File::open(path).map_err(open)?;
+        let mut start = [0; zipped::START];
+        let length = zipped::read_start(&mut source, &mut start).map_err(open)?;
+        // Anything else is refused by its first bytes, and a device may have no end.
+        zipped::check_start(&file, &start[..length])?;
+        let mut copy = tempfile::spooled_tempfile(MEMORY_MAX);
+        let most = limits.unpacked_bytes;
+        let copied = sha256_of_copy(source.take(most + 1), &mut copy)
+            .and_then(|hash| Ok((hash, copy.stream_position()?, copy.rewind()?)));
+        let (hash, length, ()) = copied.map_err(|error| ArchiveError::Copy {
+            file: file.clone(),
+            path: std::env::temp_dir(),
+            error,
+        })?;
+        if length > most {
+            let (what, limit) = ("it is too large".into(), format!("{most} bytes"));
+            return Err(ArchiveError::TooMuch { file, what, limit });
+        }
+        let source = Box::new(io::BufReader::new(copy));
+        Ok((Self::survey_zip(file, source, limits)?.without_problems()?, Some(hash)))
     }
 
     /// Opens as [`Self::survey`], from memory.
@@ -228,7 +267,6 @@ impl Archive {
                 })?;
             }
             Contents::Folder(folder) => {
-                use std::io::Read;
                 let file = folder.join(name);
                 let unreadable =
                     |error| ArchiveError::Open { file: file.display().to_string(), error };

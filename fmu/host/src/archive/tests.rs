@@ -276,3 +276,25 @@ fn programs_stay_programs_and_links_in_folders_are_not_followed() {
     let error = Archive::open(unpacked.path()).expect_err("has a link").to_string();
     assert!(error.contains("\"resources/link\" is a link or a device"), "{error}");
 }
+
+#[test]
+fn a_copy_has_the_hash_of_what_is_read_whatever_becomes_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.fmu");
+    let bytes = zip(&[("a.txt", b"content")]);
+    std::fs::write(&path, &bytes).expect("is written");
+    let (mut archive, hash) = Archive::open_copy(&path).expect("opens");
+    assert_eq!(hash, octant_base::hash::sha256(&path).ok());
+    std::fs::write(&path, b"another").expect("is written");
+    assert_eq!(archive.read("a.txt").expect("is read"), b"content");
+    for _ in 0..2 {
+        let unpacked = archive.unpack().expect("unpacks");
+        assert_eq!(std::fs::read(unpacked.path().join("a.txt")).expect("is there"), b"content");
+    }
+    let error = Archive::open_copy(&path).expect_err("is no archive").to_string();
+    assert!(error.contains("a.fmu is no zip archive: it begins with \"anot\""), "{error}");
+    let (_, hash) = Archive::open_copy(folder.path()).expect("a folder opens");
+    assert_eq!(hash, None);
+    #[cfg(unix)]
+    Archive::open_copy(Path::new("/dev/zero")).expect_err("has no end");
+}

@@ -67,16 +67,10 @@ impl Zipped {
         mut source: Box<dyn Source>,
         limits: &ArchiveLimits,
     ) -> Result<Opened, ArchiveError> {
-        let mut start = [0; 4];
+        let mut start = [0; START];
         let length = read_start(&mut source, &mut start)
             .map_err(|error| ArchiveError::Open { file: file.into(), error })?;
-        if &start[..length] != b"PK\x03\x04" && &start[..length] != b"PK\x05\x06" {
-            let found = match length {
-                0 => "is empty".to_owned(),
-                _ => format!("begins with {:?}", names::printable(&start[..length])),
-            };
-            return Err(ArchiveError::NotZip { file: file.into(), found });
-        }
+        check_start(file, &start[..length])?;
         let left = Arc::new(AtomicU64::new(limits.directory_bytes));
         let metered = Metered { source, left: left.clone() };
         // A zip archive with an offset in the file is two files in one.
@@ -207,8 +201,23 @@ impl Zipped {
     }
 }
 
-/// Reads the first bytes of a file, as many as it has.
-fn read_start(source: &mut impl Source, start: &mut [u8]) -> io::Result<usize> {
+/// Number of the first bytes by which an archive is known.
+pub(super) const START: usize = 4;
+
+/// Checks the first bytes of a file.
+pub(super) fn check_start(file: &str, start: &[u8]) -> Result<(), ArchiveError> {
+    if start == b"PK\x03\x04" || start == b"PK\x05\x06" {
+        return Ok(());
+    }
+    let found = match start {
+        [] => "is empty".to_owned(),
+        _ => format!("begins with {:?}", names::printable(start)),
+    };
+    Err(ArchiveError::NotZip { file: file.into(), found })
+}
+
+/// Reads the first bytes of a file, as many as it has, and goes back to its beginning.
+pub(super) fn read_start(source: &mut impl Source, start: &mut [u8]) -> io::Result<usize> {
     let mut length = 0;
     while length < start.len() {
         match source.read(&mut start[length..])? {

@@ -56,7 +56,7 @@ pub fn open_archive(
     let description = read_description(archive)?;
     let name = name_of(archive.file());
     let folder = archive.unpack()?;
-    Ok(open_unpacked(&name, folder, description, options)?)
+    Ok(open_unpacked(&name, folder, Arc::new(description), options)?)
 }
 
 /// Opens the FMU in a folder that another process has unpacked and owns.
@@ -73,14 +73,14 @@ pub(crate) fn open_folder(
     Ok(open_here(name, folder, Arc::new(description), options, mark)?)
 }
 
-fn read_description(archive: &mut Archive) -> Result<Description, FmuOpenError> {
+pub(crate) fn read_description(archive: &mut Archive) -> Result<Description, FmuOpenError> {
     const NAME: &str = "modelDescription.xml";
     let bytes = archive.read(NAME)?;
     Ok(description::read_bytes(&bytes, &format!("{}/{NAME}", archive.file()))?)
 }
 
 /// Last part of a path: the name of the FMU in errors.
-fn name_of(file: &str) -> String {
+pub(crate) fn name_of(file: &str) -> String {
     let name = Path::new(file).file_name();
     name.map_or_else(|| file.into(), |name| name.to_string_lossy().into_owned())
 }
@@ -92,14 +92,12 @@ fn name_of(file: &str) -> String {
 pub fn open_unpacked(
     name: &str,
     folder: Unpacked,
-    description: Description,
+    description: Arc<Description>,
     options: &OpenOptions,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     match options.place {
         ProcessPlace::OwnProcess => process::open(name, folder, description, options),
-        ProcessPlace::ThisProcess => {
-            open_here(name, folder, Arc::new(description), options, Mark::default())
-        }
+        ProcessPlace::ThisProcess => open_here(name, folder, description, options, Mark::default()),
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) use remote::open;
 pub(super) fn open(
     name: &str,
     _: super::archive::Unpacked,
-    _: super::description::Description,
+    _: std::sync::Arc<super::description::Description>,
     _: &super::instance::OpenOptions,
 ) -> Result<Box<dyn super::instance::Instance>, super::instance::InstanceError> {
     Err(super::instance::InstanceError::unsupported(

@@ -12,6 +12,7 @@ use super::watch::{LOOK, Watch};
 use std::io::{self, Read};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::net::UnixStream;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,7 @@ const PLANS_MAX: usize = 64;
 /// An FMU in another process.
 struct Remote {
     name: String,
-    description: Description,
+    description: Arc<Description>,
     watch: Watch,
     socket: UnixStream,
     shared: Shared,
@@ -37,7 +38,7 @@ struct Remote {
 pub(crate) fn open(
     name: &str,
     folder: Unpacked,
-    description: Description,
+    description: Arc<Description>,
     options: &OpenOptions,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     let cannot = |e: io::Error| InstanceError::Process {

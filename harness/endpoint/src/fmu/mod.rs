@@ -8,6 +8,7 @@ mod ports;
 use super::answer::Misbehaviour;
 use super::{Conclusion, Endpoint, EndpointError, Tells};
 use octant_calibration::CoreConfig;
+use octant_mapping::OpenedFmus;
 use octant_mapping::bind::ChannelCell;
 use octant_mapping::open::{self, NamedInstance};
 use octant_mapping::stepper::{Stepper, UseError};
@@ -62,8 +63,13 @@ impl FmuEndpoint {
     ///
     /// # Errors
     /// If the FMU can't be used, or the scenario's settings for it don't fit.
-    pub fn open(scenario: &Scenario, fmu: &Fmu, config: &CoreConfig) -> Result<Self, UseError> {
-        Self::of_instance(scenario, fmu, config, open::instance(scenario, fmu)?)
+    pub fn open(
+        scenario: &Scenario,
+        fmu: &Fmu,
+        config: &CoreConfig,
+        fmus: &OpenedFmus,
+    ) -> Result<Self, UseError> {
+        Self::of_instance(scenario, fmu, config, open::instance(scenario, fmu, fmus)?)
     }
 
     /// Takes an instance of an FMU in place of the scenario's. Our Calibrator is configured by `config`.
@@ -76,8 +82,8 @@ impl FmuEndpoint {
         config: &CoreConfig,
         NamedInstance { instance, uri }: NamedInstance,
     ) -> Result<Self, UseError> {
-        let description = instance.description().clone();
-        let own = open::own_calibrator(&description, config);
+        let description = instance.description();
+        let own = open::own_calibrator(description, config);
         let problem =
             |message: String| UseError::problems(&scenario.file, vec![fmu.at.problem(message)]);
         if own.is_none() {
@@ -97,8 +103,8 @@ impl FmuEndpoint {
                 )));
             }
         }
-        let starts = open::starts(scenario, fmu, &uri, &description, own.as_deref())?;
-        let ports = Ports::bind(&description, fmu)
+        let starts = open::starts(scenario, fmu, &uri, description, own.as_deref())?;
+        let ports = Ports::bind(description, fmu)
             .map_err(|error| UseError::binding(&scenario.file, &uri, error))?;
         let stepper = Stepper::start(instance, &uri, starts, fmu.tolerance, fmu.step_ns)?;
         let own = own.map(|_| {
@@ -323,9 +329,9 @@ impl Endpoint for FmuEndpoint {
                 if let Some(offset) = offset {
                     config.initial_parameters = super::sum(&config.initial_parameters, offset);
                 }
-                let description = self.stepper.instance().description().clone();
-                let values = open::own_calibrator(&description, &config);
-                open::starts(&own.scenario, &own.fmu, &uri, &description, values.as_deref())
+                let description = self.stepper.instance().description();
+                let values = open::own_calibrator(description, &config);
+                open::starts(&own.scenario, &own.fmu, &uri, description, values.as_deref())
                     .map_err(|error| fail(error.to_string()))?
             }
             (None, None) => self.stepper.starts().clone(),

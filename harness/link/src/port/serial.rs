@@ -2,14 +2,14 @@
 
 use super::{Bytes, PortError};
 use crate::Uri;
-use crate::uri::Serial;
+use crate::uri::SerialAddress;
 use octant_base::serial::SerialPort;
 use std::io::{ErrorKind, Read, Write};
 use std::time::Duration;
 
 /// A serial line: 8 data bits, no parity, 1 stop bit, no flow control, opened exclusively.
 pub struct SerialLine {
-    serial: Serial,
+    serial: SerialAddress,
     uri: String,
     /// `None` while the line is closed.
     port: Option<SerialPort>,
@@ -26,7 +26,7 @@ impl SerialLine {
     ///
     /// # Errors
     /// If the port isn't there or is in use, or if its driver sets another rate than requested.
-    pub fn open(serial: &Serial) -> Result<Self, PortError> {
+    pub fn open(serial: &SerialAddress) -> Result<Self, PortError> {
         let uri = Uri::Serial(serial.clone()).to_string();
         let port = SerialPort::open(&serial.path, serial.baud)
             .map_err(|error| PortError::open(&uri, explain(&error)))?;

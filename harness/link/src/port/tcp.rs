@@ -2,13 +2,12 @@
 
 use super::{Bytes, PortError};
 use crate::Uri;
-use crate::uri::Tcp;
+use crate::uri::HostPort;
+use octant_base::address::CONNECT_LIMIT;
 use std::io::{ErrorKind, Read, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
+use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Time in which a connection has to be made.
-const CONNECT: Duration = Duration::from_secs(5);
 /// Time between two looks for a connection at the device end.
 const LOOK: Duration = Duration::from_millis(5);
 /// Time that a connection without a session has at the device end, before it gives way to one that waits.
@@ -18,7 +17,7 @@ const IDLE: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct TcpPort {
     uri: String,
-    tcp: Tcp,
+    tcp: HostPort,
     /// At the device end.
     listener: Option<TcpListener>,
     /// `None` while nobody is connected.
@@ -36,9 +35,9 @@ impl TcpPort {
     ///
     /// # Errors
     /// If nobody listens there.
-    pub fn connect(tcp: &Tcp) -> Result<Self, PortError> {
+    pub fn connect(tcp: &HostPort) -> Result<Self, PortError> {
         let uri = Uri::Tcp(tcp.clone()).to_string();
-        let stream = connected(tcp).map_err(|reason| PortError::open(&uri, reason))?;
+        let stream = tcp.connect(CONNECT_LIMIT).map_err(|error| PortError::open(&uri, error))?;
         let stream = Some(stream);
         Ok(Self {
             uri,
@@ -55,11 +54,11 @@ impl TcpPort {
     ///
     /// # Errors
     /// If the address doesn't belong to this host, or the port is taken.
-    pub fn listen(tcp: &Tcp) -> Result<Self, PortError> {
+    pub fn listen(tcp: &HostPort) -> Result<Self, PortError> {
         let name = Uri::Tcp(tcp.clone()).to_string();
         let refused = |error: std::io::Error| PortError::open(&name, error);
-        let address = resolve(tcp).map_err(|reason| PortError::open(&name, reason))?;
-        let listener = TcpListener::bind(address).map_err(refused)?;
+        let addresses = tcp.resolve(CONNECT_LIMIT).map_err(refused)?;
+        let listener = TcpListener::bind(&*addresses).map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
         let uri = format!("tcp:{}", listener.local_addr().map_err(refused)?);
         let listener = Some(listener);
@@ -106,26 +105,6 @@ impl TcpPort {
         (self.stream, self.wait) = (None, None);
         if self.listener.is_some() { Ok(()) } else { Err(self.gone(reason)) }
     }
-}
-
-/// Resolves a host name; an empty one is loopback.
-fn resolve(tcp: &Tcp) -> Result<SocketAddr, String> {
-    if tcp.host.is_empty() {
-        return Ok((Ipv4Addr::LOCALHOST, tcp.port).into());
-    }
-    let mut found = (tcp.host.as_str(), tcp.port).to_socket_addrs().map_err(|e| e.to_string())?;
-    found.next().ok_or_else(|| "the name stands for no address".to_owned())
-}
-
-fn connected(tcp: &Tcp) -> Result<TcpStream, String> {
-    let address = resolve(tcp)?;
-    if address.port() == 0 {
-        return Err("nobody listens at port 0, expected 1 to 65535".to_owned());
-    }
-    let stream =
-        TcpStream::connect_timeout(&address, CONNECT).map_err(|error| error.to_string())?;
-    set_up(&stream).map_err(|error| error.to_string())?;
-    Ok(stream)
 }
 
 /// Sends small frames at once.

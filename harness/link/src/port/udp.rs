@@ -5,8 +5,9 @@ use super::secret::secret_in;
 use super::udp_stamps::ArrivalStamps;
 use super::{Bytes, PortError};
 use crate::uri::Udp;
+use octant_base::address::CONNECT_LIMIT;
 use std::io::ErrorKind;
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, SystemTime};
 
 /// A UDP socket that listens to one peer at a time.
@@ -157,17 +158,11 @@ impl UdpPort {
     }
 }
 
-/// Resolves a host name; an empty one is loopback.
+/// Resolves the address; an empty host is loopback.
 fn resolve(udp: &Udp) -> Result<SocketAddr, PortError> {
-    if udp.host.is_empty() {
-        return Ok((Ipv4Addr::LOCALHOST, udp.port).into());
-    }
     let refused = |reason: String| PortError::open(crate::Uri::Udp(udp.clone()), reason);
-    (udp.host.as_str(), udp.port)
-        .to_socket_addrs()
-        .map_err(|error| refused(error.to_string()))?
-        .next()
-        .ok_or_else(|| refused("the name stands for no address".to_owned()))
+    let found = udp.address.resolve(CONNECT_LIMIT).map_err(|error| refused(error.to_string()))?;
+    found.first().copied().ok_or_else(|| refused("the host has no address".to_owned()))
 }
 
 /// True for errors that concern the other end only, or nothing.

@@ -1311,8 +1311,8 @@ class Power(Section):
     """How long the device is on before it is greeted and the run begins. Takes a time such as "12 h". Default:
     "0 s"."""
     port: str
-    """Port of the supply or of the relays, which speak SCPI: tcp:HOST, tcp:HOST:PORT (5025 by default) or
-    serial:DEVICE?baud=RATE. Takes a text in quotes."""
+    """Port of the supply or of the relays, which speak SCPI: tcp:HOST or tcp:HOST:PORT (5025 by default), or
+    serial:DEVICE?baud=RATE (9600 by default). Takes a text in quotes."""
     relay: int
     """Number of the relay that feeds the device, in place of a channel: closed is on. Takes a whole number from
     1 to 999999999. Left out: a supply feeds the device."""
@@ -2823,7 +2823,8 @@ class TurntableDrive(Section):
     """How far a sample may be from the nearest look and still get its gimbal angles; beyond it they are flagged
     invalid. Takes a time such as "12 h". Default: "100 ms"."""
     port: str
-    """Port of its controller: tcp:HOST:PORT or serial:DEVICE?baud=RATE. Takes a text in quotes."""
+    """Port of its controller: tcp:HOST:PORT, or serial:DEVICE?baud=RATE (115200 by default). Takes a text in
+    quotes."""
     reply: str
     """How long a reply of the controller is waited for; then the table is stopped. Takes a time such as "12 h".
     Default: "500 ms"."""

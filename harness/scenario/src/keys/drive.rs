@@ -18,7 +18,7 @@ keys! {
     /// `[turntable.drive]`.
     pub(crate) struct DriveKeys {
         port: At<String> = text(), required,
-            "Port of its controller: tcp:HOST:PORT or serial:DEVICE?baud=RATE.";
+            "Port of its controller: tcp:HOST:PORT, or serial:DEVICE?baud=RATE (115200 by default).";
         dialect: String = text(), "aerotech-ensemble",
             "What the controller speaks: aerotech-ensemble, or a file with a table of patterns.";
         driver: TableDriver = choice! {

@@ -12,7 +12,7 @@ keys! {
     /// `[power]`.
     pub(crate) struct PowerKeys {
         port: At<String> = text(), required,
-            "Port of the supply or of the relays, which speak SCPI: tcp:HOST, tcp:HOST:PORT (5025 by default) or serial:DEVICE?baud=RATE.";
+            "Port of the supply or of the relays, which speak SCPI: tcp:HOST or tcp:HOST:PORT (5025 by default), or serial:DEVICE?baud=RATE (9600 by default).";
         channel: At<Option<u32>> = integer::<u32>(1, 999), absent("the supply has one channel, or the selected one is meant"),
             "Channel of the supply, selected by its number.";
         relay: At<Option<u32>> = integer::<u32>(1, 999_999_999), absent("a supply feeds the device"),

@@ -26,7 +26,10 @@ keys! {
                 "fmu",
                 "an FMU: Octant's plant, another instrument, or the ship under the plant: fmu:FILE",
             ),
-            ("serial", "an instrument on a serial line: serial:/dev/ttyUSB0?baud=921600"),
+            (
+                "serial",
+                "an instrument on a serial line: serial:/dev/ttyUSB0?baud=921600 (the default rate)",
+            ),
             ("udp", "an instrument that sends to a UDP port of this host: udp:HOST:PORT"),
             ("can", "an instrument on a CAN interface: can:can0"),
             (

@@ -8,7 +8,8 @@ use instrument::{FmuSource, Instrument, Timing};
 use motion::{MovedPlant, Moving};
 use octant_plant::Truth;
 
-use super::{AnySource, Source, SourceError};
+use super::{AnySource, SourceError};
+use octant_mapping::OpenedFmus;
 use octant_mapping::open::{self, NamedInstance};
 use octant_mapping::stepper::{Stepper, UseError};
 use octant_plant::config as plant;
@@ -23,8 +24,9 @@ pub(super) fn open(
     scenario: &Scenario,
     fmu: &Fmu,
     plant: &plant::PlantConfig,
+    fmus: &OpenedFmus,
 ) -> Result<AnySource, SourceError> {
-    of_instance(scenario, fmu, plant, open::instance(scenario, fmu)?)
+    of_instance(scenario, fmu, plant, open::instance(scenario, fmu, fmus)?)
 }
 
 fn of_instance(
@@ -33,17 +35,17 @@ fn of_instance(
     plant: &plant::PlantConfig,
     NamedInstance { instance, uri }: NamedInstance,
 ) -> Result<AnySource, SourceError> {
-    let description = instance.description().clone();
     if fmu.is_motion() {
         let moving = moving(scenario, fmu, plant, NamedInstance { instance, uri })?;
         let samples = scenario.samples().unwrap_or(u64::MAX);
         let samples_a_piece = fmu.step_ns / scenario.sample_period_ns;
         return Ok(MovedPlant::new(moving, plant, samples, samples_a_piece)?.into());
     }
-    let own = open::own_plant(&description, plant)
+    let description = instance.description();
+    let own = open::own_plant(description, plant)
         .map_err(|error| UseError::Open { uri: uri.clone(), reason: error.to_string() })?;
-    let starts = open::starts(scenario, fmu, &uri, &description, own.as_deref())?;
-    let instrument = Instrument::bind(&description, fmu)
+    let starts = open::starts(scenario, fmu, &uri, description, own.as_deref())?;
+    let instrument = Instrument::bind(description, fmu)
         .map_err(|error| UseError::binding(&scenario.file, &uri, error))?;
     let stepper = Stepper::start(instance, &uri, starts, fmu.tolerance, fmu.step_ns)?;
     let timing = Timing {
@@ -63,16 +65,16 @@ fn moving(
     plant: &plant::PlantConfig,
     NamedInstance { instance, uri }: NamedInstance,
 ) -> Result<Moving, SourceError> {
-    let description = instance.description().clone();
-    let starts = open::starts(scenario, fmu, &uri, &description, None)?;
-    let bindings = motion::bind(&description, fmu)
+    let description = instance.description();
+    let starts = open::starts(scenario, fmu, &uri, description, None)?;
+    let bindings = motion::bind(description, fmu)
         .map_err(|error| UseError::binding(&scenario.file, &uri, error))?;
     let stepper = Stepper::start(instance, &uri, starts, fmu.tolerance, fmu.step_ns)?;
     Moving::new(stepper, bindings, plant, fmu.step_ns as f64 * 1e-9)
 }
 
-/// Returns truth at the start of a run whose case motion comes from an FMU, or of a run with our
-/// Plant FMU; `None` where it isn't known.
+/// Returns truth at the start of a run with our Plant FMU; `None` for another one. An FMU of case motion is asked
+/// itself: [`AnySource::truth`].
 ///
 /// # Errors
 /// If the FMU can't be used.
@@ -80,11 +82,9 @@ pub(crate) fn truth_at_start(
     scenario: &Scenario,
     fmu: &Fmu,
     plant: &plant::PlantConfig,
+    fmus: &OpenedFmus,
 ) -> Result<Option<Truth>, SourceError> {
-    if fmu.is_motion() {
-        return Ok(open(scenario, fmu, plant)?.truth());
-    }
-    if !open::is_own_plant(scenario, fmu) {
+    if !open::is_own_plant(scenario, fmu, fmus) {
         return Ok(None);
     }
     let plant = octant_plant::Plant::new(plant).map_err(|error| UseError::Open {

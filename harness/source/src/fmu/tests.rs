@@ -1,6 +1,6 @@
 use super::*;
-use crate::Epoch;
 use crate::configure::configurations;
+use crate::{Epoch, Source};
 use octant_fmu_host::description::{Causality, Description, VariableType};
 use octant_mapping::convert::ChannelConversion;
 use octant_mapping::testing::{Scripted, With, description, variable};

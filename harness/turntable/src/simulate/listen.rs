@@ -2,6 +2,8 @@
 
 use super::{Controller, SimulatedServer};
 use crate::{Dialect, Error};
+use octant_base::address::parts::AddressParts;
+use octant_base::address::{AddressError, CONNECT_LIMIT, HostForm};
 use octant_plant::config::TurntableConfig;
 
 /// Angle of the table's end switches, in either direction, degrees: two turns.
@@ -24,17 +26,27 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(SimulatedServer, String), E
         errors: Default::default(),
     };
     let controller = Controller::new(dialect, &config, degrees(END_DEG));
-    let failed = |reason: String| Error::Listen { port: at.to_owned(), reason };
+    let form = || {
+        let expected = format!("{}, or pty:LINK", HostForm::Wire.expected("tcp"));
+        Error::Address(AddressError::Name { found: at.to_owned(), expected })
+    };
     match at.split_once(':') {
         Some(("tcp", address)) => {
-            let server = SimulatedServer::tcp(controller, address, 1.0)
-                .map_err(|error| failed(error.to_string()))?;
+            let parts = AddressParts::read(at, address, "tcp", &[]).map_err(Error::Address)?;
+            let address = HostForm::Wire.read(&parts, "tcp").map_err(Error::Address)?;
+            let server = address
+                .resolve(CONNECT_LIMIT)
+                .and_then(|addresses| SimulatedServer::tcp(controller, &*addresses, 1.0))
+                .map_err(|error| Error::Listen {
+                    port: at.to_owned(),
+                    reason: error.to_string(),
+                })?;
             let name =
                 server.address().map_or_else(|| at.to_owned(), |address| format!("tcp:{address}"));
             Ok((server, name))
         }
         Some(("pty", link)) if !link.is_empty() => on_pty(controller, link),
-        _ => Err(failed("the address has neither tcp: nor pty:".to_owned())),
+        _ => Err(form()),
     }
 }
 

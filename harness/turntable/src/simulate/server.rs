@@ -3,7 +3,7 @@
 use super::{Controller, ControllerBehaviour};
 use crate::TablePort;
 use std::io::{self, ErrorKind};
-use std::net::{SocketAddr, TcpListener};
+use std::net::{SocketAddr, TcpListener, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -45,7 +45,11 @@ impl SimulatedServer {
     ///
     /// # Errors
     /// If the address can't be listened on.
-    pub fn tcp(controller: Controller, address: &str, speed: f64) -> io::Result<Self> {
+    pub fn tcp(
+        controller: Controller,
+        address: impl ToSocketAddrs,
+        speed: f64,
+    ) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
