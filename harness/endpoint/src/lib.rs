@@ -16,6 +16,7 @@ pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 pub use solution::SolutionEndpoint;
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_calibration::CoreConfig;
 use octant_calibration::covariance::SolutionCovariance;
 use octant_calibration::state_machine::CoreConfigError;
@@ -274,6 +275,19 @@ pub enum EndpointOpenError {
         /// The port.
         uri: String,
     },
+}
+
+impl Failing for EndpointOpenError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Use(error) => error.kind(),
+            Self::Live(error) => error.kind(),
+            Self::Power(error) => error.kind(),
+            Self::Core(_) | Self::Solution(_) | Self::Load(_) | Self::OneMethod { .. } => {
+                FailureKind::Input
+            }
+        }
+    }
 }
 
 /// Checks that the endpoint of a scenario can be opened. A device's port is opened only once, when

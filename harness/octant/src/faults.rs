@@ -48,7 +48,8 @@ enum Command {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+    let Arguments { command } = arguments;
+    match command {
         Command::List { json: true } => {
             let on_connections = connection::KINDS.iter().map(|kind| Row::of_connection(kind));
             print_json(&List { kinds: kinds::all().map(Row::of).chain(on_connections).collect() })?

@@ -6,6 +6,7 @@
 
 use crate::desk::Desk;
 use crate::record::AnswerWay;
+use octant_base::failing::{Failing, FailureKind};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -114,6 +115,15 @@ pub enum MailboxError {
         /// Error of the operating system.
         source: io::Error,
     },
+}
+
+impl Failing for MailboxError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Nobody(_) => FailureKind::Input,
+            Self::Silent { .. } | Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 impl Mailbox {

@@ -1,5 +1,6 @@
 //! Errors of a supply or a relay.
 
+use octant_base::failing::{Failing, FailureKind};
 use std::time::Duration;
 
 /// Error of a supply or a relay.
@@ -101,4 +102,20 @@ pub enum PowerError {
     /// An interrupt came.
     #[error("interrupted while the power was being switched")]
     Interrupted,
+}
+
+impl Failing for PowerError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Address { .. } | Self::Relay { .. } => FailureKind::Input,
+            Self::Open { .. }
+            | Self::Gone { .. }
+            | Self::Silent { .. }
+            | Self::Nonsense { .. }
+            | Self::Refused { .. }
+            | Self::State { .. }
+            | Self::Voltage { .. }
+            | Self::Interrupted => FailureKind::Bench,
+        }
+    }
 }

@@ -5,6 +5,7 @@ use super::method::{MethodError, MethodRun, SetupError, StreamKeeping, run_as_fa
 use super::with_twin::run_with_twin;
 use octant_base::attendance::Attendance;
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::spawn;
 use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
@@ -41,6 +42,15 @@ pub enum PreparedError {
     /// The thread of a method panicked: an error in this program.
     #[error("run a method: its thread panicked")]
     Panicked,
+}
+
+impl Failing for PreparedError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Method(error) => error.kind(),
+            Self::Panicked => FailureKind::Bench,
+        }
+    }
 }
 
 impl<'a> Prepared<'a> {
