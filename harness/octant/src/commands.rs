@@ -213,7 +213,7 @@ pub(crate) fn status() -> u8 {
         Command::Verify(arguments) => verify::command(&arguments),
         Command::Rejudge(arguments) => rejudge::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
-        Command::Faults(arguments) => faults::command(&arguments),
+        Command::Faults(arguments) => faults::command(&arguments, &given),
         Command::Rare(arguments) => rare::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
         Command::Power(arguments) => power::command(&arguments, &given),

@@ -4,6 +4,7 @@ use super::case_progress::CaseBar;
 use super::progress::interruptible;
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::terminal::{note, print, print_json, write};
 use clap::{Args, ValueEnum};
 use octant_base::control::Control;
@@ -37,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     space: Option<PathBuf>,
     /// Print the space that would be searched as such a file, and run nothing but the scenario without faults.
-    #[arg(long, conflicts_with = "SearchingArguments")]
+    #[arg(long)]
     print_space: bool,
     /// Seed of all runs, instead of the scenario's.
     #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
@@ -98,7 +99,12 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    if arguments.print_space {
+        given.refuse::<SearchingArguments>(
+            "found with --print-space, expected one without the other: nothing is searched then",
+        )?;
+    }
     let scenario = load(&arguments.scenario, &[])?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
     interruptible(|control| searched(arguments, &scenario, seed, control))

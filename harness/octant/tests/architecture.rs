@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/architecture.md");
 /// Most lines of product code in a crate.
-const CRATE_LINES_MAX: usize = 13_000;
+const CRATE_LINES_MAX: usize = 14_000;
 /// Most lines of a file of product code.
 const FILE_LINES_MAX: usize = 500;
 

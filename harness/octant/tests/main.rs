@@ -84,6 +84,8 @@ mod observe_protection;
 mod operator;
 #[cfg(target_os = "linux")]
 mod operator_ways;
+#[cfg(all(unix, feature = "full"))]
+mod options;
 mod own_sequences;
 #[cfg(unix)]
 mod power;

@@ -11,7 +11,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "FILE")]
     pub(super) fmu: PathBuf,
     /// Scenario whose source gives the samples for a core: the FMU replaces the scenario's endpoint.
-    #[arg(long, value_name = "SCENARIO", conflicts_with = "SteppingArguments")]
+    #[arg(long, value_name = "SCENARIO")]
     pub(super) source: Option<PathBuf>,
     #[command(flatten)]
     pub(super) stepping: SteppingArguments,

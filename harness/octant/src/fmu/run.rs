@@ -81,6 +81,11 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
             "found with --interface scheduled-execution, expected none: the clocks of the FMU set the times",
         )?;
     }
+    if source.is_some() {
+        given.refuse::<SteppingArguments>(
+            "found with --source, expected one without the other: the scenario has inputs, times and outputs",
+        )?;
+    }
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
     let kept =
         SharedRunOptions { fmu, set, opening, out: out.as_deref(), force: *force, json: *json };
