@@ -1,5 +1,6 @@
 //! Reasons why nothing, or not everything, was built.
 
+use octant_base::failing::{Failing, FailureKind};
 use std::path::PathBuf;
 
 /// Reasons why nothing, or not everything, was built.
@@ -83,4 +84,19 @@ pub enum BuildError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+}
+
+impl Failing for BuildError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::NoLibrary { .. }
+            | Self::Read { .. }
+            | Self::Library { .. }
+            | Self::SamePlatform { .. }
+            | Self::NoSource
+            | Self::Target { .. }
+            | Self::Scenario { .. } => FailureKind::Input,
+            Self::Program { .. } | Self::Model { .. } | Self::Write { .. } => FailureKind::Bench,
+        }
+    }
 }

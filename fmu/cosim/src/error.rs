@@ -1,6 +1,7 @@
 //! Reasons why a run of several FMUs can't go on.
 
 use super::solve::SolveError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_host::instance::InstanceError;
 
 /// Reasons why a system can't go on. Rows recorded before are kept.
@@ -80,6 +81,19 @@ pub enum MasterError {
         /// Reason why no smaller step is made.
         reason: String,
     },
+}
+
+impl Failing for MasterError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Value { .. }
+            | Self::Refused { .. }
+            | Self::Tuned { .. }
+            | Self::Loop { .. }
+            | Self::Discarded { .. } => FailureKind::Input,
+            Self::Instance { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 impl MasterError {

@@ -19,6 +19,7 @@ use super::summary::{FmuResult, LoopResult, SCHEMA, SystemEnded, SystemSummary};
 use super::system::System;
 use super::tuning::{TunedResult, Tuning, tunings};
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_host::OpenedFmu;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, ProcessPlace};
@@ -65,6 +66,8 @@ pub struct Request {
     pub allow_tool: bool,
     /// Number of steps between recorded rows.
     pub every: Option<u64>,
+    /// True if the system must have requirements.
+    pub require: bool,
 }
 
 /// Reasons why a system can't be run at all.
@@ -84,11 +87,12 @@ pub enum PrepareError {
     Master(#[from] MasterError),
 }
 
-impl PrepareError {
-    /// True if an FMU failed: the bench, not its inputs.
-    #[must_use]
-    pub const fn is_bench(&self) -> bool {
-        matches!(self, Self::Master(MasterError::Instance { .. }))
+impl Failing for PrepareError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Master(error) => error.kind(),
+            Self::Ssp(_) | Self::List(_) | Self::Usage(_) => FailureKind::Input,
+        }
     }
 }
 
@@ -335,7 +339,8 @@ impl PreparedSystem {
         let is_whole = matches!(ended, SystemEnded::AtStop | SystemEnded::AskedByFmu { .. });
         let requirements = recorder.requiring().results(is_whole);
         let tuned: Vec<TunedResult> = simulation.tunings().cloned().collect();
-        let (verdict, reasons) = judge(&ended, &faults, &tuned, &requirements);
+        let required = (&requirements[..], self.request.require);
+        let (verdict, reasons) = judge(&ended, &faults, &tuned, required);
         let written = recorder
             .event(simulation.time_s(simulation.steps()), &Event::Receipts(faults.clone()))
             .and_then(|()| recorder.finish());
@@ -459,7 +464,7 @@ fn judge(
     ended: &SystemEnded,
     faults: &[FaultResult],
     tuned: &[TunedResult],
-    requirements: &[RequirementResult],
+    (requirements, must_require): (&[RequirementResult], bool),
 ) -> (Verdict, Vec<String>) {
     let mut reasons = Vec::new();
     let mut verdict = Verdict::None;
@@ -486,7 +491,10 @@ fn judge(
     // A requirement that failed before an FMU did stays failed.
     verdict = if required == Verdict::Fail { required } else { verdict.worst(required) };
     reasons.extend(requirements.iter().filter_map(RequirementResult::told));
-    if requirements.is_empty() && verdict == Verdict::None {
+    if requirements.is_empty() && must_require {
+        verdict = verdict.worst(Verdict::Inconclusive);
+        reasons.push("the system requires nothing, and --require wants it to".to_owned());
+    } else if requirements.is_empty() && verdict == Verdict::None {
         reasons.push(NO_REQUIREMENT.to_owned());
     }
     (verdict, reasons)

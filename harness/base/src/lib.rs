@@ -14,6 +14,7 @@
 //! | [`pool`] | tasks on several threads, their results in order |
 //! | [`chained_lines`] | files of lines that grow, by which an interrupted program goes on |
 //! | [`code`] | the file that this code is in |
+//! | [`failing`] | kinds of failures, for exit statuses |
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
@@ -32,6 +33,7 @@ pub mod control;
 pub mod decimal;
 pub mod display;
 pub mod encoding;
+pub mod failing;
 pub mod hash;
 pub mod interrupt;
 pub mod names;

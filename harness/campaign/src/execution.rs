@@ -4,6 +4,7 @@ use super::plan::PlanError;
 use super::process::TRIES;
 use super::status::StatusError;
 use super::store::error::{PartError, ResultPlace};
+use octant_base::failing::{Failing, FailureKind};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
 
@@ -92,4 +93,18 @@ pub enum ExecuteError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+}
+
+impl Failing for ExecuteError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Plan(error) => error.kind(),
+            Self::Foreign { .. } => FailureKind::Input,
+            Self::Result(_)
+            | Self::NotKept(_)
+            | Self::Part(_)
+            | Self::Ended { .. }
+            | Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }

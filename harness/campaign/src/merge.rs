@@ -11,6 +11,7 @@ use super::table::{
     ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
 };
 use super::table_rows::{CaseColumn, CaseRows, CaseTable};
+use octant_base::failing::{Failing, FailureKind};
 use octant_requirements::Verdict;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -77,6 +78,18 @@ pub enum MergeError {
         /// Other part.
         second: PathBuf,
     },
+}
+
+impl Failing for MergeError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Table(error) => error.kind(),
+            Self::Nothing { .. } | Self::Foreign { .. } | Self::Numerics { .. } => {
+                FailureKind::Input
+            }
+            Self::Differs { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 /// Summary of a merge.

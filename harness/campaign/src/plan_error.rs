@@ -1,5 +1,6 @@
 //! Reasons why there is no plan.
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_requirements::RequirementsError;
 use octant_scenario::ScenarioError;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,22 @@ pub enum PlanError {
         /// Problem found.
         reason: String,
     },
+}
+
+impl Failing for PlanError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            // Reading is of what was given, writing of the place.
+            Self::System { action: "create" | "create a file in" | "write", .. } => {
+                FailureKind::Bench
+            }
+            Self::System { .. }
+            | Self::File(_)
+            | Self::Requirements(_)
+            | Self::Contradiction { .. }
+            | Self::Form { .. } => FailureKind::Input,
+        }
+    }
 }
 
 /// Returns the first digits of a hash, for display.

@@ -1,6 +1,7 @@
 //! Sweeps a grid of one fault, to find the variants that are undetected and yet harmful.
 
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::processors;
 use octant_run::branches::{BranchPlan, run_branches};
 use octant_run::drive::Ended;
@@ -82,6 +83,16 @@ pub enum SweepError {
     /// Interrupted on request.
     #[error("sweep: interrupted")]
     Cancelled,
+}
+
+impl Failing for SweepError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Method(error) => error.kind(),
+            Self::TwinRefused(_) => FailureKind::Fail,
+            Self::Cancelled => FailureKind::Inconclusive,
+        }
+    }
 }
 
 /// Number of cells of a grid.

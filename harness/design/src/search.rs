@@ -10,6 +10,7 @@ use crate::measure::DesignMeasure;
 use crate::mutate::{changed, random};
 use crate::ranked::rank;
 use crate::setup::{DesignError, DesignSetup};
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool;
 use octant_calibration::positions::SEQUENCES;
 use octant_random::draws::Draws;
@@ -116,6 +117,15 @@ pub enum SearchError {
     /// The scenario can't be designed for.
     #[error(transparent)]
     Design(#[from] DesignError),
+}
+
+impl Failing for SearchError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::NothingFits { .. } | Self::OtherSearch | Self::Design(_) => FailureKind::Input,
+            Self::Interrupted { .. } => FailureKind::Inconclusive,
+        }
+    }
 }
 
 impl SearchProblem {

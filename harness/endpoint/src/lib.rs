@@ -16,6 +16,7 @@ pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 pub use solution::SolutionEndpoint;
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_calibration::CoreConfig;
 use octant_calibration::covariance::SolutionCovariance;
 use octant_calibration::state_machine::CoreConfigError;
@@ -275,6 +276,19 @@ pub enum EndpointOpenError {
         /// The port.
         uri: String,
     },
+}
+
+impl Failing for EndpointOpenError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Use(error) => error.kind(),
+            Self::Live(error) => error.kind(),
+            Self::Power(error) => error.kind(),
+            Self::Core(_) | Self::Solution(_) | Self::Load(_) | Self::OneMethod { .. } => {
+                FailureKind::Input
+            }
+        }
+    }
 }
 
 /// Checks an endpoint without opening it, where it is a device: its port is opened only once, when the run begins,

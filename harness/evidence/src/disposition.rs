@@ -4,6 +4,7 @@
 //! stays.
 
 use super::discrepancy::Discrepancy;
+use octant_base::failing::{Failing, FailureKind};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,15 @@ pub enum DispositionError {
         /// Problem found.
         reason: String,
     },
+}
+
+impl Failing for DispositionError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Form { .. } => FailureKind::Input,
+            Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 /// Builds the head of a new file for something whose report a command renders again.

@@ -1,5 +1,6 @@
 //! Reasons why a recording can't be exported.
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_recorder::reader::ReadError;
 use std::path::PathBuf;
 
@@ -62,10 +63,14 @@ pub enum ExportFailure {
     },
 }
 
-impl ExportFailure {
-    /// True if what was asked for is at fault, not the disk.
-    #[must_use]
-    pub const fn is_input(&self) -> bool {
-        !matches!(self, Self::System { .. } | Self::Format { .. })
+impl Failing for ExportFailure {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Recording { .. }
+            | Self::InTheWay { .. }
+            | Self::TooLarge { .. }
+            | Self::Nothing { .. } => FailureKind::Input,
+            Self::System { .. } | Self::Format { .. } => FailureKind::Bench,
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bind::{BindError, Bound};
 use super::settings::Starts;
+use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_host::FmuOpenError;
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
 use octant_scenario::{Problem, ScenarioError};
@@ -28,6 +29,15 @@ pub enum UseError {
         /// Description of the failure.
         reason: String,
     },
+}
+
+impl Failing for UseError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Mapping(_) | Self::Open { .. } => FailureKind::Input,
+            Self::Gone { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 impl UseError {

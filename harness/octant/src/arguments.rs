@@ -37,8 +37,9 @@ pub(crate) fn load(
     arguments: &ScenarioArguments,
     more: &[String],
 ) -> Result<octant_scenario::Scenario, Failure> {
-    let set = [&*arguments.set, more].concat();
-    read_scenario(&arguments.scenario, &set, &[], &FilePlaces::default())
+    let ScenarioArguments { scenario, set } = arguments;
+    let set = [set, more].concat();
+    read_scenario(scenario, &set, &[], &FilePlaces::default())
 }
 
 /// Reads a scenario with changes of its keys, with faults triggered by hand, and with files in other places.

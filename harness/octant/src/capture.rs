@@ -44,7 +44,8 @@ const WRITTEN_EVERY: Duration = Duration::from_secs(1);
 const TIME_MAX_S: f64 = 1e8;
 
 pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> {
-    let uri: Uri = (arguments.uri.parse())
+    let CaptureArguments { uri, out, duration, silence } = arguments;
+    let uri: Uri = (uri.parse())
         .map_err(|error| Failure::input(format!("failed to read the port: {error}")))?;
     let time = |name: &str, text: &str| {
         let found = seconds(name, text)?;
@@ -53,11 +54,11 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
             Failure::input(format!("{name}: found {text:?}, expected 0 to {TIME_MAX_S:.0} s"))
         })
     };
-    let duration = arguments.duration.as_ref().map(|text| time("--duration", text)).transpose()?;
+    let duration = duration.as_ref().map(|text| time("--duration", text)).transpose()?;
     if duration.is_some_and(|duration| duration.is_zero()) {
         return Err(Failure::input("--duration: found 0 s, expected more"));
     }
-    let silence = Some(time("--silence", &arguments.silence)?).filter(|time| !time.is_zero());
+    let silence = Some(time("--silence", silence)?).filter(|time| !time.is_zero());
     if matches!(&uri, Uri::Udp(udp) if udp.secret.is_some()) {
         let message =
             format!("found {uri}, expected no secret: an instrument's datagrams have no seal");
@@ -68,13 +69,13 @@ pub(super) fn command(arguments: &CaptureArguments) -> Result<Verdict, Failure> 
     else {
         return Err(Failure::input(format!("found {uri}, expected a serial line, UDP or TCP")));
     };
-    let mut written = Written::new(&arguments.out)?;
+    let mut written = Written::new(out)?;
     interrupt::watch(|| {})
         .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
     note!("octant: listening on {}", port.reached_at());
     let ended = written.receive(port.as_mut(), duration, silence);
     written.flush()?;
-    print(&written.summary(&arguments.out))?;
+    print(&written.summary(out))?;
     ended
 }
 

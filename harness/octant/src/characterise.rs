@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use octant_characterise::recording::RestingRecording;
 use octant_characterise::result::characterise;
 use octant_characterise::{page, text};
@@ -10,6 +10,7 @@ use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("written").args(["imu", "html"]).multiple(true)))]
 pub(super) struct Arguments {
     /// Recording at rest: a folder of a run or its MCAP file, samples of octant export (.csv), a scenario (.toml) whose
     /// source is a recording, or with --scenario any text or MCAP file.
@@ -28,13 +29,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
     /// Seed of the simulated twin.
-    #[arg(long, value_name = "SEED", default_value = "1", value_parser = crate::arguments::seed)]
+    #[arg(long, value_name = "SEED", default_value = "1", value_parser = crate::arguments::seed, conflicts_with = "no_twin")]
     seed: u64,
     /// Simulate no twin.
     #[arg(long)]
     no_twin: bool,
     /// Replace existing files.
-    #[arg(long)]
+    #[arg(long, requires = "written")]
     force: bool,
     /// Print one JSON object.
     #[arg(long)]
@@ -42,30 +43,30 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let files: Vec<&Path> =
-        [&arguments.imu, &arguments.html].into_iter().flatten().map(PathBuf::as_path).collect();
-    if let Some(file) = files.iter().find(|file| file.exists() && !arguments.force) {
+    let Arguments { recording, scenario, set, imu, html, seed, no_twin, force, json } = arguments;
+    let files: Vec<&Path> = [imu, html].into_iter().flatten().map(PathBuf::as_path).collect();
+    if let Some(file) = files.iter().find(|file| file.exists() && !force) {
         return Err(Failure::input(format!(
             "failed to write {}: it exists; --force replaces it",
             file.display()
         )));
     }
-    let path = match arguments.recording.is_dir() {
-        true => crate::run_folder::recording_of(&arguments.recording)?,
-        false => arguments.recording.clone(),
+    let path = match recording.is_dir() {
+        true => crate::run_folder::recording_of(recording)?,
+        false => recording.clone(),
     };
-    let recording = RestingRecording::of(&path, arguments.scenario.as_deref(), &arguments.set)
-        .map_err(Failure::input)?;
-    let seed = (!arguments.no_twin).then_some(arguments.seed);
+    let recording =
+        RestingRecording::of(&path, scenario.as_deref(), set).map_err(Failure::input)?;
+    let seed = (!no_twin).then_some(*seed);
     let result = characterise(&recording, seed).map_err(Failure::input)?;
-    if let Some(file) = &arguments.imu {
+    if let Some(file) = imu {
         write(file, &result.imu)?;
     }
-    if let Some(file) = &arguments.html {
+    if let Some(file) = html {
         let words: Vec<String> = std::env::args().skip(1).collect();
         write(file, page::render(&result, &format!("octant {}", words.join(" "))))?;
     }
-    if arguments.json {
+    if *json {
         print_json(&result)?;
     } else {
         print(&text::of(&result))?;

@@ -1,13 +1,14 @@
 //! Commands of the program, and its entry point.
 
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::terminal::{note, print, printable, styled};
 use crate::{
     campaign, capture, characterise, compare, completions, design, diff, doctor, export, faults,
     fmu, new, nightly, observe, operator, power, progress, rare, rejudge, replay, report,
     requirements, run, score, selftest, serve, smooth, turntable, verify, watch,
 };
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 use octant_requirements::Verdict;
 use std::ffi::OsString;
 use std::io::Write;
@@ -94,15 +95,16 @@ enum Command {
     Other(Vec<OsString>),
 }
 
-/// Returns the command line with all of its commands.
-fn whole() -> clap::Command {
+/// Returns the command line with all of its commands and options, hidden ones too.
+#[must_use]
+pub fn command_line() -> clap::Command {
     <Cli as clap::CommandFactory>::command()
 }
 
 /// Reports an unknown command.
 fn other(words: &[OsString]) -> Failure {
     let name = words.first().map_or("".into(), |word| word.to_string_lossy());
-    let command = whole();
+    let command = command_line();
     let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
     let known = octant_base::names::suggestion(&name, known.into_iter(), "commands");
     Failure::input(format!("unknown command {name:?}, {known}"))
@@ -167,25 +169,33 @@ pub fn main() -> ExitCode {
     ExitCode::from(status())
 }
 
+/// Parses the command line of this process.
+fn parsed() -> Result<(Cli, GivenOptions), clap::Error> {
+    let mut command = command_line();
+    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+    Ok((cli, GivenOptions::of(&command, &matches)))
+}
+
 /// Runs the program; its exit status as a number.
 pub(crate) fn status() -> u8 {
     say_build();
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    let (Cli { parent, command }, given) = match parsed() {
+        Ok(parsed) => parsed,
         Err(told) => return help(&told),
     };
-    if let Some(parent) = cli.parent
+    if let Some(parent) = parent
         && let Err(error) = progress::leave_interrupts_to(parent)
     {
         note!("error: failed to follow process {parent}: {error}");
         return Verdict::Error.exit_code();
     }
-    let outcome = match cli.command {
+    let outcome = match command {
         Command::New(arguments) => new::command(&arguments),
-        Command::Run(arguments) => run::command(&arguments),
+        Command::Run(arguments) => run::command(&arguments, &given),
         Command::Answer(arguments) => operator::answer(&arguments),
         Command::Operator(arguments) => operator::command(&arguments),
-        Command::Campaign(arguments) => campaign::command(&arguments),
+        Command::Campaign(arguments) => campaign::command(&arguments, &given),
         Command::Nightly(arguments) => nightly::command(&arguments),
         Command::Selftest(arguments) => selftest::command(&arguments),
         Command::Requirements(arguments) => requirements::command(&arguments),
@@ -194,7 +204,7 @@ pub(crate) fn status() -> u8 {
         Command::Smooth(arguments) => smooth::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Capture(arguments) => capture::command(&arguments),
-        Command::Score(arguments) => score::command(&arguments),
+        Command::Score(arguments) => score::command(&arguments, &given),
         Command::Diff(arguments) => diff::command(&arguments),
         Command::Export(arguments) => export::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
@@ -204,15 +214,15 @@ pub(crate) fn status() -> u8 {
         Command::Verify(arguments) => verify::command(&arguments),
         Command::Rejudge(arguments) => rejudge::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
-        Command::Faults(arguments) => faults::command(&arguments),
+        Command::Faults(arguments) => faults::command(&arguments, &given),
         Command::Rare(arguments) => rare::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
-        Command::Power(arguments) => power::command(&arguments),
+        Command::Power(arguments) => power::command(&arguments, &given),
         Command::Turntable(arguments) => turntable::command(&arguments),
-        Command::Fmu(arguments) => fmu::command(&arguments),
+        Command::Fmu(arguments) => fmu::command(&arguments, &given),
         Command::Other(words) => Err(other(&words)),
-        Command::Completions(arguments) => completions::completions(&arguments, whole()),
-        Command::Man(arguments) => completions::man(&arguments, whole()),
+        Command::Completions(arguments) => completions::completions(&arguments, command_line()),
+        Command::Man(arguments) => completions::man(&arguments, command_line()),
         Command::Schema => {
             print(&format!("{:#}\n", octant_scenario::schema())).map(|()| Verdict::Pass)
         }

@@ -11,7 +11,7 @@ use octant_requirements::Verdict;
 use octant_run::paired::{MethodSide, paired};
 use octant_scenario::{Method, Scenario};
 use octant_score::compare::MethodComparison;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -37,75 +37,91 @@ pub(super) struct Arguments {
 }
 
 /// Returns both sides: the reference method, and the method under comparison.
-fn sides(arguments: &Arguments) -> Result<(MethodSide, MethodSide), Failure> {
+fn sides(
+    arguments: &ScenarioArguments,
+    against: Option<&Path>,
+    units: Option<UnitChoice>,
+) -> Result<(MethodSide, MethodSide), Failure> {
+    let ScenarioArguments { scenario: file, set } = arguments;
     let side = |scenario, method| MethodSide { scenario, method };
-    let chosen = arguments.units.map(|units| units.settings()).unwrap_or_default();
-    let second = load(&arguments.scenario, &chosen)?;
-    if let Some(against) = &arguments.against {
+    let chosen = units.map(|units| units.settings()).unwrap_or_default();
+    let second = load(arguments, &chosen)?;
+    if let Some(against) = against {
         let first = Scenario::load(against, &[]).map_err(Failure::input)?;
         return Ok((side(first, Method::Primary), side(second, Method::Primary)));
     }
     if second.baseline.is_some() {
         return Ok((side(second.clone(), Method::Baseline), side(second, Method::Primary)));
     }
-    if arguments.scenario.set.is_empty() {
+    if set.is_empty() {
         return Err(Failure::input(format!(
             "failed to compare {}: found no [baseline], expected one, or --against SCENARIO, or --set \
              KEY=VALUE for the second method",
-            arguments.scenario.scenario.display()
+            file.display()
         )));
     }
-    let first = Scenario::load(&arguments.scenario.scenario, &[]).map_err(Failure::input)?;
+    let first = Scenario::load(file, &[]).map_err(Failure::input)?;
     Ok((side(first, Method::Primary), side(second, Method::Primary)))
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let (first, second) = sides(arguments)?;
+    let Arguments { scenario: of_scenario, against, seeds: count, out, units, json } = arguments;
+    if let (Some(_), true, None) = (units, json, out) {
+        return Err(Failure::input(
+            "--units: found with --json, whose numbers have units of their own, expected --out DIR for a page in these \
+             units, or no --json",
+        ));
+    }
+    let (first, second) = sides(of_scenario, against.as_deref(), *units)?;
     let scenario = &second.scenario;
-    let seeds: Vec<u64> = (0..arguments.seeds).map(|n| scenario.seed.wrapping_add(n)).collect();
+    let seeds: Vec<u64> = (0..*count).map(|n| scenario.seed.wrapping_add(n)).collect();
     let controls: Vec<Control> = (0..2 * seeds.len()).map(|_| Control::default()).collect();
     let samples = first.scenario.samples().zip(scenario.samples()).map(|(a, b)| a + b);
-    let epochs = samples.map(|samples| samples * arguments.seeds);
+    let epochs = samples.map(|samples| samples * count);
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let comparison =
         with_progress(&controls, epochs, sample_s, || paired(&first, &second, &seeds, &controls))?;
-    write_results(arguments, &comparison, &scenario.display)?;
+    if let Some(folder) = out {
+        let rerun = rerun(of_scenario, against.as_deref(), *count);
+        write_results(folder, &comparison, &rerun, &scenario.display)?;
+    }
+    if *json {
+        print_json(&comparison)?;
+    } else {
+        print(&octant_report::compare::table(&comparison, &scenario.display))?;
+    }
     // With too few pairs nothing is shown.
     let compared = !comparison.cells.is_empty();
     Ok(if compared { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
+/// Writes the comparison as JSON and as a page.
 fn write_results(
-    arguments: &Arguments,
+    folder: &Path,
     comparison: &MethodComparison,
+    rerun: &str,
     units: &DisplayUnits,
 ) -> Result<(), Failure> {
-    if let Some(folder) = &arguments.out {
-        std::fs::create_dir_all(folder).map_err(|error| {
-            Failure::bench(format!("failed to create {}: {error}", folder.display()))
-        })?;
-        let json = serde_json::to_string_pretty(comparison)
-            .map_err(|error| Failure::bench(format!("failed to write compare.json: {error}")))?;
-        write(&folder.join("compare.json"), json + "\n")?;
-        let mut line = vec![
-            "octant".to_owned(),
-            "compare".to_owned(),
-            arguments.scenario.scenario.display().to_string(),
-        ];
-        for set in &arguments.scenario.set {
-            line.extend(["--set".to_owned(), format!("'{set}'")]);
-        }
-        if let Some(against) = &arguments.against {
-            line.extend(["--against".to_owned(), against.display().to_string()]);
-        }
-        line.extend(["--seeds".to_owned(), arguments.seeds.to_string()]);
-        let provenance = [("rerun".to_owned(), line.join(" "))];
-        let html = octant_report::compare::render(comparison, &provenance, units);
-        write(&folder.join("compare.html"), html)?;
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::bench(format!("failed to create {}: {error}", folder.display()))
+    })?;
+    let json = serde_json::to_string_pretty(comparison)
+        .map_err(|error| Failure::bench(format!("failed to write compare.json: {error}")))?;
+    write(&folder.join("compare.json"), json + "\n")?;
+    let provenance = [("rerun".to_owned(), rerun.to_owned())];
+    let html = octant_report::compare::render(comparison, &provenance, units);
+    write(&folder.join("compare.html"), html)
+}
+
+/// Returns the command line that makes the comparison again.
+fn rerun(arguments: &ScenarioArguments, against: Option<&Path>, seeds: u64) -> String {
+    let ScenarioArguments { scenario, set } = arguments;
+    let mut line = format!("octant compare {}", scenario.display());
+    for set in set {
+        line += &format!(" --set '{set}'");
     }
-    if arguments.json {
-        print_json(comparison)
-    } else {
-        print(&octant_report::compare::table(comparison, units))
+    if let Some(against) = against {
+        line += &format!(" --against {}", against.display());
     }
+    line + &format!(" --seeds {seeds}")
 }

@@ -41,7 +41,8 @@ pub(super) fn completions(
     mut command: clap::Command,
 ) -> Result<Verdict, Failure> {
     use clap_complete::Shell;
-    let shell = match arguments.shell {
+    let CompletionArguments { shell } = arguments;
+    let shell = match shell {
         CompletionShell::Bash => Shell::Bash,
         CompletionShell::Zsh => Shell::Zsh,
         CompletionShell::Fish => Shell::Fish,
@@ -56,7 +57,7 @@ pub(super) fn completions(
 /// Writes the manual pages.
 #[cfg(feature = "completions")]
 pub(super) fn man(arguments: &ManArguments, command: clap::Command) -> Result<Verdict, Failure> {
-    let folder = &arguments.folder;
+    let ManArguments { folder } = arguments;
     let failed = |error: std::io::Error| {
         Failure::bench(format!("failed to write manual pages into {}: {error}", folder.display()))
     };
@@ -80,7 +81,8 @@ pub(super) fn completions(
     arguments: &CompletionArguments,
     _: clap::Command,
 ) -> Result<Verdict, Failure> {
-    let shell = arguments.shell.to_possible_value();
+    let CompletionArguments { shell } = arguments;
+    let shell = shell.to_possible_value();
     let shell = shell.as_ref().map_or("this shell", |shell| shell.get_name());
     Err(missing(&format!("completions for {shell}")))
 }
@@ -88,5 +90,6 @@ pub(super) fn completions(
 /// Refuses: the program was built without manual pages.
 #[cfg(not(feature = "completions"))]
 pub(super) fn man(arguments: &ManArguments, _: clap::Command) -> Result<Verdict, Failure> {
-    Err(missing(&format!("the manual pages for {}", arguments.folder.display())))
+    let ManArguments { folder } = arguments;
+    Err(missing(&format!("the manual pages for {}", folder.display())))
 }

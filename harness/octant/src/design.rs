@@ -20,36 +20,67 @@ use octant_design::DesignSetup;
 use octant_design::report::SCHEMA;
 use octant_design::search::SearchProblem;
 use octant_requirements::Verdict;
-use options::{limits, measure, refuse_to_replace, rotations};
+use options::{limits, measure, refuse_to_replace, rotations, threads};
 use outcome::{Outcome, Report};
-use searched::{design, failed};
+use searched::{DesignWork, design, failed};
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    refuse_to_replace(arguments)?;
-    let duration = arguments.duration.as_ref();
+    let Arguments {
+        scenario: of_scenario,
+        minimise,
+        duration,
+        rotation: choice,
+        limits: of_limits,
+        seed,
+        effort,
+        jobs,
+        shortest,
+        continuous,
+        confirm: seeds,
+        confirm_rate,
+        confirm_attempts,
+        out,
+        state,
+        resume,
+        force,
+        json,
+    } = arguments;
+    if !force {
+        // The state that a search goes on from is replaced by its own.
+        refuse_to_replace(out.as_deref(), state.as_deref().filter(|_| !resume))?;
+    }
+    let duration = duration.as_ref();
     let more: Vec<String> =
         duration.map(|time| format!("procedure.calibration.duration={time}")).into_iter().collect();
-    let scenario = load(&arguments.scenario, &more)?;
+    let scenario = load(of_scenario, &more)?;
     let setup = DesignSetup::of(&scenario).map_err(failed)?;
-    let measure = measure(&arguments.minimise)?;
-    let runs = arguments.confirm.map(|seeds| Runs {
+    let measure = measure(minimise)?;
+    let work = DesignWork {
+        jobs: threads(*jobs),
+        effort: effort.work(),
+        shortest: *shortest,
+        continuous: *continuous,
+    };
+    let runs = seeds.map(|seeds| Runs {
         scenario: &scenario,
         setup: &setup,
         seeds,
-        arguments,
+        rate: confirm_rate,
+        attempts_max: *confirm_attempts,
+        file: &of_scenario.scenario,
+        work,
     });
     if let Some(runs) = &runs {
         runs.check()?;
     }
-    let limits = limits(arguments)?;
+    let limits = limits(of_limits)?;
     let mut outcomes = Vec::new();
-    let mut states = States::read(arguments.state.as_deref(), arguments.resume)?;
+    let mut states = States::read(state.as_deref(), *resume)?;
     watch_interrupts();
-    for rotation in rotations(arguments.rotation) {
-        let problem =
-            SearchProblem::new(setup.with_rotation(*rotation), measure, limits, arguments.seed)
-                .map_err(failed)?;
-        outcomes.push(design(arguments, &setup, &problem, *rotation, &mut states)?);
+    for rotation in rotations(*choice) {
+        let problem = SearchProblem::new(setup.with_rotation(*rotation), measure, limits, *seed)
+            .map_err(failed)?;
+        outcomes.push(design(work, &setup, &problem, *rotation, &mut states)?);
     }
     outcomes.sort_by(|a, b| {
         let of = |outcome: &Outcome| (outcome.design.duration_h, outcome.design.score);
@@ -60,9 +91,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         None => None,
     };
     let written = confirmation.as_ref().and_then(Confirmed::design).or(outcomes.first());
-    if let (Some(out), Some(best)) = (&arguments.out, written) {
+    if let (Some(out), Some(best)) = (out, written) {
         let said = confirmation.as_ref().map(|confirmation| confirmation.report.words());
-        write_scenario(&scenario, best, measure, arguments.seed, (out, said))?;
+        write_scenario(&scenario, best, measure, *seed, (out, said))?;
     }
     let confirmation = confirmation.map(|confirmation| confirmation.report);
     let verdict = match &confirmation {
@@ -76,14 +107,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         scenario: scenario.title.clone(),
         measure: measure.name(),
         unit: measure.unit(),
-        seed: arguments.seed,
+        seed: *seed,
         limits,
-        candidates: arguments.effort.work().candidates(),
+        candidates: work.effort.candidates(),
         designs: outcomes.into_iter().map(|outcome| outcome.design).collect(),
         shortest,
         confirmation,
     };
-    if arguments.json {
+    if *json {
         print_json(&report)?;
     } else {
         print(&text::of(&report, measure))?;

@@ -40,10 +40,10 @@ struct Measured {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let seconds = crate::arguments::seconds("--latency", &arguments.latency)?;
+    let Arguments { latency: given, json } = arguments;
+    let seconds = crate::arguments::seconds("--latency", given)?;
     if !(0.0..=3600.0).contains(&seconds) {
-        let found = &arguments.latency;
-        let message = format!("--latency: found {found:?}, expected a time from 0 s to 1 h");
+        let message = format!("--latency: found {given:?}, expected a time from 0 s to 1 h");
         return Err(Failure::input(message));
     }
     let findings = look();
@@ -66,7 +66,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
     }
     let diagnosis = Diagnosis { findings, latency };
-    if arguments.json {
+    if *json {
         print_json(&diagnosis)?;
     } else {
         print(&text(&diagnosis))?;

@@ -4,6 +4,7 @@ use crate::arguments::read_scenario;
 use crate::attendant::{Attendant, OperatorWays};
 use crate::failure::Failure;
 use crate::live::Live;
+use crate::power_facts::with_power;
 use crate::progress::Follower;
 use crate::run_folder::{free_name, in_the_way};
 use crate::source_uri::from_here;
@@ -13,7 +14,6 @@ use octant_evidence::signature::SigningKey;
 use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
 use octant_mapping::OpenedFmus;
 use octant_operator::OperatorRecord;
-use octant_recorder::event::PowerRecord;
 use octant_report as report;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
@@ -21,11 +21,10 @@ use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
 use octant_run::prepared::tasks;
-use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
+use octant_run::{Ended, MethodRun, Prepared, Run, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{FilePlaces, Scenario, SourceSpec};
 use octant_score::junit::junit;
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -348,10 +347,7 @@ pub(crate) fn execute(
     let runs =
         follower.follow(prepared.controls(), prepared.epochs(), sample_s, || prepared.run(folder));
     runs.map_err(|error| {
-        let failure = match error {
-            PreparedError::Method(error) => Failure::from(error),
-            PreparedError::Panicked => Failure::bench(error),
-        };
+        let failure = Failure::of(&error);
         let place = folder.display();
         let message = format!("failed to {}; the recorded part is in {place}", failure.message);
         Failure { message, ..failure }
@@ -408,42 +404,61 @@ fn write_results(
 }
 
 /// Returns the command line that makes the run again, with the seed that was used.
-fn rerun(request: &RunRequest, seed: u64) -> Vec<String> {
-    if let Some(call) = &request.call {
+fn rerun(request: &RunRequest, used_seed: u64) -> Vec<String> {
+    let RunRequest {
+        scenario,
+        places: _,
+        text: _,
+        set,
+        // Where the evidence and the summary go makes no other run; nor does a seed that wasn't given.
+        out: _,
+        force: _,
+        seed: _,
+        source,
+        endpoint,
+        fire,
+        only_faults,
+        planned_faults: _,
+        require,
+        realtime,
+        no_twin,
+        live: _,
+        json: _,
+        call,
+        operator: OperatorWays { attended: _, elsewhere: _, answers, page: _ },
+    } = request;
+    if let Some(call) = call {
         return call.clone();
     }
-    let mut line =
-        vec!["octant".to_owned(), "run".to_owned(), request.scenario.display().to_string()];
-    for set in &request.set {
+    let mut line = vec!["octant".to_owned(), "run".to_owned(), scenario.display().to_string()];
+    for set in set {
         line.extend(["--set".to_owned(), set.clone()]);
     }
-    for (name, uri) in [("--source", &request.source), ("--endpoint", &request.endpoint)] {
+    for (name, uri) in [("--source", source), ("--endpoint", endpoint)] {
         if let Some(uri) = uri {
             line.extend([name.to_owned(), uri.clone()]);
         }
     }
-    for fire in &request.fire {
+    for fire in fire {
         line.extend(["--fire".to_owned(), fire.clone()]);
     }
-    if let Some(faults) = &request.only_faults {
+    if let Some(faults) = only_faults {
         line.push(format!("--only-faults={}", faults.join(",")));
     }
-    if request.require {
-        line.push("--require".to_owned());
+    for (name, is_given) in [
+        ("--require", *require),
+        ("--realtime", *realtime),
+        ("--stop-when-lost", *stop_when_lost),
+        ("--no-twin", *no_twin),
+    ] {
+        if is_given {
+            line.push(name.to_owned());
+        }
     }
-    if request.realtime {
-        line.push("--realtime".to_owned());
-    }
-    if request.stop_when_lost {
-        line.push("--stop-when-lost".to_owned());
-    }
-    if request.no_twin {
-        line.push("--no-twin".to_owned());
-    }
-    if let Some(answers) = &request.operator.answers {
+    if let Some(answers) = answers {
         line.extend(["--answers".to_owned(), answers.display().to_string()]);
     }
-    line.extend(["--seed".to_owned(), seed.to_string()]);
+    line.extend(["--seed".to_owned(), used_seed.to_string()]);
     line
 }
 
@@ -489,24 +504,4 @@ pub(crate) fn case(
         require: true,
         ..RunRequest::default()
     })
-}
-
-/// Adds the power of the device to what the manifest tells of the bench.
-fn with_power(bench: Option<Value>, power: Option<&PowerRecord>) -> Option<Value> {
-    let Some(power) = power else { return bench };
-    let mut bench = match bench {
-        Some(Value::Object(bench)) => bench,
-        _ => serde_json::Map::new(),
-    };
-    let end = power.end.map_or("in an unknown state", |end| if end.on { "on" } else { "off" });
-    let text = format!(
-        "{} ({}, {}), switched {} times, left {end}",
-        power.identity,
-        power.port,
-        power.outlet,
-        power.switchings.len()
-    );
-    bench.insert("power of the device".to_owned(), Value::String(text));
-    bench.insert("power".to_owned(), serde_json::to_value(power).unwrap_or_default());
-    Some(Value::Object(bench))
 }

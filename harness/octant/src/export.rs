@@ -37,23 +37,22 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let format = format(&arguments.to)?;
-    let tables = tables(arguments, format)?;
-    let every_ns = arguments.every.as_deref().map(period_ns).transpose()?;
+    let Arguments { run, to, tables: names, every, out, force } = arguments;
+    let format = format(to)?;
+    let tables = tables(names, format)?;
+    let every_ns = every.as_deref().map(period_ns).transpose()?;
     let failed = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
-    let place = RunPlace::of(&arguments.run).map_err(|error| failed(&error))?;
+    let place = RunPlace::of(run).map_err(|error| failed(&error))?;
     let recording = place.recording().ok_or_else(|| {
         Failure::input(format!(
             "failed to export {}: its run is starting, there is no recording yet",
-            arguments.run.display()
+            run.display()
         ))
     })?;
-    let out = arguments.out.clone().unwrap_or_else(|| default_out(&place, &recording, format));
+    let out = out.clone().unwrap_or_else(|| default_out(&place, &recording, format));
     let choice = ExportChoice { true_parameters: truth(&recording)?, recording, tables, every_ns };
-    let exported = export(&choice, format, &out, arguments.force).map_err(|error| {
-        let message = format!("failed to {error}");
-        if error.is_input() { Failure::input(message) } else { Failure::bench(message) }
-    })?;
+    let exported =
+        export(&choice, format, &out, *force).map_err(|error| Failure::of(&error).failed())?;
     for words in &exported.notes {
         note!("octant: {}: {words}", choice.recording.display());
     }
@@ -71,9 +70,9 @@ fn format(name: &str) -> Result<ExportFormat, Failure> {
 }
 
 /// Returns the chosen tables in their order; for formats without tables what they are made from.
-fn tables(arguments: &Arguments, format: ExportFormat) -> Result<Vec<ExportTable>, Failure> {
+fn tables(names: &[String], format: ExportFormat) -> Result<Vec<ExportTable>, Failure> {
     if !format.has_tables() {
-        if !arguments.tables.is_empty() {
+        if !names.is_empty() {
             return Err(Failure::input(format!(
                 "--tables: {} has no tables, expected with --to csv, parquet or mat",
                 format.name()
@@ -82,7 +81,7 @@ fn tables(arguments: &Arguments, format: ExportFormat) -> Result<Vec<ExportTable
         return Ok(vec![ExportTable::Navigation]);
     }
     let mut chosen = Vec::new();
-    for name in &arguments.tables {
+    for name in names {
         let name = name.trim();
         chosen.push(ExportTable::from_name(name).ok_or_else(|| {
             let known = ExportTable::ALL.iter().map(|table| table.name());

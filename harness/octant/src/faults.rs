@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::fault_words::{acts, lasts};
+use crate::given::GivenOptions;
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
 use octant_base::names::suggestion;
@@ -47,8 +48,9 @@ enum Command {
     Minimise(super::minimise::Arguments),
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { command } = arguments;
+    match command {
         Command::List { json: true } => {
             let on_connections = connection::KINDS.iter().map(|kind| Row::of_connection(kind));
             print_json(&List { kinds: kinds::all().map(Row::of).chain(on_connections).collect() })?
@@ -56,12 +58,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::List { json: false } => print(&list())?,
         Command::Describe { kind: name, markdown, picture } => {
             if let Some(kind) = connection::named(name) {
-                if *markdown || picture.is_some() {
-                    return Err(Failure::input(format!(
-                        "{name} is a fault on connections, which has neither a page of its own \
-                         nor a picture: see docs/co-simulation.md"
-                    )));
-                }
+                given.refuse_ids(
+                    &["markdown", "picture"],
+                    format!(
+                        "found {name}, a fault on connections, which has neither a page of its own nor a picture: \
+                         see docs/co-simulation.md"
+                    ),
+                )?;
                 print(&describe(&Page::of_connection(kind)))?;
                 return Ok(Verdict::Pass);
             }
@@ -82,7 +85,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             })?;
         }
         Command::Sweep(arguments) => return super::sweep::command(arguments),
-        Command::Search(arguments) => return super::search::command(arguments),
+        Command::Search(arguments) => return super::search::command(arguments, given),
         Command::Minimise(arguments) => return super::minimise::command(arguments),
     }
     Ok(Verdict::Pass)

@@ -30,10 +30,8 @@ mod with_server {
     const LOOK: Duration = Duration::from_millis(100);
 
     fn start(address: &str) -> Result<FoxgloveServer, Failure> {
-        let server = FoxgloveServer::start(address).map_err(|error: FoxgloveServeError| {
-            let message = format!("failed to {error}");
-            if error.is_bench() { Failure::bench(message) } else { Failure::input(message) }
-        })?;
+        let server = FoxgloveServer::start(address)
+            .map_err(|error: FoxgloveServeError| Failure::of(&error).failed())?;
         let host = address.rsplit_once(':').map_or(address, |(host, _)| host);
         note!("octant: serving to Foxglove at ws://{host}:{}", server.port());
         Ok(server)

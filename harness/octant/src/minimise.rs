@@ -80,17 +80,18 @@ struct Minimised {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = arguments.run.join("scenario.toml");
+    let Arguments { run: stored, requirement, out, json } = arguments;
+    let path = stored.join("scenario.toml");
     let scenario = Scenario::load(&path, &[]).map_err(Failure::input)?;
-    let summary = summary_of(&arguments.run)?;
+    let summary = summary_of(stored)?;
     let ids: Vec<String> = scenario.faults.iter().map(|f| f.spec.id.clone()).collect();
     if ids.is_empty() {
         return Err(Failure::input(format!(
             "failed to minimise {}: its scenario has no faults",
-            arguments.run.display()
+            stored.display()
         )));
     }
-    let broken = what_broke(arguments, &summary)?;
+    let broken = what_broke(stored, requirement.as_deref(), &summary)?;
     let seed = summary.seed;
     // At most two to the power of the number of faults can be tried; delta debugging needs far
     // fewer.
@@ -107,7 +108,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let whole = trail.first().is_some_and(|step| step.outcome == SetOutcome::Breaks);
         return Err(Failure::input(format!(
             "failed to minimise {}: {} {}",
-            arguments.run.display(),
+            stored.display(),
             broken.words(),
             if whole {
                 "without any fault too: no fault is the cause"
@@ -126,10 +127,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         faults: ids,
         trail,
     };
-    let folder = arguments.out.as_deref().unwrap_or(&arguments.run);
+    let folder = out.as_deref().unwrap_or(stored);
     let smallest = scenario.with_faults(|i| minimal.contains(&i));
     write_results(folder, &smallest.to_resolved_toml(seed, &draws), &result)?;
-    if arguments.json {
+    if *json {
         print_json(&result)?
     } else {
         print(&text(&result, folder))?
@@ -228,11 +229,11 @@ fn summary_of(run: &Path) -> Result<Summary, Failure> {
     })
 }
 
-fn what_broke(arguments: &Arguments, summary: &Summary) -> Result<Broken, Failure> {
-    let run = arguments.run.display();
-    if let Some(id) = &arguments.requirement {
-        let broken = Broken::Requirement(id.clone());
-        return match summary.requirements.iter().find(|r| r.id == *id) {
+fn what_broke(run: &Path, requirement: Option<&str>, summary: &Summary) -> Result<Broken, Failure> {
+    let run = run.display();
+    if let Some(id) = requirement {
+        let broken = Broken::Requirement(id.to_owned());
+        return match summary.requirements.iter().find(|r| r.id == id) {
             Some(_) if broken.holds(summary) => Ok(broken),
             Some(found) => Err(Failure::input(format!(
                 "failed to minimise {run}: found requirement {id} with the verdict {}, expected fail",

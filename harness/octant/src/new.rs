@@ -74,15 +74,26 @@ pub struct NewAnswers {
 }
 
 pub(super) fn command(arguments: &NewArguments) -> Result<Verdict, Failure> {
-    let file = &arguments.file;
-    if file.exists() && !arguments.force {
+    // The others are answers.
+    let NewArguments {
+        file,
+        instrument: _,
+        motion: _,
+        positions: _,
+        calibration: _,
+        navigation: _,
+        limit: _,
+        title: _,
+        defaults,
+        force,
+    } = arguments;
+    if file.exists() && !force {
         return Err(Failure::input(format!(
             "found {} already, expected the name of a new file; --force replaces it",
             file.display()
         )));
     }
-    let asks =
-        !arguments.defaults && std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
+    let asks = !defaults && std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
     let answers = answers(arguments, asks.then(|| std::io::stdin().lock()))?;
     let text = scenario(&answers);
     // The text is checked as `octant run` will check it.
@@ -102,23 +113,35 @@ pub fn answers(
     arguments: &NewArguments,
     mut input: Option<impl BufRead>,
 ) -> Result<NewAnswers, Failure> {
+    let NewArguments {
+        file,
+        instrument,
+        motion,
+        positions,
+        calibration,
+        navigation,
+        limit,
+        title,
+        // The caller's.
+        defaults: _,
+        force: _,
+    } = arguments;
     let mut text = |name: &str, given: &Option<String>, default: &str| match given {
         Some(given) => Ok(given.clone()),
         None => ask(input.as_mut(), name, default, |text| Ok::<_, String>(text.to_owned())),
     };
-    let stem = arguments.file.file_stem().map_or("new".into(), |stem| stem.to_string_lossy());
-    let title = text("title", &arguments.title, &stem)?;
-    let positions =
-        text("position sequence (six, eight, twelve, ...)", &arguments.positions, "eight")?;
-    let calibration = text("duration of the calibration", &arguments.calibration, "4 h")?;
-    let navigation = text("duration of the navigation", &arguments.navigation, "24 h")?;
-    let limit = text("limit of the radial error, or none", &arguments.limit, "none")?;
-    let instrument = match arguments.instrument {
-        Some(grade) => grade,
+    let stem = file.file_stem().map_or("new".into(), |stem| stem.to_string_lossy());
+    let title = text("title", title, &stem)?;
+    let positions = text("position sequence (six, eight, twelve, ...)", positions, "eight")?;
+    let calibration = text("duration of the calibration", calibration, "4 h")?;
+    let navigation = text("duration of the navigation", navigation, "24 h")?;
+    let limit = text("limit of the radial error, or none", limit, "none")?;
+    let instrument = match instrument {
+        Some(grade) => *grade,
         None => ask(input.as_mut(), &choice::<InstrumentGrade>("instrument"), "table-1", named)?,
     };
-    let motion = match arguments.motion {
-        Some(motion) => motion,
+    let motion = match motion {
+        Some(motion) => *motion,
         None => ask(input.as_mut(), &choice::<NewMotion>("motion"), "static", named)?,
     };
     let limit = Some(limit).filter(|limit| limit != "none");

@@ -62,10 +62,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
     /// Probability of a false alarm: of reporting any change where there is none, over all measures.
-    #[arg(long, value_name = "P", default_value = "0.05", value_parser = fraction)]
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = fraction, conflicts_with = "first")]
     alpha: f64,
     /// Smallest change of a mean that counts, as a fraction of the baseline's root mean square.
-    #[arg(long, value_name = "PART", default_value = "0.01", value_parser = fraction)]
+    #[arg(long, value_name = "PART", default_value = "0.01", value_parser = fraction, conflicts_with = "first")]
     least: f64,
     /// Units of errors in trend.html, instead of the scenarios': of attitude (arcmin, deg, arcsec, mrad) and
     /// velocity (m/s, kn, cm/s), such as deg,kn. Position errors stay in arcmin.
@@ -110,32 +110,46 @@ struct Inputs {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+    let Arguments {
+        command,
+        campaigns,
+        suite,
+        history,
+        first,
+        accept,
+        out,
+        jobs,
+        alpha,
+        least,
+        units,
+        json: as_json,
+    } = arguments;
+    match command {
         Some(Command::Accept { night, history, units }) => {
             return accepted(history, night.as_deref(), chosen(*units)?);
         }
         Some(Command::Cases) => return cases(),
         None => {}
     }
-    let Some(history) = &arguments.history else {
+    let Some(history) = history else {
         return Err(Failure::input("--history is missing"));
     };
-    if arguments.campaigns.is_empty() && arguments.suite.is_none() {
+    if campaigns.is_empty() && suite.is_none() {
         return Err(Failure::input("found neither a campaign nor --suite, expected one or both"));
     }
-    let units = chosen(arguments.units)?;
+    let units = chosen(*units)?;
     watch_interrupts();
     // Inputs that can't be compared or stored are reported before anything runs.
     let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
     let baseline = accept::read(history).map_err(Failure::input)?;
-    if let (true, Some(baseline)) = (arguments.first, &baseline) {
+    if let (true, Some(baseline)) = (*first, &baseline) {
         return Err(Failure::input(format!(
             "found a baseline, night {}, in {}: --first is for a history without one, --accept replaces it",
             baseline.accepted.night,
             history.display()
         )));
     }
-    let inputs = inputs(arguments)?;
+    let inputs = inputs(campaigns, suite.as_deref(), *jobs)?;
     let mut night = begin(history, &inputs, &all)?;
     let folder = night::nights(history).join(&night.id);
     if !run_all(&inputs, &mut night, &folder, interrupt::flag())? {
@@ -144,7 +158,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     night.ended = Some(octant_base::utc::seconds(SystemTime::now()));
     let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
-    let limits = ChangeThresholds { alpha: arguments.alpha, least: arguments.least };
+    let limits = ChangeThresholds { alpha: *alpha, least: *least };
     let rerun = |campaign: &str, case: &str| {
         format!("octant campaign case {} {case}", folder.join(campaign).display())
     };
@@ -154,7 +168,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     };
     let comparison = baseline.as_ref().map(against);
     let before = baseline.as_ref().map(|b| &b.night);
-    let report = NightReport::new(&night, before, comparison, arguments.first);
+    let report = NightReport::new(&night, before, comparison, *first);
     all.put(&night, report.verdict.name(), &rows, report.comparison.as_ref());
     all.write(history).map_err(|error| Failure::bench(error).failed())?;
     let json = report.to_json().map_err(|error| Failure::bench(error).failed())?;
@@ -164,14 +178,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     night.write(&folder).map_err(Failure::bench)?;
     let mut name = baseline.map(|baseline| baseline.accepted.night);
     // A first night that fails by itself doesn't become the baseline.
-    let accepts = arguments.accept || (arguments.first && report.verdict == Verdict::Pass);
+    let accepts = *accept || (*first && report.verdict == Verdict::Pass);
     if accepts {
         accept_night(history, &night.id, operator()).map_err(Failure::bench)?;
         name = Some(night.id.clone());
     }
     let page = trend::render(&all, name.as_deref(), &TrendUnits::read(history, &all, units));
     write(&history.join("trend.html"), &page)?;
-    if let Some(out) = &arguments.out {
+    if let Some(out) = out {
         std::fs::create_dir_all(out).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", out.display()))
         })?;
@@ -194,7 +208,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         folder.join("nightly.md").display(),
         history.join("trend.html").display()
     );
-    print(if arguments.json { &json } else { &text })?;
+    print(if *as_json { &json } else { &text })?;
     Ok(report.verdict)
 }
 
@@ -230,9 +244,13 @@ fn accepted(history: &Path, night: Option<&str>, units: UnitChoice) -> Result<Ve
     Ok(Verdict::Pass)
 }
 
-fn inputs(arguments: &Arguments) -> Result<Inputs, Failure> {
+fn inputs(
+    campaigns: &[PathBuf],
+    suite: Option<&Path>,
+    jobs: Option<u16>,
+) -> Result<Inputs, Failure> {
     let mut plans: Vec<(String, Plan)> = Vec::new();
-    for path in &arguments.campaigns {
+    for path in campaigns {
         let plan = Plan::of(path)?;
         let stem = path.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
         if plans.iter().any(|(name, _)| *name == stem) || stem == "suite" {
@@ -244,12 +262,12 @@ fn inputs(arguments: &Arguments) -> Result<Inputs, Failure> {
         }
         plans.push((stem.into_owned(), plan));
     }
-    let suite = arguments.suite.as_deref().map(Suite::load).transpose().map_err(Failure::input)?;
+    let suite = suite.map(Suite::load).transpose().map_err(Failure::input)?;
     let suite_blake3 = suite.as_ref().map(suite::hash).transpose().map_err(Failure::input)?;
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let jobs = jobs.map_or_else(processors, usize::from);
     Ok(Inputs { suite, suite_blake3, plans, program, jobs })
 }
 

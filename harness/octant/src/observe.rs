@@ -40,9 +40,9 @@ pub(super) struct Arguments {
     protection: bool,
     /// Units of errors in the tables: of position (arcmin, nmi, m, km), attitude (arcmin, deg, arcsec,
     /// mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
-    #[arg(long, value_name = "UNIT,UNIT")]
+    #[arg(long, value_name = "UNIT,UNIT", conflicts_with = "json")]
     units: Option<UnitChoice>,
-    /// Print one JSON object.
+    /// Print one JSON object, in units of its own.
     #[arg(long)]
     json: bool,
 }
@@ -81,26 +81,30 @@ struct DriftRow {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if arguments.ensemble {
-        return ensemble::command(
-            &arguments.scenario,
-            arguments.against.as_deref(),
-            arguments.units.unwrap_or_default(),
-            arguments.json,
-        );
+    let Arguments {
+        scenario: given,
+        ensemble: as_ensemble,
+        against,
+        protection: as_protection,
+        units,
+        json,
+    } = arguments;
+    let units = units.unwrap_or_default();
+    if *as_ensemble {
+        return ensemble::command(given, against.as_deref(), units, *json);
     }
-    if arguments.protection {
-        return protection::command(&arguments.scenario, arguments.json);
+    if *as_protection {
+        return protection::command(given, *json);
     }
-    let scenario = load(&arguments.scenario, &[])?;
+    let scenario = load(given, &[])?;
     let methods = std::iter::once(Method::Primary)
         .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
     let observations =
         methods.map(|method| observe(&scenario, method)).collect::<Result<Vec<_>, _>>()?;
-    if arguments.json {
+    if *json {
         print_json(&observations)?;
     } else {
-        let units = scenario.display.with(arguments.units.unwrap_or_default());
+        let units = scenario.display.with(units);
         for observation in &observations {
             print(&text(observation, &units))?;
         }

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::operator_terminal::operator_name;
 use crate::terminal::{note, print};
 use clap::{Args, Subcommand};
-use octant_operator::mailbox::{self, DeskReply, DeskRequest, MailboxError};
+use octant_base::failing::{Failing, FailureKind};
+use octant_operator::mailbox::{self, DeskReply, DeskRequest};
 use octant_operator::{OperatorAct, journal};
 use octant_requirements::Verdict;
 use octant_watch::place::RunPlace;
@@ -69,7 +70,8 @@ struct OfRun {
 
 impl Who {
     fn name(&self) -> Result<String, Failure> {
-        let given = self.by.clone().filter(|name| !name.trim().is_empty());
+        let Self { by } = self;
+        let given = by.clone().filter(|name| !name.trim().is_empty());
         given.or_else(operator_name).ok_or_else(|| {
             Failure::input("--by: expected the name of who answers, or a value of OCTANT_OPERATOR")
         })
@@ -83,10 +85,17 @@ pub(super) fn answer(arguments: &AnswerArguments) -> Result<Verdict, Failure> {
 }
 
 pub(super) fn command(arguments: &OperatorArguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
-        OperatorCommand::Hold(of) => send(&of.run, &DeskRequest::Hold { by: of.who.name()? }),
-        OperatorCommand::Resume(of) => send(&of.run, &DeskRequest::Resume { by: of.who.name()? }),
-        OperatorCommand::Abort(of) => send(&of.run, &DeskRequest::Abort { by: of.who.name()? }),
+    let OperatorArguments { command } = arguments;
+    match command {
+        OperatorCommand::Hold(OfRun { run, who }) => {
+            send(run, &DeskRequest::Hold { by: who.name()? })
+        }
+        OperatorCommand::Resume(OfRun { run, who }) => {
+            send(run, &DeskRequest::Resume { by: who.name()? })
+        }
+        OperatorCommand::Abort(OfRun { run, who }) => {
+            send(run, &DeskRequest::Abort { by: who.name()? })
+        }
         OperatorCommand::Status { run } => status(run),
     }
 }
@@ -115,8 +124,10 @@ fn send(run: &Path, request: &DeskRequest) -> Result<Verdict, Failure> {
             Ok(Verdict::Pass)
         }
         Ok(DeskReply::Refused(reason)) => Err(Failure::input(format!("not taken: {reason}"))),
-        Err(error @ MailboxError::Nobody(_)) => Err(Failure::input(error)),
-        Err(error) => Err(Failure::bench(format!("failed to ask: {error}"))),
+        Err(error) => Err(match error.kind() {
+            FailureKind::Input => Failure::input(error),
+            kind => Failure::of_kind(kind, format!("failed to ask: {error}")),
+        }),
     }
 }
 

@@ -1,8 +1,10 @@
 //! `octant power`: looks at a supply or a relay and switches it by hand.
 
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::terminal::{print, print_json};
 use clap::{Args, Subcommand};
+use octant_base::failing::{Failing, FailureKind};
 use octant_power::{Outlet, PowerError, PowerOutlet, PowerPlan, PowerReading, SupplySetting};
 use octant_requirements::Verdict;
 use octant_scenario::{Scenario, UnitDimension, quantity_of};
@@ -20,6 +22,18 @@ pub(super) struct Arguments {
         )
     )]
     port: String,
+    #[command(flatten)]
+    of_port: PortArguments,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    #[command(subcommand)]
+    action: Action,
+}
+
+/// What the `[power]` of a scenario says, for a port.
+#[derive(Debug, Args)]
+struct PortArguments {
     /// Channel of the supply.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     channel: Option<u32>,
@@ -32,11 +46,6 @@ pub(super) struct Arguments {
     /// Send SYST:REM first, which some supplies need on a serial line.
     #[arg(long)]
     remote: bool,
-    /// Print one JSON object.
-    #[arg(long)]
-    json: bool,
-    #[command(subcommand)]
-    action: Action,
 }
 
 #[derive(Debug, Subcommand)]
@@ -61,9 +70,9 @@ enum Action {
 }
 
 fn failure(error: &PowerError) -> Failure {
-    match error {
-        PowerError::Address(_) | PowerError::Relay { .. } => Failure::input(error),
-        _ => Failure::bench(format!("failed to reach the power: {error}")),
+    match error.kind() {
+        FailureKind::Input => Failure::input(error),
+        kind => Failure::of_kind(kind, format!("failed to reach the power: {error}")),
     }
 }
 
@@ -79,37 +88,39 @@ fn quantity(name: &str, text: &str, dimension: UnitDimension) -> Result<f64, Fai
 }
 
 /// Returns the plan of an output, and whether its settings are known.
-fn plan(arguments: &Arguments) -> Result<(PowerPlan, bool), Failure> {
-    let port = &arguments.port;
+fn plan(
+    port: &str,
+    arguments: &PortArguments,
+    given: &GivenOptions,
+) -> Result<(PowerPlan, bool), Failure> {
+    let PortArguments { channel, relay, reply, remote } = arguments;
     if !port.starts_with("tcp:") && !port.starts_with("serial:") && Path::new(port).is_file() {
-        if arguments.channel.is_some() || arguments.relay.is_some() || arguments.remote {
-            return Err(Failure::input(format!(
-                "found --channel, --relay or --remote beside {port}, whose [power] says it, expected none of them"
-            )));
-        }
+        given.refuse::<PortArguments>(format!(
+            "found the scenario {port}, whose [power] says it, expected no such option, or a port"
+        ))?;
         let scenario = Scenario::load(Path::new(port), &[]).map_err(Failure::input)?;
         let plan = scenario.power.clone();
         let plan = plan.ok_or_else(|| Failure::input(format!("{port}: found no [power]")))?;
         return Ok((plan, true));
     }
     octant_power::check_power_port(port).map_err(Failure::input)?;
-    let outlet = match arguments.relay {
-        Some(relay) => Outlet::Relay(relay),
+    let outlet = match relay {
+        Some(relay) => Outlet::Relay(*relay),
         // Without settings no voltage is set or waited for.
         None => Outlet::Supply(SupplySetting {
-            channel: arguments.channel,
+            channel: *channel,
             voltage_v: 0.0,
             current_limit_a: 0.0,
             tolerance: f64::INFINITY,
         }),
     };
-    let reply = quantity("--reply", &arguments.reply, UnitDimension::TIME)?;
+    let reply = quantity("--reply", reply, UnitDimension::TIME)?;
     let plan = PowerPlan {
-        port: port.clone(),
+        port: port.to_owned(),
         outlet,
         reply: Duration::from_secs_f64(reply.min(3600.0)),
         settle: Duration::from_secs(2),
-        remote: arguments.remote,
+        remote: *remote,
         rest: Duration::ZERO,
         lead: Duration::ZERO,
         end_on: false,
@@ -142,11 +153,12 @@ fn told(outlet: &mut PowerOutlet, as_json: bool) -> Result<(), Failure> {
     print(&(text + "\n"))
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let (plan, has_settings) = plan(arguments)?;
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { port, of_port, json, action } = arguments;
+    let (plan, has_settings) = plan(port, of_port, given)?;
     let bench = |error: PowerError| failure(&error);
     // Impossible requests are refused before the port is opened.
-    let set = match &arguments.action {
+    let set = match action {
         Action::Set { voltage, current_limit } => {
             if matches!(plan.outlet, Outlet::Relay(_)) {
                 return Err(failure(&PowerError::Relay { port: plan.port }));
@@ -166,7 +178,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         _ => (None, None),
     };
     let mut outlet = PowerOutlet::open(&plan).map_err(bench)?;
-    match &arguments.action {
+    match action {
         Action::Status => {}
         Action::On => {
             if has_settings {
@@ -175,9 +187,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             outlet.switch(true, None).map_err(bench)?;
         }
         Action::Off => outlet.switch(false, None).map_err(bench)?,
-        Action::Set { .. } => outlet.set_some(set.0, set.1).map_err(bench)?,
+        // Read before the port was opened.
+        Action::Set { voltage: _, current_limit: _ } => {
+            outlet.set_some(set.0, set.1).map_err(bench)?
+        }
         Action::Reset => outlet.dialogue().command("*RST").map_err(bench)?,
     }
-    told(&mut outlet, arguments.json)?;
+    told(&mut outlet, *json)?;
     Ok(Verdict::Pass)
 }

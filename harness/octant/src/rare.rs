@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
+use octant_base::failing::Failing;
 use octant_base::pool::processors;
 use octant_rare::estimate::RarePlan;
 use octant_rare_runs::error::RareError;
@@ -19,7 +20,7 @@ use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_score::numerics::NUMERICS;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -86,38 +87,50 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     interruptible(|control| estimated(arguments, &scenario, control))
 }
 
-fn plan(arguments: &Arguments) -> RarePlan {
-    RarePlan {
-        error: arguments.error,
-        confidence: arguments.confidence,
-        seed: arguments.seed,
-        ..RarePlan::of_runs(arguments.runs as usize)
-    }
-}
-
 fn estimated(
     arguments: &Arguments,
     scenario: &Scenario,
     control: &Control,
 ) -> Result<Verdict, Failure> {
-    let plan = plan(arguments);
-    let jobs = arguments.jobs.map_or_else(processors, usize::from);
-    let names = parameters(&arguments.parameters).map_err(of_error)?;
-    let of = match arguments.protection {
-        None => Some(requirement(scenario, arguments.requirement.as_deref()).map_err(of_error)?),
+    let Arguments {
+        // The caller has read it.
+        scenario: _,
+        requirement: id,
+        below,
+        count_refused,
+        protection: risk,
+        parameters: names,
+        runs,
+        error,
+        confidence,
+        seed,
+        jobs,
+        out,
+        json,
+    } = arguments;
+    let plan = RarePlan {
+        error: *error,
+        confidence: *confidence,
+        seed: *seed,
+        ..RarePlan::of_runs(*runs as usize)
+    };
+    let jobs = jobs.map_or_else(processors, usize::from);
+    let names = parameters(names).map_err(of_error)?;
+    let of = match risk {
+        None => Some(requirement(scenario, id.as_deref()).map_err(of_error)?),
         Some(_) => None,
     };
     let subject = match of {
         Some(of) => RareSubject::Requirement(of.check.id.clone()),
         None => RareSubject::Calibration,
     };
-    let severity = SeverityOf::Margin(arguments.count_refused);
+    let severity = SeverityOf::Margin(*count_refused);
     let total = plan.runs * if of.is_some() { 1 } else { names.len() };
     let bar = CaseBar::new("rare", total, jobs, true);
     let tell = || bar.ended(None, false);
     let mut runs = RareRuns::new(scenario, subject.clone(), severity, jobs, control, &tell)
         .map_err(of_error)?;
-    if let Some(folder) = &arguments.out {
+    if let Some(folder) = out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))
         })?;
@@ -125,21 +138,19 @@ fn estimated(
         runs.resume(&folder.join("rare.jsonl"), &identity).map_err(of_error)?;
     }
     let name = |_: usize| String::new();
-    match (of, arguments.protection) {
+    match (of, *risk) {
         (Some(of), _) => {
-            let asked = (arguments.below, arguments.count_refused);
+            let asked = (*below, *count_refused);
             let work = || failure(&mut runs, scenario, of, &plan, asked);
             let (found, failing) = bar.during(&name, work).map_err(of_error)?;
-            tell_result(arguments, &found, &found.text())?;
-            let (Some(folder), Some(text), Some(run)) =
-                (&arguments.out, failing, &found.most_probable)
-            else {
+            tell_result((out.as_deref(), *json), &found, &found.text())?;
+            let (Some(folder), Some(text), Some(run)) = (out, failing, &found.most_probable) else {
                 return Ok(found.verdict);
             };
             let file = folder.join("failing.toml");
             let seed = run.seed;
             write(&file, text)?;
-            if !arguments.json {
+            if !json {
                 print(&format!("octant run {} --seed {seed}\n", file.display()))?;
             }
             Ok(found.verdict)
@@ -148,19 +159,23 @@ fn estimated(
             let risk = risk.map_or_else(|| probability(RISK), Ok).map_err(Failure::input)?;
             let work = || protection(&mut runs, scenario, &names, risk, &plan);
             let found = bar.during(&name, work).map_err(of_error)?;
-            tell_result(arguments, &found, &found.text())?;
+            tell_result((out.as_deref(), *json), &found, &found.text())?;
             Ok(found.verdict)
         }
     }
 }
 
-fn tell_result(arguments: &Arguments, found: &impl Serialize, text: &str) -> Result<(), Failure> {
-    if let Some(folder) = &arguments.out {
-        let json = serde_json::to_string_pretty(found)
+fn tell_result(
+    (out, json): (Option<&Path>, bool),
+    found: &impl Serialize,
+    text: &str,
+) -> Result<(), Failure> {
+    if let Some(folder) = out {
+        let text = serde_json::to_string_pretty(found)
             .map_err(|error| Failure::bench(format!("failed to write rare.json: {error}")))?;
-        write(&folder.join("rare.json"), json + "\n")?;
+        write(&folder.join("rare.json"), text + "\n")?;
     }
-    if arguments.json { print_json(found) } else { print(text) }
+    if json { print_json(found) } else { print(text) }
 }
 
 fn identity(
@@ -185,18 +200,5 @@ fn identity(
 }
 
 fn of_error(error: RareError) -> Failure {
-    let message = format!("failed to estimate: {error}");
-    match error {
-        RareError::Cancelled => Failure { status: Verdict::Inconclusive.exit_code(), message },
-        RareError::Journal { .. } | RareError::Differs(_) => Failure::bench(message),
-        RareError::NoRequirement { .. }
-        | RareError::NothingRequired
-        | RareError::Several(..)
-        | RareError::NotSimulated
-        | RareError::ByClock
-        | RareError::Attended(_)
-        | RareError::NoCalibration
-        | RareError::NoParameter { .. }
-        | RareError::OtherEstimate { .. } => Failure::input(message),
-    }
+    Failure::of_kind(error.kind(), format!("failed to estimate: {error}"))
 }

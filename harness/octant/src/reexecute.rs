@@ -34,6 +34,20 @@ impl Count {
             _ => Err(format!("found {text:?}, expected a number of cases or all")),
         }
     }
+
+    /// Refuses options of a campaign for a run, which has no cases to draw.
+    pub(super) fn refuse_for_run(self, folder: &Path, seed: Option<u64>) -> Result<(), Failure> {
+        let option = match (self.0, seed) {
+            (Some(count), _) => format!("--reexecute {count}"),
+            (None, Some(seed)) => format!("--sample-seed {seed}"),
+            (None, None) => return Ok(()),
+        };
+        Err(Failure::input(format!(
+            "{option}: found {}, the folder of a run, expected a campaign: a run has no cases to draw, and --reexecute \
+             runs it again as a whole",
+            folder.display()
+        )))
+    }
 }
 
 /// Result of the re-execution.

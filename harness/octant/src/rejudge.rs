@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json, write};
 use clap::Args;
-use octant_rejudge::{self, RejudgeError};
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
@@ -21,14 +20,14 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let Arguments { folder: given, out, json } = arguments;
     let failed = |path: &Path, error: std::io::Error| {
         Failure::input(format!("failed to find {}: {error}", path.display()))
     };
     // Canonical, because the default name of the output needs the real name of ".", and because a
     // link must not lead the output into the folder.
-    let folder = std::fs::canonicalize(&arguments.folder)
-        .map_err(|error| failed(&arguments.folder, error))?;
-    let out = match &arguments.out {
+    let folder = std::fs::canonicalize(given).map_err(|error| failed(given, error))?;
+    let out = match out {
         Some(out) => out.clone(),
         None => {
             let mut name = folder.clone().into_os_string();
@@ -45,17 +44,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             out.display()
         )));
     }
-    let found = octant_rejudge::folder(&arguments.folder).map_err(|error| {
-        match error {
-            RejudgeError::System { .. } => Failure::bench(error),
-            _ => Failure::input(error),
-        }
-        .failed()
-    })?;
+    let found = octant_rejudge::folder(given).map_err(|error| Failure::of(&error).failed())?;
     let text = serde_json::to_string_pretty(&found)
         .map_err(|error| Failure::bench(format!("failed to write the result as JSON: {error}")))?;
     write(&out, text + "\n")?;
-    if arguments.json {
+    if *json {
         print_json(&found)?;
     } else {
         print(&format!("{}{}\n", found.text(), out.display()))?;

@@ -47,16 +47,10 @@ struct Comparison {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    if let Some(scenario) = &arguments.scenario {
-        return crate::evidenced::on_recording(
-            scenario,
-            &arguments.recording,
-            &arguments.set,
-            arguments.out.as_deref(),
-            arguments.json,
-        );
+    let Arguments { recording: path, scenario, set, out, json } = arguments;
+    if let Some(scenario) = scenario {
+        return crate::evidenced::on_recording(scenario, path, set, out.as_deref(), *json);
     }
-    let path = &arguments.recording;
     let (scenario, method, seed) = super::score::scenario_of(path)?;
     let scenario: Scenario = scenario;
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
@@ -80,7 +74,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         first_difference_sample: replayed.first_difference_sample,
         truncated: source.truncated(),
     };
-    if arguments.json {
+    if *json {
         print_json(&comparison)?;
     } else {
         let equal = match comparison.first_difference_sample {

@@ -55,7 +55,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let folder = crate::run_folder::folder_of(&arguments.run);
+    let Arguments { run, out, dispositions: said_in, units } = arguments;
+    let folder = crate::run_folder::folder_of(run);
     if !folder.join(MANIFEST).exists() {
         let run = folder.display();
         return Err(Failure::input(format!(
@@ -86,7 +87,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let scenario_path = folder.join("scenario.toml");
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
-    let dispositions = match &arguments.dispositions {
+    let dispositions = match said_in {
         None => Dispositions::default(),
         Some(path) => disposed(&summary, path, folder)?,
     };
@@ -119,11 +120,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         stops: octant_run::assemble::stop_labels(&scenario),
         provenance: provenance(&manifest),
         dispositions,
-        units: scenario.display.with(arguments.units.unwrap_or_default()),
+        units: scenario.display.with(units.unwrap_or_default()),
         summary,
     };
     let html = octant_report::run::render(&data);
-    if let Some(path) = &arguments.dispositions {
+    if let Some(path) = said_in {
         // Without any discrepancy there is nothing to write.
         if !data.dispositions.text.is_empty() {
             keep(path, data.dispositions.text.as_bytes()).map_err(|error| {
@@ -134,8 +135,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let open = data.dispositions.open(&found).count();
         print(&format!("{}, {open} without a disposition\n", counted(found.len())))?;
     }
-    write(&arguments.out, html)?;
-    print(&format!("{}\n", arguments.out.display()))?;
+    write(out, html)?;
+    print(&format!("{}\n", out.display()))?;
     Ok(Verdict::Pass)
 }
 

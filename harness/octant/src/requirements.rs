@@ -60,7 +60,8 @@ enum Command {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+    let Arguments { command } = arguments;
+    match command {
         Command::Check { file, mapping } => check(file, mapping.as_deref()),
         Command::Convert { from, to, mapping, force } => {
             convert(from, to, mapping.as_deref(), *force)

@@ -2,9 +2,11 @@
 
 use super::evidenced::{self, RunRequest};
 use super::run_folder::{free_name, in_the_way};
+use super::run_system::{SharedOptions, SystemArguments};
 use crate::arguments::ScenarioArguments;
 use crate::attendant::OperatorWays;
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use clap::Args;
 use octant_base::display::UnitChoice;
 use octant_evidence::{Existing, RunFolder};
@@ -25,22 +27,35 @@ pub(super) struct Arguments {
     /// Seed of all random draws, instead of the scenario's.
     #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     seed: Option<u64>,
+    /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
+    #[arg(long, value_name = "ID=TIME")]
+    fire: Vec<String>,
+    /// Make a run without requirements inconclusive: for pipelines, which must not pass after the list
+    /// of requirements was emptied.
+    #[arg(long)]
+    require: bool,
+    /// Print summary.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    of_scenario: ScenarioRunArguments,
+    #[command(flatten)]
+    of_system: SystemArguments,
+}
+
+/// Options for scenarios alone.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options for a scenario (FILE.toml)")]
+pub(super) struct ScenarioRunArguments {
     /// Source of the samples, instead of the scenario's source.uri.
     #[arg(long, value_name = "URI")]
     source: Option<String>,
     /// Endpoint of the core, instead of the scenario's endpoint.uri.
     #[arg(long, value_name = "URI")]
     endpoint: Option<String>,
-    /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
-    #[arg(long, value_name = "ID=TIME")]
-    fire: Vec<String>,
     /// Inject only these of the scenario's faults; --only-faults= injects none.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
     only_faults: Option<Vec<String>>,
-    /// Make a run without requirements inconclusive: for pipelines, which must not pass after the list
-    /// of requirements was emptied.
-    #[arg(long)]
-    require: bool,
     /// Run in real time: every sample is sent at its own time, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
@@ -80,95 +95,97 @@ pub(super) struct Arguments {
     /// arcsec, mrad) and velocity (m/s, kn, cm/s), such as nmi,deg.
     #[arg(long, value_name = "UNIT,UNIT")]
     units: Option<UnitChoice>,
-    /// Print summary.json on stdout, and nothing else.
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    system: super::run_system::SystemArguments,
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let file = arguments.scenario.scenario.display();
     if octant_cosim::ssp::package::is_system(&arguments.scenario.scenario) {
+        given.refuse::<ScenarioRunArguments>(format!(
+            "found the system of FMUs {file}, expected a scenario: the option is for scenarios alone"
+        ))?;
         return system(arguments);
     }
-    if let Some(option) = arguments.system.first_given() {
-        return Err(Failure::input(format!(
-            "{option} is for systems of FMUs, and {} is a scenario",
-            arguments.scenario.scenario.display()
-        )));
-    }
-    evidenced::run(&arguments.request())
+    given.refuse::<SystemArguments>(format!(
+        "found the scenario {file}, expected a system of FMUs: the option is for systems alone"
+    ))?;
+    evidenced::run(&request(arguments))
 }
 
-impl Arguments {
-    fn request(&self) -> RunRequest {
-        let chosen = self.units.map(|units| units.settings()).unwrap_or_default();
-        RunRequest {
-            scenario: self.scenario.scenario.clone(),
-            places: FilePlaces::default(),
-            text: None,
-            set: [self.scenario.set.clone(), chosen].concat(),
-            out: self.out.clone(),
-            force: self.force,
-            seed: self.seed,
-            source: self.source.clone(),
-            endpoint: self.endpoint.clone(),
-            fire: self.fire.clone(),
-            only_faults: self.only_faults.clone(),
-            planned_faults: false,
-            require: self.require,
-            realtime: self.realtime,
-            stop_when_lost: self.stop_when_lost,
-            no_twin: self.no_twin,
-            live: self.live.clone(),
-            json: self.json,
-            call: None,
-            operator: OperatorWays {
-                attended: true,
-                elsewhere: self.no_terminal,
-                answers: self.answers.clone(),
-                page: self.page.clone(),
-            },
-        }
+fn request(arguments: &Arguments) -> RunRequest {
+    let Arguments {
+        scenario: ScenarioArguments { scenario, set },
+        out,
+        force,
+        seed,
+        fire,
+        require,
+        json,
+        of_scenario,
+        // Refused before.
+        of_system: _,
+    } = arguments;
+    let ScenarioRunArguments {
+        source,
+        endpoint,
+        only_faults,
+        realtime,
+        stop_when_lost,
+        no_twin,
+        live,
+        answers,
+        page,
+        no_terminal,
+        units,
+    } = of_scenario;
+    let chosen = units.map(|units| units.settings()).unwrap_or_default();
+    RunRequest {
+        scenario: scenario.clone(),
+        places: FilePlaces::default(),
+        text: None,
+        set: [set.clone(), chosen].concat(),
+        out: out.clone(),
+        force: *force,
+        seed: *seed,
+        source: source.clone(),
+        endpoint: endpoint.clone(),
+        fire: fire.clone(),
+        only_faults: only_faults.clone(),
+        planned_faults: false,
+        require: *require,
+        realtime: *realtime,
+        stop_when_lost: *stop_when_lost,
+        no_twin: *no_twin,
+        live: live.clone(),
+        json: *json,
+        call: None,
+        operator: OperatorWays {
+            attended: true,
+            elsewhere: *no_terminal,
+            answers: answers.clone(),
+            page: page.clone(),
+        },
     }
 }
 
 /// Runs a system of FMUs.
 fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let path = &arguments.scenario.scenario;
-    let given = [
-        ("--source", arguments.source.is_some()),
-        ("--units", arguments.units.is_some()),
-        ("--endpoint", arguments.endpoint.is_some()),
-        ("--realtime", arguments.realtime),
-        ("--stop-when-lost", arguments.stop_when_lost),
-        ("--no-twin", arguments.no_twin),
-        ("--only-faults", arguments.only_faults.is_some()),
-        ("--live", arguments.live.is_some()),
-        ("--answers", arguments.answers.is_some()),
-        ("--page", arguments.page.is_some()),
-        ("--no-terminal", arguments.no_terminal),
-    ];
-    if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
-        return Err(Failure::input(format!(
-            "{option} is for scenarios, and {} is a system of FMUs",
-            path.display()
-        )));
-    }
-    let out = arguments.out.clone().unwrap_or_else(|| free_name(path));
-    let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
-    super::run_system::command(
-        &super::run_system::Shared {
-            path,
-            set: &arguments.scenario.set,
-            fire: &arguments.fire,
-            seed: arguments.seed,
-            json: arguments.json,
-        },
-        &arguments.system,
-        || {
-            RunFolder::create(&out, existing)
-                .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))
-        },
-    )
+    let Arguments {
+        scenario: ScenarioArguments { scenario: path, set },
+        out,
+        force,
+        seed,
+        fire,
+        require,
+        json,
+        // Refused before.
+        of_scenario: _,
+        of_system,
+    } = arguments;
+    let out = out.clone().unwrap_or_else(|| free_name(path));
+    let existing = if *force { Existing::Replace } else { Existing::Refuse };
+    let shared = SharedOptions { path, set, fire, seed: *seed, require: *require, json: *json };
+    super::run_system::command(&shared, of_system, || {
+        RunFolder::create(&out, existing)
+            .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))
+    })
 }

@@ -6,6 +6,7 @@ use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::Args;
 use octant_base::control::Control;
+use octant_base::failing::Failing;
 use octant_cosim::experiment::GivenSettings;
 use octant_cosim::order::SteppingOrder;
 use octant_cosim::run::{PrepareError, PreparedSystem, ROWS_MAX, Request};
@@ -19,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// Options for systems of FMUs alone.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Args)]
 #[command(next_help_heading = "Options for a system of FMUs (FILE.ssp, FILE.ssd, or a folder)")]
 pub(super) struct SystemArguments {
     /// Faults on connections, a TOML file, instead of those in the system.
@@ -58,34 +59,6 @@ pub(super) struct SystemArguments {
     allow_tool: bool,
 }
 
-impl SystemArguments {
-    /// Returns the first option that was given.
-    pub(super) fn first_given(&self) -> Option<&'static str> {
-        let given = [
-            ("--faults", self.faults.is_some()),
-            ("--requirements", self.requirements.is_some()),
-            ("--tune", !self.tune.is_empty()),
-            ("--order", self.order.is_some()),
-            ("--step", self.step.is_some()),
-            ("--start", self.start.is_some()),
-            ("--stop", self.stop.is_some()),
-            ("--every", self.every.is_some()),
-            ("--csv", self.csv),
-            ("--in-process", self.in_process),
-            ("--allow-tool", self.allow_tool),
-        ];
-        given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
-    }
-
-    fn said(&self) -> Result<GivenSettings, Failure> {
-        Ok(GivenSettings {
-            start_s: time("--start", self.start.as_deref())?,
-            stop_s: time("--stop", self.stop.as_deref())?,
-            step_s: time("--step", self.step.as_deref())?,
-        })
-    }
-}
-
 fn time(option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
     match parse(text) {
@@ -97,43 +70,60 @@ fn time(option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
 }
 
 /// Options shared with runs of scenarios.
-pub(super) struct Shared<'a> {
+pub(super) struct SharedOptions<'a> {
     pub(super) path: &'a Path,
     pub(super) set: &'a [String],
     pub(super) fire: &'a [String],
     pub(super) seed: Option<u64>,
+    pub(super) require: bool,
     pub(super) json: bool,
 }
 
 impl From<PrepareError> for Failure {
     fn from(error: PrepareError) -> Self {
-        let message = format!("failed to run the system: {error}");
-        if error.is_bench() { Self::bench(message) } else { Self::input(message) }
+        Self::of_kind(error.kind(), format!("failed to run the system: {error}"))
     }
 }
 
 /// Runs the system; `folder` makes the folder of the run.
 pub(super) fn command(
-    shared: &Shared<'_>,
+    shared: &SharedOptions<'_>,
     arguments: &SystemArguments,
     folder: impl FnOnce() -> Result<RunFolder, Failure>,
 ) -> Result<Verdict, Failure> {
+    let SharedOptions { path, set, fire, seed, require, json } = *shared;
+    let SystemArguments {
+        faults,
+        requirements,
+        tune,
+        order,
+        step,
+        start,
+        stop,
+        every,
+        csv,
+        in_process,
+        allow_tool,
+    } = arguments;
     let key = crate::signing::signing_key()?;
-    let place =
-        if arguments.in_process { ProcessPlace::ThisProcess } else { ProcessPlace::OwnProcess };
     let prepared = PreparedSystem::new(Request {
-        path: shared.path.to_owned(),
-        said: arguments.said()?,
-        order: arguments.order.clone(),
-        seed: shared.seed,
-        faults: arguments.faults.clone(),
-        requirements: arguments.requirements.clone(),
-        fires: shared.fire.to_vec(),
-        set: shared.set.to_vec(),
-        tune: arguments.tune.clone(),
-        place,
-        allow_tool: arguments.allow_tool,
-        every: arguments.every,
+        path: path.to_owned(),
+        said: GivenSettings {
+            start_s: time("--start", start.as_deref())?,
+            stop_s: time("--stop", stop.as_deref())?,
+            step_s: time("--step", step.as_deref())?,
+        },
+        order: order.clone(),
+        seed,
+        faults: faults.clone(),
+        requirements: requirements.clone(),
+        fires: fire.to_vec(),
+        set: set.to_vec(),
+        tune: tune.clone(),
+        place: if *in_process { ProcessPlace::ThisProcess } else { ProcessPlace::OwnProcess },
+        allow_tool: *allow_tool,
+        every: *every,
+        require,
     })?;
     for warning in prepared.warnings() {
         note!("octant: {warning}");
@@ -146,7 +136,7 @@ pub(super) fn command(
     let (recording, table) =
         (folder.path().join("recording.mcap"), folder.path().join("values.csv"));
     let mut paths: Vec<&Path> = vec![&recording];
-    if arguments.csv {
+    if *csv {
         paths.push(&table);
     }
     let (steps, step_s, seed) = (prepared.steps(), prepared.step_s(), prepared.seed());
@@ -168,10 +158,10 @@ pub(super) fn command(
     for (name, text) in texts {
         write(&folder.path().join(name), text)?;
     }
-    let json = summary
+    let summary_json = summary
         .to_json()
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
-    write(&folder.path().join("summary.json"), &json)?;
+    write(&folder.path().join("summary.json"), &summary_json)?;
     let told = (summary.verdict, &summary.reasons[..]);
     let xml = junit_of(&summary.system, seed, &summary.requirements, &summary.faults, told)
         .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
@@ -183,7 +173,7 @@ pub(super) fn command(
     let facts = RunFacts {
         seed: Some(seed),
         command_line: rerun(shared, arguments, seed),
-        fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
+        fmus: summary.fmus.iter().map(|fmu| facts(fmu, *in_process)).collect(),
         key,
         ..RunFacts::between(started, SystemTime::now())
     };
@@ -200,8 +190,8 @@ pub(super) fn command(
         note!("octant: {reason}");
         note!("octant: the run broke off; the recorded part is in {}", place.display());
     }
-    if shared.json {
-        print(&json)?;
+    if json {
+        print(&summary_json)?;
     } else {
         print(&summary.text())?;
         print(&format!("{}\n", place.display()))?;
@@ -210,7 +200,7 @@ pub(super) fn command(
 }
 
 /// Collects the manifest's facts about an FMU.
-fn facts(fmu: &FmuResult, arguments: &SystemArguments) -> FmuFacts {
+fn facts(fmu: &FmuResult, in_process: bool) -> FmuFacts {
     FmuFacts {
         role: fmu.name.clone(),
         file: fmu.source.clone(),
@@ -219,42 +209,52 @@ fn facts(fmu: &FmuResult, arguments: &SystemArguments) -> FmuFacts {
         token: fmu.token.clone(),
         fmi: fmu.fmi.clone(),
         generation_tool: fmu.generation_tool.clone(),
-        process: if arguments.in_process { "shared" } else { "own" }.to_owned(),
+        process: if in_process { "shared" } else { "own" }.to_owned(),
         only_once: false,
     }
 }
 
 /// Returns the command line that makes the run again, with the seed that was used.
-fn rerun(shared: &Shared<'_>, arguments: &SystemArguments, seed: u64) -> Vec<String> {
-    let mut line = vec!["octant".to_owned(), "run".to_owned(), shared.path.display().to_string()];
+fn rerun(shared: &SharedOptions<'_>, arguments: &SystemArguments, used_seed: u64) -> Vec<String> {
+    // Neither where the summary goes nor a seed that wasn't given makes another run.
+    let SharedOptions { path, set, fire, seed: _, require, json: _ } = *shared;
+    let SystemArguments {
+        faults,
+        requirements,
+        tune,
+        order,
+        step,
+        start,
+        stop,
+        every,
+        csv,
+        in_process,
+        allow_tool,
+    } = arguments;
+    let mut line = vec!["octant".to_owned(), "run".to_owned(), path.display().to_string()];
     let mut add = |option: &str, value: Option<String>| {
         if let Some(value) = value {
             line.extend([option.to_owned(), value]);
         }
     };
-    for set in shared.set {
-        add("--set", Some(set.clone()));
+    for (option, values) in [("--set", set), ("--tune", tune), ("--fire", fire)] {
+        values.iter().for_each(|value| add(option, Some(value.clone())));
     }
-    for tune in &arguments.tune {
-        add("--tune", Some(tune.clone()));
-    }
-    for fire in shared.fire {
-        add("--fire", Some(fire.clone()));
-    }
-    add("--faults", arguments.faults.as_ref().map(|path| path.display().to_string()));
-    add("--requirements", arguments.requirements.as_ref().map(|path| path.display().to_string()));
-    add("--order", arguments.order.as_ref().map(ToString::to_string));
-    add("--step", arguments.step.clone());
-    add("--start", arguments.start.clone());
-    add("--stop", arguments.stop.clone());
-    add("--every", arguments.every.map(|every| every.to_string()));
-    add("--seed", Some(seed.to_string()));
-    for (option, given) in [
-        ("--csv", arguments.csv),
-        ("--in-process", arguments.in_process),
-        ("--allow-tool", arguments.allow_tool),
+    add("--faults", faults.as_ref().map(|path| path.display().to_string()));
+    add("--requirements", requirements.as_ref().map(|path| path.display().to_string()));
+    add("--order", order.as_ref().map(ToString::to_string));
+    add("--step", step.clone());
+    add("--start", start.clone());
+    add("--stop", stop.clone());
+    add("--every", every.map(|every| every.to_string()));
+    add("--seed", Some(used_seed.to_string()));
+    for (option, is_given) in [
+        ("--require", require),
+        ("--csv", *csv),
+        ("--in-process", *in_process),
+        ("--allow-tool", *allow_tool),
     ] {
-        if given {
+        if is_given {
             line.push(option.to_owned());
         }
     }

@@ -1,6 +1,7 @@
 //! `octant score`: scoring alone, from a recording that has truth and outputs, or of a solution that is made already.
 
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::score_solution::SolutionArguments;
 use crate::terminal::{print, print_json};
 use clap::Args;
@@ -72,14 +73,22 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
     Ok((scenario, method, seed))
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let Some(run) = &arguments.run else {
-        let Some(solution) = &arguments.solution.solution else {
-            return Err(Failure::input("expected a run, or --solution"));
-        };
-        let units = arguments.units.map(|units| units.settings()).unwrap_or_default();
-        return arguments.solution.command(solution, (units, arguments.json));
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { run, solution, units, json } = arguments;
+    let Some(run) = run else {
+        let units = units.map(|units| units.settings()).unwrap_or_default();
+        return super::score_solution::command(solution, units, *json);
     };
+    // clap lets a requirement go that conflicts with what is there.
+    given.refuse::<SolutionArguments>(format!(
+        "found the run {}, expected --solution FILE in its place: the option is for solutions alone",
+        run.display()
+    ))?;
+    if units.is_some() && *json {
+        return Err(Failure::input(
+            "--units: found with --json, whose numbers have units of their own, expected no --json",
+        ));
+    }
     let path = &crate::run_folder::recording_of(run)?;
     let (scenario, method, seed) = scenario_of(path)?;
     let (watcher, last_event) = super::report::watch(path, &scenario, method)?;
@@ -124,10 +133,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             path.display()
         )));
     }
-    if arguments.json {
+    if *json {
         print_json(&scores)?;
     } else {
-        print(&text(&scores, &scenario.display.with(arguments.units.unwrap_or_default())))?;
+        print(&text(&scores, &scenario.display.with(units.unwrap_or_default())))?;
     }
     Ok(if scores.misbehaved.is_some() { Verdict::Fail } else { Verdict::Pass })
 }

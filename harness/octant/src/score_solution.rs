@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct SolutionArguments {
     /// Solution of an instrument, instead of a run: columns of text (.csv), NMEA 0183 (.nmea), RTKLIB (.pos), SBET.
     #[arg(long, value_name = "FILE", requires = "reference", conflicts_with = "run")]
-    pub(super) solution: Option<PathBuf>,
+    solution: Option<PathBuf>,
     /// Reference trajectory that the solution is scored against, in one of the same forms.
     #[arg(long, value_name = "FILE", requires = "solution")]
     reference: Option<PathBuf>,
@@ -49,51 +49,64 @@ pub(super) struct SolutionArguments {
 /// The scenario of a solution without one of its own.
 const SCENARIO: &str = "schema = 1\n[procedure.navigation]\n";
 
-impl SolutionArguments {
-    pub(super) fn command(
-        &self,
-        solution: &Path,
-        (units, json): (Vec<String>, bool),
-    ) -> Result<Verdict, Failure> {
-        let mut set =
-            vec![format!("source.uri={}", from_here(&format!("solution:{}", solution.display()))?)];
-        if let Some(reference) = &self.reference {
-            let path = std::path::absolute(reference).map_err(|error| {
-                Failure::input(format!("failed to find {}: {error}", reference.display()))
-            })?;
-            set.push(format!("source.trajectory.file={}", path.display()));
-        }
-        let keys = [
-            ("procedure.navigation.duration", &self.duration),
-            ("source.solution.skip", &self.skip),
-            ("source.trajectory.offset", &self.offset),
-            ("source.trajectory.offset_uncertainty", &self.offset_uncertainty),
-        ];
-        set.extend(
-            keys.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?))),
-        );
-        set.extend(units);
-        set.extend(self.set.iter().cloned());
-        let text = self.scenario.is_none().then(|| titled(solution));
-        let path = self.scenario.clone().unwrap_or_else(|| solution.to_owned());
-        // Keys of the caller come last and take precedence.
-        let found = found(&path, text.as_deref(), &set)?;
-        let set = [&found[..], &set].concat();
-        evidenced::run(&RunRequest {
-            scenario: path,
-            places: FilePlaces::default(),
-            text,
-            set,
-            out: self.out.clone(),
-            force: self.force,
-            require: self.require,
-            json,
-            call: Some(
-                std::iter::once("octant".to_owned()).chain(std::env::args().skip(1)).collect(),
-            ),
-            ..RunRequest::default()
-        })
+/// Scores a solution, with settings of the scenario for the units.
+pub(super) fn command(
+    arguments: &SolutionArguments,
+    units: Vec<String>,
+    json: bool,
+) -> Result<Verdict, Failure> {
+    let SolutionArguments {
+        solution,
+        reference,
+        scenario,
+        duration,
+        skip,
+        offset,
+        offset_uncertainty,
+        set: settings,
+        out,
+        force,
+        require,
+    } = arguments;
+    let Some(solution) = solution else {
+        return Err(Failure::input("expected a run, or --solution"));
+    };
+    let mut set =
+        vec![format!("source.uri={}", from_here(&format!("solution:{}", solution.display()))?)];
+    if let Some(reference) = reference {
+        let path = std::path::absolute(reference).map_err(|error| {
+            Failure::input(format!("failed to find {}: {error}", reference.display()))
+        })?;
+        set.push(format!("source.trajectory.file={}", path.display()));
     }
+    let keys = [
+        ("procedure.navigation.duration", duration),
+        ("source.solution.skip", skip),
+        ("source.trajectory.offset", offset),
+        ("source.trajectory.offset_uncertainty", offset_uncertainty),
+    ];
+    set.extend(
+        keys.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?))),
+    );
+    set.extend(units);
+    set.extend(settings.iter().cloned());
+    let text = scenario.is_none().then(|| titled(solution));
+    let path = scenario.as_ref().unwrap_or(solution).clone();
+    // Keys of the caller come last and take precedence.
+    let found = found(&path, text.as_deref(), &set)?;
+    let set = [&found[..], &set].concat();
+    evidenced::run(&RunRequest {
+        scenario: path,
+        places: FilePlaces::default(),
+        text,
+        set,
+        out: out.clone(),
+        force: *force,
+        require: *require,
+        json,
+        call: Some(std::iter::once("octant".to_owned()).chain(std::env::args().skip(1)).collect()),
+        ..RunRequest::default()
+    })
 }
 
 /// The scenario of a solution, with its name as the title.

@@ -4,9 +4,11 @@ use super::case_progress::CaseBar;
 use super::progress::interruptible;
 use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::terminal::{note, print, print_json, write};
 use clap::{Args, ValueEnum};
 use octant_base::control::Control;
+use octant_base::failing::Failing;
 use octant_base::names::suggestion;
 use octant_base::pool::processors;
 use octant_faults::catalogue::FaultKind;
@@ -38,6 +40,19 @@ pub(super) struct Arguments {
     /// Print the space that would be searched as such a file, and run nothing but the scenario without faults.
     #[arg(long)]
     print_space: bool,
+    /// Seed of all runs, instead of the scenario's.
+    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Number of parallel runs; by default the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    searching: SearchingArguments,
+}
+
+/// The search itself, of which there is none where the space alone is printed.
+#[derive(Debug, Args)]
+struct SearchingArguments {
     /// Runs with faults, at least.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..))]
     runs: u32,
@@ -50,9 +65,6 @@ pub(super) struct Arguments {
     /// How candidates are chosen.
     #[arg(long, value_enum, default_value = "guided")]
     strategy: StrategyName,
-    /// Seed of all runs, instead of the scenario's.
-    #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
     /// Seed of the candidates.
     #[arg(long, value_name = "N", default_value = "1", value_parser = crate::arguments::seed, allow_negative_numbers = true)]
     search_seed: u64,
@@ -60,9 +72,6 @@ pub(super) struct Arguments {
     /// search goes on where it answers otherwise.
     #[arg(long, value_name = "DIR")]
     after: Option<PathBuf>,
-    /// Number of parallel runs; by default the number of processors.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
     /// Folder for worst.toml, search.json, search.html and the journal with which an interrupted search goes on;
     /// by default nothing is written.
     #[arg(long, value_name = "DIR")]
@@ -90,7 +99,12 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    if arguments.print_space {
+        given.refuse::<SearchingArguments>(
+            "found with --print-space, expected one without the other: nothing is searched then",
+        )?;
+    }
     let scenario = load(&arguments.scenario, &[])?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
     interruptible(|control| searched(arguments, &scenario, seed, control))
@@ -102,34 +116,46 @@ fn searched(
     seed: u64,
     control: &Control,
 ) -> Result<Verdict, Failure> {
+    let Arguments {
+        scenario: ScenarioArguments { scenario: file, set: _ },
+        kinds,
+        space,
+        print_space,
+        // The caller has chosen it.
+        seed: _,
+        jobs,
+        searching,
+    } = arguments;
+    let SearchingArguments { runs, pairs, enough, strategy, search_seed, after, out, json } =
+        searching;
     // Files are read before anything is run.
-    let asked = asked(arguments, scenario)?;
-    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let asked = asked((file, kinds, space.as_deref()), scenario)?;
+    let jobs = jobs.map_or_else(processors, usize::from);
     let bench = SearchBench::new(scenario, seed, jobs, control).map_err(failure)?;
-    let (space, left_out) = possible(&bench, asked, arguments.space.as_deref())?;
-    if arguments.print_space {
+    let (space, left_out) = possible(&bench, asked, space.as_deref())?;
+    if *print_space {
         print(&space_file::to_toml(&space))?;
         return Ok(Verdict::Pass);
     }
-    let after = after(arguments, &space)?;
-    if let Some(folder) = &arguments.out {
+    let after = earlier(after.as_deref(), *strategy, &space)?;
+    if let Some(folder) = out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))
         })?;
     }
-    let strategy = match arguments.strategy {
+    let strategy = match strategy {
         StrategyName::Guided => SearchStrategy::Guided,
         StrategyName::Latin => SearchStrategy::Latin,
     };
     let plan = SearchPlan {
         strategy,
-        runs: arguments.runs as usize,
-        seed: arguments.search_seed,
-        pairs: arguments.pairs,
-        enough: arguments.enough,
+        runs: *runs as usize,
+        seed: *search_seed,
+        pairs: *pairs,
+        enough: *enough,
         after,
     };
-    let journal = arguments.out.as_ref().map(|folder| folder.join("search.jsonl"));
+    let journal = out.as_ref().map(|folder| folder.join("search.jsonl"));
     let bar = CaseBar::new("search", plan.runs, jobs, plan.enough.is_some());
     let mut told = 0;
     let mut tell = |trials: &[FaultTrial]| {
@@ -149,24 +175,28 @@ fn searched(
         left_out,
         ..SearchFound::of(&trials, &space)
     };
-    conclude(arguments, &bench, &space, &trials, found, control)
+    let target = SearchTarget { rerun: rerun(arguments, seed), out: out.as_deref(), json: *json };
+    conclude(&target, &bench, &space, &trials, found, control)
 }
 
 /// The space that was asked for.
-fn asked(arguments: &Arguments, scenario: &Scenario) -> Result<SearchSpace, Failure> {
+fn asked(
+    (of_scenario, kinds, space): (&Path, &[String], Option<&Path>),
+    scenario: &Scenario,
+) -> Result<SearchSpace, Failure> {
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let Some(samples) = scenario.samples() else {
         return Err(Failure::input(format!(
             "failed to search {}: found a run whose length isn't known before, expected one that is",
-            arguments.scenario.scenario.display()
+            of_scenario.display()
         )));
     };
     let times = RunTimes { sample_s, length_s: samples as f64 * sample_s };
-    if let Some(file) = &arguments.space {
+    if let Some(file) = space {
         return space_file::read(file, times)
             .map_err(|error| Failure::input(format!("failed to read {error}")));
     }
-    let kinds = match arguments.kinds.as_slice() {
+    let kinds = match kinds {
         [] => searchable().collect(),
         names => names.iter().map(|name| the_kind(name)).collect::<Result<Vec<_>, _>>()?,
     };
@@ -174,9 +204,13 @@ fn asked(arguments: &Arguments, scenario: &Scenario) -> Result<SearchSpace, Fail
 }
 
 /// The earlier search, read before anything is written.
-fn after(arguments: &Arguments, space: &SearchSpace) -> Result<Option<EarlierSearch>, Failure> {
-    let Some(folder) = &arguments.after else { return Ok(None) };
-    if let StrategyName::Latin = arguments.strategy {
+fn earlier(
+    folder: Option<&Path>,
+    strategy: StrategyName,
+    space: &SearchSpace,
+) -> Result<Option<EarlierSearch>, Failure> {
+    let Some(folder) = folder else { return Ok(None) };
+    if let StrategyName::Latin = strategy {
         return Err(Failure::input(
             "--after: a Latin hypercube is drawn all at once and takes no earlier search; leave out one of --after and \
              --strategy latin",
@@ -221,9 +255,16 @@ fn possible(
     }
 }
 
+/// Where the results of a search go, and the command line that makes them again.
+struct SearchTarget<'a> {
+    rerun: String,
+    out: Option<&'a Path>,
+    json: bool,
+}
+
 /// Makes the worst fault smaller, runs it undivided, writes and prints the result.
 fn conclude(
-    arguments: &Arguments,
+    target: &SearchTarget<'_>,
     bench: &SearchBench,
     space: &SearchSpace,
     trials: &[FaultTrial],
@@ -237,7 +278,7 @@ fn conclude(
         let smaller = minimal(bench, space, trial, control).map_err(failure)?;
         let about = [
             "The worst fault that went unnoticed, found by octant faults search.".to_owned(),
-            rerun(arguments, bench.seed()),
+            target.rerun.clone(),
         ];
         let text = bench.text_of(&smaller.space, &smaller.trial.candidate, &about);
         let again = bench.again(&text, control).map_err(failure)?;
@@ -251,23 +292,20 @@ fn conclude(
         found.minimal_runs = smaller.runs;
         scenario = Some(text);
     }
-    if let Some(folder) = &arguments.out {
+    if let Some(folder) = target.out {
         let json = serde_json::to_string_pretty(&found)
             .map_err(|error| Failure::bench(format!("failed to write search.json: {error}")))?;
         write(&folder.join("search.json"), json + "\n")?;
-        write(
-            &folder.join("search.html"),
-            render(&found, trials, space, &rerun(arguments, bench.seed())),
-        )?;
+        write(&folder.join("search.html"), render(&found, trials, space, &target.rerun))?;
         if let Some(text) = &scenario {
             write(&folder.join("worst.toml"), text.clone())?;
         }
     }
-    if arguments.json {
+    if target.json {
         print_json(&found)?;
     } else {
         print(&found.text())?;
-        if let (Some(folder), Some(_)) = (&arguments.out, &scenario) {
+        if let (Some(folder), Some(_)) = (target.out, &scenario) {
             print(&format!(
                 "octant run {} --seed {}\n",
                 folder.join("worst.toml").display(),
@@ -302,46 +340,38 @@ fn verdict(found: &SearchFound, trials: &[FaultTrial]) -> Verdict {
 }
 
 fn failure(error: FaultSearchError) -> Failure {
-    let message = format!("failed to search: {error}");
-    match error {
-        FaultSearchError::Method(error) => Failure::from(error).failed(),
-        FaultSearchError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
-        FaultSearchError::Cancelled => {
-            Failure { status: Verdict::Inconclusive.exit_code(), message }
-        }
-        FaultSearchError::Journal { .. } | FaultSearchError::Differs(_) => Failure::bench(message),
-        FaultSearchError::HasFaults(_)
-        | FaultSearchError::Unwritable(_)
-        | FaultSearchError::Unreadable(_)
-        | FaultSearchError::NoCalibration
-        | FaultSearchError::EmptySpace(_)
-        | FaultSearchError::OtherSearch { .. } => Failure::input(message),
+    if let FaultSearchError::Method(error) = error {
+        return Failure::from(error).failed();
     }
+    Failure::of_kind(error.kind(), format!("failed to search: {error}"))
 }
 
 /// Returns the command line that makes the search again.
-fn rerun(arguments: &Arguments, seed: u64) -> String {
-    let mut line = format!("octant faults search {}", arguments.scenario.scenario.display());
-    for set in &arguments.scenario.set {
+fn rerun(arguments: &Arguments, used_seed: u64) -> String {
+    // Where the results go makes no other search, nor do the parallel runs.
+    let Arguments { scenario, kinds, space, print_space: _, seed: _, jobs: _, searching } =
+        arguments;
+    let ScenarioArguments { scenario, set } = scenario;
+    let SearchingArguments { runs, pairs, enough, strategy, search_seed, after, out: _, json: _ } =
+        searching;
+    let mut line = format!("octant faults search {}", scenario.display());
+    for set in set {
         line += &format!(" --set '{set}'");
     }
-    if !arguments.kinds.is_empty() {
-        line += &format!(" --kinds {}", arguments.kinds.join(","));
+    if !kinds.is_empty() {
+        line += &format!(" --kinds {}", kinds.join(","));
     }
-    if let Some(space) = &arguments.space {
+    if let Some(space) = space {
         line += &format!(" --space {}", space.display());
     }
-    if let StrategyName::Latin = arguments.strategy {
+    if let StrategyName::Latin = strategy {
         line += " --strategy latin";
     }
-    if let Some(folder) = &arguments.after {
+    if let Some(folder) = after {
         line += &format!(" --after {}", folder.display());
     }
-    if let Some(enough) = arguments.enough {
+    if let Some(enough) = enough {
         line += &format!(" --enough {enough}");
     }
-    line + &format!(
-        " --runs {} --pairs {} --seed {seed} --search-seed {}",
-        arguments.runs, arguments.pairs, arguments.search_seed
-    )
+    line + &format!(" --runs {runs} --pairs {pairs} --seed {used_seed} --search-seed {search_seed}")
 }

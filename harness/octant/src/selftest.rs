@@ -38,7 +38,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let of_campaign = match &arguments.campaign {
+    let Arguments { out, campaign, answers: answers_alone, jobs, fail_fast, json: as_json } =
+        arguments;
+    let of_campaign = match campaign {
         Some(folder) if folder.join(plan::FILE_NAME).exists() => Some(folder.join(FILE_NAME)),
         Some(folder) => {
             return Err(Failure::input(format!(
@@ -52,9 +54,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let started = SystemTime::now();
-    let cases = if arguments.answers { answers::with_runs() } else { cases() };
+    let cases = if *answers_alone { answers::with_runs() } else { cases() };
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let jobs = jobs.map_or_else(processors, usize::from);
     let bar = ProgressBar::new(Some(cases.len() as u64), |progress| {
         let (done, total) = (progress.done, progress.total.unwrap_or_default());
         format!("{done} of {total} cases, {}", progress.message)
@@ -65,7 +67,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             progress.done += 1;
             progress.message = case.id.to_string();
         });
-        if arguments.fail_fast && case.verdict != CaseVerdict::Pass {
+        if *fail_fast && case.verdict != CaseVerdict::Pass {
             // Cases that have begun are ended as by an interrupt.
             interrupt::flag().store(true, Ordering::Relaxed);
         }
@@ -80,10 +82,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;
     let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
-    for path in arguments.out.iter().chain(&of_campaign) {
+    for path in out.iter().chain(&of_campaign) {
         write(path, &json).map_err(|error| failed(&error))?;
     }
-    print(&if arguments.json { json } else { record.text() })?;
+    print(&if *as_json { json } else { record.text() })?;
     conclude(&record)
 }
 

@@ -14,7 +14,7 @@ use octant_requirements::Verdict;
 use octant_run::method::{MethodError, SetupError, core_of};
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::StepPacing;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -43,13 +43,13 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let uri: Uri = arguments
-        .endpoint
+    let Arguments { scenario: file, set, endpoint, seed, silence } = arguments;
+    let uri: Uri = endpoint
         .parse()
         .map_err(|error| Failure::input(format!("failed to read --endpoint: {error}")))?;
-    let silence_ms = silence_ms(arguments.silence)?;
-    let scenario = scenario(arguments)?;
-    let seed = arguments.seed.unwrap_or(scenario.seed);
+    let silence_ms = silence_ms(*silence)?;
+    let scenario = scenario(file.as_deref(), set)?;
+    let seed = seed.unwrap_or(scenario.seed);
     let core =
         core_of(&scenario, Method::Primary, seed).map_err(|error| Failure::from(error).failed())?;
     let mut served = ServedCore::new(&core)
@@ -88,18 +88,17 @@ fn silence_ms(seconds: f64) -> Result<u16, Failure> {
     )))
 }
 
-fn scenario(arguments: &Arguments) -> Result<Scenario, Failure> {
-    match &arguments.scenario {
+fn scenario(file: Option<&Path>, set: &[String]) -> Result<Scenario, Failure> {
+    match file {
         Some(path) => {
-            let arguments =
-                ScenarioArguments { scenario: path.clone(), set: arguments.set.clone() };
+            let arguments = ScenarioArguments { scenario: path.to_owned(), set: set.to_vec() };
             // The scenario describes a run with a device: its settings for the device take effect
             // here.
             let device = "endpoint.uri=\"serial:device\"".to_owned();
             load(&arguments, &[device])
         }
-        None if arguments.set.is_empty() => {
-            Scenario::parse("schema = 1\n", "no scenario", std::path::Path::new(""), &[])
+        None if set.is_empty() => {
+            Scenario::parse("schema = 1\n", "no scenario", Path::new(""), &[])
                 .map_err(Failure::input)
         }
         None => Err(Failure::input("--set: found no scenario, expected one to change")),

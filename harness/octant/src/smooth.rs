@@ -92,7 +92,8 @@ impl ChangeRow {
 }
 
 pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
-    let path = recording_of(&arguments.run)?;
+    let SmoothArguments { run, csv, json } = arguments;
+    let path = recording_of(run)?;
     let (scenario, method, seed) = scenario_of(&path)?;
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
     let (_, config, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
@@ -120,10 +121,10 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
         invalid: doubts.invalid,
         incomplete: doubts.incomplete,
     };
-    if let Some(file) = &arguments.csv {
+    if let Some(file) = csv {
         history::write(file, &smoothed)?;
     }
-    if arguments.json {
+    if *json {
         print_json(&report)?
     } else {
         print(&text(&report))?

@@ -10,7 +10,7 @@ use octant_campaign::sweep::{SweepAxis, SweepError, cells_of, indices, sweep};
 use octant_campaign_pages::sweep as sweep_page;
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Maximum number of cells of a grid: each is a run.
 const CELLS_MAX: usize = 100_000;
@@ -42,9 +42,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let base = load(&arguments.scenario, &[])?;
-    let fault = the_fault(&base, arguments)?;
-    let axes = arguments.over.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+    let Arguments { scenario: of_scenario, over, fault, seed, jobs, out, json } = arguments;
+    let base = load(of_scenario, &[])?;
+    let fault = the_fault(&base, &of_scenario.scenario, fault.as_deref())?;
+    let axes = over.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
     let count = cells_of(&axes);
     if count > CELLS_MAX {
         return Err(Failure::input(format!(
@@ -59,18 +60,18 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 .zip(indices(&axes, cell))
                 .map(|(axis, i)| format!("faults.{fault}.{}={}", axis.key, axis.values[i]))
                 .collect();
-            load(&arguments.scenario, &sets)
+            load(of_scenario, &sets)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let seed = arguments.seed.unwrap_or(base.seed);
+    let seed = seed.unwrap_or(base.seed);
     let controls: Vec<Control> = (0..=count).map(|_| Control::default()).collect();
     let epochs = base.samples().map(|samples| samples * (count as u64 + 1));
     let sample_s = base.sample_period_ns as f64 * 1e-9;
     let result = with_progress(&controls, epochs, sample_s, || {
-        sweep(&scenarios, &axes, &fault, seed, arguments.jobs.map(usize::from), &controls)
+        sweep(&scenarios, &axes, &fault, seed, jobs.map(usize::from), &controls)
     })
     .map_err(failure)?;
-    if let Some(folder) = &arguments.out {
+    if let Some(folder) = out {
         std::fs::create_dir_all(folder).map_err(|error| {
             Failure::bench(format!("failed to create {}: {error}", folder.display()))
         })?;
@@ -81,7 +82,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         write(&folder.join("sweep.svg"), sweep_page::figure(&result))?;
         write(&folder.join("sweep.html"), sweep_page::render(&result, &rerun(arguments, seed)))?;
     }
-    if arguments.json {
+    if *json {
         print_json(&result)?;
     } else {
         print(&sweep_page::text(&result))?;
@@ -90,19 +91,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 }
 
 fn failure(error: SweepError) -> Failure {
-    let message = format!("failed to {error}");
-    match error {
-        SweepError::Method(error) => Failure::from(error),
-        SweepError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
-        SweepError::Cancelled => Failure { status: Verdict::Inconclusive.exit_code(), message },
-    }
+    let failure = Failure::of(&error);
+    // The words of a method stand alone.
+    if matches!(error, SweepError::Method(_)) { failure } else { failure.failed() }
 }
 
 /// Returns the id of the fault that is swept.
-fn the_fault(scenario: &Scenario, arguments: &Arguments) -> Result<String, Failure> {
+fn the_fault(scenario: &Scenario, file: &Path, given: Option<&str>) -> Result<String, Failure> {
     let ids: Vec<&str> = scenario.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
-    let file = arguments.scenario.scenario.display();
-    match (&arguments.fault, ids.as_slice()) {
+    let file = file.display();
+    match (given, ids.as_slice()) {
         (_, []) => Err(Failure::input(format!(
             "failed to sweep {file}: found no [[faults]], expected one or more"
         ))),
@@ -111,7 +109,7 @@ fn the_fault(scenario: &Scenario, arguments: &Arguments) -> Result<String, Failu
             "failed to sweep {file}: found several faults ({}), expected one of them with --fault",
             ids.join(", ")
         ))),
-        (Some(id), _) if ids.contains(&id.as_str()) => Ok(id.clone()),
+        (Some(id), _) if ids.contains(&id) => Ok(id.to_owned()),
         (Some(id), _) => Err(Failure::input(format!(
             "failed to sweep {file}: unknown fault {id:?}, {}",
             octant_base::names::suggestion(id, ids.iter().copied(), "faults")
@@ -138,16 +136,19 @@ fn axis(text: &str) -> Result<SweepAxis, Failure> {
 }
 
 /// Returns the command line that makes the sweep again.
-fn rerun(arguments: &Arguments, seed: u64) -> String {
-    let mut line = format!("octant faults sweep {}", arguments.scenario.scenario.display());
-    for set in &arguments.scenario.set {
+fn rerun(arguments: &Arguments, used_seed: u64) -> String {
+    // Where the results go makes no other sweep, nor do the parallel runs.
+    let Arguments { scenario, over, fault, seed: _, jobs: _, out: _, json: _ } = arguments;
+    let ScenarioArguments { scenario, set } = scenario;
+    let mut line = format!("octant faults sweep {}", scenario.display());
+    for set in set {
         line += &format!(" --set '{set}'");
     }
-    if let Some(fault) = &arguments.fault {
+    if let Some(fault) = fault {
         line += &format!(" --fault {fault}");
     }
-    for over in &arguments.over {
+    for over in over {
         line += &format!(" --over '{over}'");
     }
-    line + &format!(" --seed {seed}")
+    line + &format!(" --seed {used_seed}")
 }

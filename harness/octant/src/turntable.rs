@@ -112,18 +112,16 @@ impl From<AxisName> for TableAxis {
 }
 
 fn failure(error: &Error) -> Failure {
-    match error {
-        Error::Dialect { .. }
-        | Error::Address(_)
-        | Error::Angle { .. }
-        | Error::Rate { .. }
-        | Error::Lacking { .. } => Failure::input(error),
-        _ => Failure::bench(error),
-    }
+    Failure::of_kind(error.kind_by_hand(), error)
 }
 
 /// Returns the plan of a table, and whether its limits are known.
-fn plan(table: &str, dialect: Option<&Path>, moves: bool) -> Result<(TablePlan, bool), Failure> {
+fn plan(table: &Table, moves: bool) -> Result<(TablePlan, bool), Failure> {
+    let Table { table, dialect } = table;
+    plan_of(table, dialect.as_deref(), moves)
+}
+
+fn plan_of(table: &str, dialect: Option<&Path>, moves: bool) -> Result<(TablePlan, bool), Failure> {
     if table.starts_with("tcp:") || table.starts_with("serial:") {
         check_port(table).map_err(Failure::input)?;
         // Without limits no angle is commanded.
@@ -230,13 +228,14 @@ fn told(status: &TableStatus, as_json: bool) -> Result<(), Failure> {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.action {
+    let Arguments { action } = arguments;
+    match action {
         Action::Status { table, json } => {
-            let (plan, _) = plan(&table.table, table.dialect.as_deref(), false)?;
+            let (plan, _) = plan(table, false)?;
             told(&look(&plan).map_err(|error| failure(&error))?, *json)?;
         }
         Action::Home { table, axis, json } => {
-            let (plan, _) = plan(&table.table, table.dialect.as_deref(), true)?;
+            let (plan, _) = plan(table, true)?;
             let axes = axis.map_or(TableAxis::ALL.to_vec(), |axis| vec![axis.into()]);
             let moves: Vec<Move> = axes.into_iter().map(Move::Home).collect();
             told(&moved(&plan, &moves)?, *json)?;
@@ -245,7 +244,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             let angle_rad = quantity("ANGLE", angle, UnitDimension::ANGLE)?;
             let rate = rate.as_deref();
             let rate = rate.map(|rate| quantity("--rate", rate, UnitDimension::ANGULAR_RATE));
-            let (plan, limited) = plan(&table.table, table.dialect.as_deref(), true)?;
+            let (plan, limited) = plan(table, true)?;
             if !limited {
                 return Err(Failure::input(format!(
                     "found {}, expected a scenario: its [turntable.drive] has the limits of the table",
@@ -255,7 +254,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             let moves = [Move::Goto((*axis).into(), angle_rad, rate.transpose()?)];
             told(&moved(&plan, &moves)?, *json)?;
         }
-        Action::Stop { table: None, .. } => {
+        // A dialect requires a table.
+        Action::Stop { table: None, dialect: _ } => {
             let pressed = press(None).map_err(|error| failure(&error))?;
             if pressed.is_empty() {
                 return Err(Failure::bench("no program of this host drives a table"));
@@ -269,7 +269,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             }
         }
         Action::Stop { table: Some(table), dialect } => {
-            let (plan, _) = plan(table, dialect.as_deref(), false)?;
+            let (plan, _) = plan_of(table, dialect.as_deref(), false)?;
             let who = stop_by_hand(&plan.port, &plan.dialect).map_err(|error| failure(&error))?;
             print(&format!("{}: stop sent through {}\n", plan.port, who.join(", and through ")))?;
         }

@@ -149,13 +149,23 @@ struct Found {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let place = CampaignPlace::of(&arguments.folder, Needs::All)?;
+    let Arguments {
+        folder: given,
+        key,
+        second_key,
+        expect,
+        reexecute: count,
+        sample_seed,
+        attest,
+        json,
+    } = arguments;
+    let place = CampaignPlace::of(given, Needs::All)?;
     let folder = crate::run_folder::folder_of(place.folder());
     let mut differences = Vec::new();
     let path = folder.join(manifest::FILE_NAME);
     let mut signed_by = None;
     // The signature comes first: a changed manifest is no reference.
-    if let Some(key) = &arguments.key {
+    if let Some(key) = key {
         match signature::verify(&path, key) {
             Ok(id) => signed_by = Some(format!("minisign key {id}")),
             Err(error @ signature::SignatureError::Key { .. }) => {
@@ -165,6 +175,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
     }
     let manifest = Manifest::read(folder).map_err(|error| Failure::input(error).failed())?;
+    // Refused although the folder may not be whole: the same command line has the same status for every run.
+    if let (Some(count), None) = (count, &manifest.campaign) {
+        count.refuse_for_run(given, *sample_seed)?;
+    }
     if is_partial(folder) {
         differences.push("the folder is a .partial: its run didn't finish".to_owned());
     }
@@ -181,7 +195,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let named = manifest.signature.as_deref().unwrap_or("none");
         differences.push(format!("the manifest names another key: {named}"));
     }
-    let second = second(arguments, folder, &manifest, &mut differences)?;
+    let second = second((key, second_key), folder, &manifest, &mut differences)?;
     // A folder with a FIFO in it is reported, and its contents are not opened.
     let opened = !found.iter().any(|difference| matches!(difference, FolderDifference::NoFile(..)));
     let inside = match &manifest.campaign {
@@ -190,17 +204,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         None => inside::of_run(folder, &manifest),
     };
     differences.extend(inside.contradictions.iter().cloned());
-    differences.extend(arguments.expect.iter().filter_map(|expected| expected.missed(&inside)));
+    differences.extend(expect.iter().filter_map(|expected| expected.missed(&inside)));
     let whole = differences.is_empty();
     // A folder that isn't whole is neither run again nor attested.
-    let reexecuted = match arguments.reexecute.filter(|_| whole) {
-        Some(count) => {
-            Some(super::reexecute::command(folder, &manifest, count, arguments.sample_seed)?)
-        }
+    let reexecuted = match count.filter(|_| whole) {
+        Some(count) => Some(super::reexecute::command(folder, &manifest, count, *sample_seed)?),
         None => None,
     };
     let again = reexecuted.as_ref().map_or(Verdict::Pass, |found| found.verdict);
-    if let Some(out) = arguments.attest.as_ref().filter(|_| whole && again == Verdict::Pass) {
+    if let Some(out) = attest.as_ref().filter(|_| whole && again == Verdict::Pass) {
         let bytes = files::read(&path).map_err(|error| {
             Failure::bench(format!("failed to read {}: {error}", path.display()))
         })?;
@@ -226,7 +238,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         second_ignored: second.ignored,
         signature: manifest.signature,
     };
-    if arguments.json {
+    if *json {
         print_json(&found)?
     } else {
         print(&text(&found))?
@@ -244,14 +256,14 @@ struct Second {
 
 /// Checks the second signature if a key is given, or if it belongs to nothing.
 fn second(
-    arguments: &Arguments,
+    (first_key, second_key): (&Option<String>, &Option<String>),
     folder: &Path,
     manifest: &Manifest,
     differences: &mut Vec<String>,
 ) -> Result<Second, Failure> {
     let there = std::fs::symlink_metadata(folder.join(signature::SECOND)).is_ok();
     // A signature with a given key is reported by the result of its check.
-    let ignored = there && arguments.second_key.is_none();
+    let ignored = there && second_key.is_none();
     let mut found = Second { ignored, signed_by: None };
     let is_named = manifest.files.iter().any(|file| file.path == disposition::FILE_NAME);
     let facts = manifest.campaign.as_ref().filter(|_| is_named);
@@ -263,7 +275,7 @@ fn second(
                 disposition::FILE_NAME
             ));
         }
-        if arguments.second_key.is_some() && manifest.campaign.is_none() {
+        if second_key.is_some() && manifest.campaign.is_none() {
             differences.push(
                 "--second-key: found the folder of a run, expected a campaign, whose dispositions are signed"
                     .to_owned(),
@@ -271,7 +283,7 @@ fn second(
         }
         return Ok(found);
     };
-    let (Some(first), Some(second)) = (&arguments.key, &arguments.second_key) else {
+    let (Some(first), Some(second)) = (first_key, second_key) else {
         return Ok(found);
     };
     let path = folder.join(disposition::FILE_NAME);

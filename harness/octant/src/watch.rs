@@ -45,19 +45,20 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let place = match &arguments.run {
+    let Arguments { run, plain, once: now, foxglove } = arguments;
+    let place = match run {
         Some(run) => RunPlace::of(run),
         None => RunPlace::newest(Path::new(RUNS)),
     };
     let place = place.map_err(|error| Failure::input(format!("failed to {error}")))?;
     let follow = Follow::new(place);
-    if let Some(address) = &arguments.foxglove {
+    if let Some(address) = foxglove {
         return super::live::serve(follow, address);
     }
-    if arguments.once {
+    if *now {
         return once(follow);
     }
-    if arguments.plain || !std::io::stdout().is_terminal() {
+    if *plain || !std::io::stdout().is_terminal() {
         return lines(follow);
     }
     #[cfg(feature = "dashboard")]

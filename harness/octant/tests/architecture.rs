@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/architecture.md");
 /// Most lines of product code in a crate.
-pub(crate) const CRATE_LINES_MAX: usize = 13_000;
+pub(crate) const CRATE_LINES_MAX: usize = 14_000;
 /// Most lines of a file of product code.
 pub(crate) const FILE_LINES_MAX: usize = 500;
 

@@ -298,8 +298,6 @@ fn a_comparison_in_other_units_is_converted_and_concludes_the_same() {
         let words = ["observe", "short.toml", "--ensemble", "--against", "."];
         ended(octant_in(bench.folder.path(), &[&words[..], more].concat()), 1).0
     };
-    let json = |more: &[&str]| observed(&[&["--json"], more].concat());
-    assert_eq!(json(&[]), json(&["--units", "km,deg"]), "units are display only");
     let text = observed(&["--units", "m,deg"]);
     for (name, metres) in [("latitude", 1_847.681_861), ("longitude", 1_599.982_122)] {
         let row = one.drift.iter().find(|row| row.name.starts_with(name)).unwrap();

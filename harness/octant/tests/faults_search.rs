@@ -112,6 +112,9 @@ fn a_search_that_finds_nothing_passes_and_one_that_shows_nothing_does_not() {
                  amplitude = { from = \"1 ug\", to = \"2 ug\" }\nonset = \"0 s\"\n";
     std::fs::write(folder.path().join("space.toml"), stays).unwrap();
     let stays = search(folder.path(), &["short.toml", "--space", "space.toml", "--runs", "16"]);
+    // The same on one thread.
+    let alone = ["short.toml", "--space", "space.toml", "--runs", "16", "--jobs", "1"];
+    assert_eq!(search(folder.path(), &alone).stdout, stays.stdout);
     assert_eq!(stays.status.code(), Some(3), "{}", words(&stays));
     assert!(words(&stays).contains("not judged"), "{}", words(&stays));
 }

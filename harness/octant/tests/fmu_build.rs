@@ -1,6 +1,7 @@
 //! `octant fmu build`: the contents of the files, their agreement with the tables, and that they
 //! run.
 
+use crate::common::program::{ended, octant_in};
 use octant_fmu::table::{self, Model};
 use octant_fmu_build::{BuildError, Options, build};
 use octant_fmu_host::archive::Archive;
@@ -400,4 +401,19 @@ fn what_can_not_be_built_is_said() {
     let target = Options { targets: vec!["z80-unknown-cpm".into()], ..Options::default() };
     let error = fails(target).to_string();
     assert!(error.contains("z80-unknown-cpm") && error.contains("knows no target"), "{error}");
+}
+
+#[test]
+fn the_command_builds_without_references_and_lists_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["fmu", "build", "--out", "here", "--without-reference", "--json"];
+    let (said, _) = ended(octant_in(folder.path(), &words), 0);
+    let found: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let files = found["files"].as_array().unwrap();
+    assert!(files.iter().any(|file| file == "here/calibrator_fmi3.fmu"), "{found}");
+    for file in files {
+        assert!(folder.path().join(file.as_str().unwrap()).is_file(), "{file}");
+    }
+    let size = |folder: &Path| folder.join("calibrator_fmi3.fmu").metadata().unwrap().len();
+    assert!(size(&folder.path().join("here")) < size(built()));
 }

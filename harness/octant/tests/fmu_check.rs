@@ -479,10 +479,13 @@ fn nothing_of_a_hostile_fmu_is_run() {
     assert!(out.contains("../evil: leaves the folder") && out.contains("[archive.name;"), "{out}");
     assert!(!mark.exists());
     let plain = packed("plain.fmu", &[]);
-    let (output, out, err) = octant(&["--no-load"], &[&plain]);
-    assert_eq!(output.status.code(), Some(0), "{out}{err}");
-    assert!(!mark.exists());
-    let (output, out, err) = octant(&[], &[&plain]);
+    // The last of the two counts.
+    for no_load in [&["--no-load"][..], &["--load", "--no-load"]] {
+        let (output, out, err) = octant(no_load, &[&plain]);
+        assert_eq!(output.status.code(), Some(0), "{out}{err}");
+        assert!(!mark.exists());
+    }
+    let (output, out, err) = octant(&["--no-load", "--load"], &[&plain]);
     assert_eq!(output.status.code(), Some(0), "{out}{err}");
     assert!(mark.exists());
 }

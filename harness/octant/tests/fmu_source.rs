@@ -505,7 +505,8 @@ fn any_fmu_is_stepped_with_inputs_from_a_file() {
         (&["--set", "mode=off"], "expected one of \"idle\" (1), \"busy\" (2)"),
         (&["--stop", "-1"], "a stop at or after the start"),
         (&["--step", "soon"], "--step: found \"soon\", expected a time"),
-        (&["--output", "yy"], "the FMU has no variable \"yy\""),
+        (&["--output", "yy", "--out", "rows.csv"], "the FMU has no variable \"yy\""),
+        (&["--output", "y"], "--out"),
         (&["--interface", "me"], "can't run by model exchange"),
         (&["--out", "rows.txt"], "expected a name that ends in .csv or .mcap"),
     ] {

@@ -36,8 +36,13 @@ struct Served {
 
 impl Served {
     fn new(endpoint: &str, scenario: &Path) -> Self {
+        Self::with(endpoint, scenario, &[])
+    }
+
+    fn with(endpoint: &str, scenario: &Path, more: &[&str]) -> Self {
         let mut child = Command::new(OCTANT)
             .args(["serve", "--silence", "2", "--endpoint", endpoint])
+            .args(more)
             .arg(scenario)
             .stderr(Stdio::piped())
             .spawn()
@@ -354,6 +359,7 @@ fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
         grows(&out.with_extension("partial").join("recording.mcap"));
         child.kill().unwrap();
         assert_eq!(child.wait().unwrap().code(), None, "it was killed before its end");
+        // After the seconds of --silence the device is free.
         let found = bench.hash(&format!("after-{i}"), &["--endpoint", &served.uri]);
         assert_eq!(found, expected, "{endpoint}");
     }
@@ -411,6 +417,16 @@ fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     };
     let said = refused(&["--set", "site.latitude=40 deg"], 2);
     assert!(said.contains("give both the same scenario"), "{said}");
+    // Both have the same seed too.
+    let seeded = Served::with("udp:0", &bench.scenario, &["--seed", "7"]);
+    for (more, status) in [(&[][..], 2), (&["--seed", "7"], 0)] {
+        let all = [&["--endpoint", seeded.uri.as_str()], more].concat();
+        let output = bench.run(&bench.scenario, "seeded", &all);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(status == 0 || said.contains("give both the same scenario"), "{said}");
+        let _ = std::fs::remove_dir_all(bench.folder.path().join("seeded.partial"));
+    }
     let said = refused(&["--set", "imu.rate=100 Hz"], 2);
     assert!(said.contains("sample period"), "{said}");
     // A scenario with a baseline, for which a device has no second core.

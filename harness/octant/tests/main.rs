@@ -86,6 +86,8 @@ mod observe_protection;
 mod operator;
 #[cfg(target_os = "linux")]
 mod operator_ways;
+#[cfg(all(unix, feature = "full"))]
+mod options;
 #[cfg(target_os = "linux")]
 mod out_of_memory;
 #[cfg(unix)]

@@ -126,3 +126,28 @@ fn a_wrong_answer_writes_nothing() {
         assert!(!folder.path().join("a.toml").exists());
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn defaults_take_the_place_of_questions_on_a_terminal() {
+    use crate::common::program::program;
+    use crate::operator_ways::on_terminal;
+    use std::io::Write;
+    use std::process::Stdio;
+    let folder = tempfile::tempdir().unwrap();
+    let new = |more: &[&str]| {
+        let mut command = program(&["new", "a.toml"]);
+        command.args(more).current_dir(folder.path()).stdout(Stdio::null());
+        on_terminal(&mut command)
+    };
+    let (mut keys, asked) = new(&[]);
+    asked.hears("title [a]:", 1);
+    // The end of the input.
+    keys.write_all(b"\x04").unwrap();
+    assert_eq!(asked.end().0, Some(2));
+    assert!(!folder.path().join("a.toml").exists());
+    let (_keys, written) = new(&["--defaults"]);
+    let (status, words) = written.end();
+    assert_eq!((status, words.as_str()), (Some(0), ""));
+    assert!(folder.path().join("a.toml").exists());
+}

@@ -9,7 +9,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 
 /// A run on a terminal of its own: what is typed there, and what it shows.
-fn on_terminal(command: &mut Command) -> (File, Going) {
+pub fn on_terminal(command: &mut Command) -> (File, Going) {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
     grantpt(&ours).unwrap();

@@ -392,7 +392,9 @@ fn a_supply_is_looked_at_set_and_switched_by_hand() {
         told,
         "Octant,simulated supply,0,1.0\noff, set to 12 V and at most 0.5 A; measured 0.000 V, 0.0000 A\n"
     );
-    by_hand(&["on"], 0);
+    assert!(!instrument.heard().iter().any(|line| line == "SYST:REM"));
+    by_hand(&["--remote", "on"], 0);
+    assert!(instrument.heard().iter().any(|line| line == "SYST:REM"));
     assert!(instrument.is_on(2));
     let (told, _) = by_hand(&["--json", "status"], 0);
     let told: Value = serde_json::from_str(&told).unwrap();

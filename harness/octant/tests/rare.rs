@@ -29,8 +29,8 @@ fn the_answer_the_failing_run_and_the_journal() {
     let below = with(&["--below", "0.1", "--out", "found"]);
     assert_eq!(below.status.code(), Some(0), "{}", words(&below));
     assert!(words(&below).contains("shown to be at or below 0.100"), "{}", words(&below));
-    // The other questions take the runs of the journal.
-    let above = with(&["--below", "1e-3", "--out", "found"]);
+    // The other questions take the runs of the journal, on one thread too.
+    let above = with(&["--below", "1e-3", "--out", "found", "--jobs", "1"]);
     assert_eq!(above.status.code(), Some(1), "{}", words(&above));
     let between = with(&["--below", "0.0124", "--out", "found"]);
     assert_eq!(between.status.code(), Some(3), "{}", words(&between));
@@ -38,6 +38,8 @@ fn the_answer_the_failing_run_and_the_journal() {
         |name: &str| std::fs::read_to_string(folder.path().join("found").join(name)).unwrap();
     let found: serde_json::Value = serde_json::from_str(&read("rare.json")).unwrap();
     assert_eq!((&found["schema"], &found["shown"]), (&1.into(), &true.into()), "{found}");
+    // --error 0.2 is reached before all of --runs 2000 are made.
+    assert!(found["runs"].as_u64() < Some(1000), "{found}");
     let [low, high] = [0, 1].map(|end| found["interval"][end].as_f64().unwrap());
     assert!(low <= 0.012_419 && 0.012_419 <= high, "{low} {high}");
     // The failing run fails by the same margin.

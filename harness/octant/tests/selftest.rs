@@ -10,7 +10,9 @@ fn every_case_comes_as_it_has_to() {
     // A campaign for which it is made; nothing else of a repository is here.
     std::fs::create_dir(here.join("cert")).unwrap();
     std::fs::write(here.join("cert/plan.json"), "{}").unwrap();
-    let output = octant_in(here, &["selftest", "--out", "found.json", "--for", "cert", "--json"]);
+    let files = ["--out", "found.json", "--for", "cert"];
+    let words = [&["selftest", "--json", "--jobs", "2"][..], &files].concat();
+    let output = octant_in(here, &words);
     let printed = String::from_utf8(output.stdout).unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     let found: Value = serde_json::from_str(&printed).unwrap();
@@ -61,6 +63,29 @@ fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
         said.contains("--for: found no plan.json in ., expected the folder of a campaign"),
         "{said}"
     );
+}
+
+/// Cases that can't write their files end as errors.
+#[cfg(unix)]
+#[test]
+fn a_part_is_run_to_its_first_failure_alone() {
+    let run = |more: &[&str]| -> Value {
+        let limited = "ulimit -f 1; exec \"$0\" \"$@\"";
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", limited, OCTANT, "selftest", "--answers", "--jobs", "1", "--json"]);
+        let output = command.args(more).output().unwrap();
+        assert_eq!(output.status.code(), Some(4), "{output:?}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let of = |found: &Value| {
+        let cases = found["cases"].as_array().unwrap();
+        let failed = cases.iter().filter(|case| case["verdict"] != "pass").count();
+        (cases.len(), failed)
+    };
+    let (all, failed) = of(&run(&[]));
+    assert!(all < octant_selftest::cases().len() && failed > 1, "{all} {failed}");
+    let (some, failed) = of(&run(&["--fail-fast"]));
+    assert!(some < all && failed == 1, "{some} of {all}, {failed}");
 }
 
 /// A program whose verdicts can't be trusted is detected: everything passes with it.

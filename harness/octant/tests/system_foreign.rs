@@ -4,7 +4,7 @@
 use crate::common::foreign;
 use crate::common::program::octant;
 use serde_json::Value;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -278,7 +278,7 @@ fn a_packed_system_is_run_and_what_is_none_is_refused() {
     );
     let unpacked = unpacked.path();
     for (more, expected) in [
-        (&["--source", "plant"][..], "--source is for scenarios"),
+        (&["--source", "plant"][..], "--source: found the system of FMUs"),
         (&["--order", "gauss-seidel=ball"], "the order leaves out sum"),
         (&["--step", "7 ms", "--stop", "1 s"], "expected a whole number"),
         (&["--step", "fast"], "--step: found \"fast\", expected a time"),
@@ -296,7 +296,69 @@ fn a_packed_system_is_run_and_what_is_none_is_refused() {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenarios/quick.toml");
     let ran = run(&scenario, &unpacked.join("run"), &["--order", "jacobi"]);
     assert_eq!(ran.status.code(), Some(2));
-    assert!(error(&ran).contains("--order is for systems of FMUs"), "{}", error(&ran));
+    assert!(error(&ran).contains("--order: found the scenario"), "{}", error(&ran));
+}
+
+/// Rewrites the description of an FMU so that it needs the tool that made it.
+fn needs_its_tool(fmu: &Path) {
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(fmu).unwrap()).unwrap();
+    let mut written = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index(index).unwrap();
+        let (name, mut bytes) = (entry.name().unwrap().into_owned(), Vec::new());
+        entry.read_to_end(&mut bytes).unwrap();
+        if name == "modelDescription.xml" {
+            let text = String::from_utf8(bytes).unwrap();
+            let needing = "<CoSimulation needsExecutionTool=\"true\" ";
+            bytes = text.replace("<CoSimulation ", needing).into_bytes();
+        }
+        written.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        written.write_all(&bytes).unwrap();
+    }
+    std::fs::write(fmu, written.finish().unwrap().into_inner()).unwrap();
+}
+
+#[test]
+fn an_fmu_that_needs_its_tool_is_run_on_request_alone() {
+    let folder = ball();
+    needs_its_tool(&folder.path().join("resources/gain_fmi2.fmu"));
+    let run = |more: &[&str]| {
+        let ran =
+            run(folder.path(), &folder.path().join("run"), &[&["--stop", "0.1 s"], more].concat());
+        (ran.status.code(), error(&ran))
+    };
+    let (status, said) = run(&[]);
+    assert!(status == Some(2) && said.contains("it needs the tool that made it"), "{said}");
+    let (status, said) = run(&["--allow-tool"]);
+    assert_eq!(status, Some(0), "{said}");
+}
+
+/// A run of which nothing is required passes in no pipeline that asks for requirements.
+#[test]
+fn a_system_without_requirements_is_inconclusive_where_some_are_asked_for() {
+    let folder = ball();
+    let requirements = folder.path().join("requirements.toml");
+    let text = "schema = 1\n[[requirements]]\nid = \"V\"\ntext = \"It falls.\"\n\
+                measure = \"signal.ball.v.max\"\nlimit = 1.0\n";
+    std::fs::write(&requirements, text).unwrap();
+    let given = ["--requirements", requirements.to_str().unwrap()];
+    for (more, status, verdict) in [
+        (&[][..], 0, "none"),
+        (&["--require"], 3, "inconclusive"),
+        (&[&["--require"], &given[..]].concat(), 0, "pass"),
+    ] {
+        let out = folder.path().join(verdict);
+        let ran = run(folder.path(), &out, &[&["--stop", "0.1 s"], more].concat());
+        assert_eq!(ran.status.code(), Some(status), "{}", error(&ran));
+        let found = summary(&out);
+        assert_eq!(found["verdict"], verdict, "{found}");
+        let manifest = std::fs::read_to_string(out.join("manifest.json")).unwrap();
+        assert_eq!(manifest.contains("--require"), !more.is_empty(), "{manifest}");
+        if status == 3 {
+            let reasons = ["the system requires nothing, and --require wants it to"];
+            assert_eq!(found["reasons"], serde_json::json!(reasons));
+        }
+    }
 }
 
 #[test]

@@ -243,6 +243,15 @@ fn by_hand_on_a_pseudo_terminal() {
     // The table is queried, and no drive is switched on.
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("azimuth  0.00000 deg") && said.contains("drive off"), "{said}");
+    let (status, said) = octant(&["home", &name, "--axis", "roll", "--json"]);
+    assert_eq!(status, Some(0), "{said}");
+    let json: Value = serde_json::from_str(&said).unwrap();
+    let homed = |axis: &str| json[axis]["homed"].clone();
+    assert_eq!((homed("roll"), homed("azimuth")), (true.into(), false.into()), "{json}");
+    let (status, said) = octant(&["status", &name, "--json"]);
+    assert_eq!(status, Some(0), "{said}");
+    let json: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(json["roll"]["homed"], true, "{json}");
     let (status, said) = octant(&["home", &name]);
     assert_eq!(status, Some(0), "{said}");
     assert!(said.matches(", homed").count() == 2, "{said}");

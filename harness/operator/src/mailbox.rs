@@ -7,6 +7,7 @@
 use crate::desk::Desk;
 use crate::mails::Mails;
 use crate::record::AnswerWay;
+use octant_base::failing::{Failing, FailureKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::io;
@@ -120,6 +121,15 @@ pub enum MailboxError {
         /// Error of the operating system.
         source: io::Error,
     },
+}
+
+impl Failing for MailboxError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Nobody(_) => FailureKind::Input,
+            Self::Silent { .. } | Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 impl Mailbox {

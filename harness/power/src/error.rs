@@ -1,6 +1,7 @@
 //! Errors of a supply or a relay.
 
 use octant_base::address::AddressError;
+use octant_base::failing::{Failing, FailureKind};
 use std::time::Duration;
 
 /// Error of a supply or a relay.
@@ -95,4 +96,20 @@ pub enum PowerError {
     /// An interrupt came.
     #[error("interrupted while the power was being switched")]
     Interrupted,
+}
+
+impl Failing for PowerError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Address { .. } | Self::Relay { .. } => FailureKind::Input,
+            Self::Open { .. }
+            | Self::Gone { .. }
+            | Self::Silent { .. }
+            | Self::Nonsense { .. }
+            | Self::Refused { .. }
+            | Self::State { .. }
+            | Self::Voltage { .. }
+            | Self::Interrupted => FailureKind::Bench,
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Reasons why an estimate gave no result.
 
 use octant_base::chained_lines::ChainedLinesError;
+use octant_base::failing::{Failing, FailureKind};
 use std::path::PathBuf;
 
 /// Reasons why an estimate gave no result.
@@ -68,6 +69,24 @@ pub enum RareError {
     /// Interrupted on request.
     #[error("interrupted: the same command resumes")]
     Cancelled,
+}
+
+impl Failing for RareError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::NoRequirement { .. }
+            | Self::NothingRequired
+            | Self::Several(..)
+            | Self::NotSimulated
+            | Self::ByClock
+            | Self::Attended(_)
+            | Self::NoCalibration
+            | Self::NoParameter { .. }
+            | Self::OtherEstimate { .. } => FailureKind::Input,
+            Self::Journal { .. } | Self::Differs(_) => FailureKind::Bench,
+            Self::Cancelled => FailureKind::Inconclusive,
+        }
+    }
 }
 
 impl From<ChainedLinesError> for RareError {

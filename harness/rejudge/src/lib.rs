@@ -5,6 +5,7 @@
 //! Nothing is run either: [`octant_score::rederive`] has the rules, and lists the quantities that
 //! were never stored.
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{self, Plan};
@@ -144,6 +145,17 @@ pub enum RejudgeError {
         /// Error of the operating system.
         reason: String,
     },
+}
+
+impl Failing for RejudgeError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Differs { .. } | Self::Form { .. } | Self::Manifest(_) | Self::Nothing { .. } => {
+                FailureKind::Input
+            }
+            Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 /// Judges the folder of a run, a campaign or a night again.

@@ -1,6 +1,7 @@
 //! Ends of a run's loop, planned ones and failures.
 
 use super::unit::UnitEventError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_endpoint::EndpointError;
 use octant_recorder::RecorderError;
 use octant_sample::{Mode, Output};
@@ -63,6 +64,20 @@ pub enum RunError {
     /// A recorded event of the unit can't be repeated.
     #[error(transparent)]
     Unit(#[from] UnitEventError),
+}
+
+impl Failing for RunError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Source(error) => error.kind(),
+            Self::Endpoint(_)
+            | Self::Recorder(_)
+            | Self::Untold
+            | Self::Drift(_)
+            | Self::Smoother(_)
+            | Self::Unit(_) => FailureKind::Bench,
+        }
+    }
 }
 
 impl RunError {

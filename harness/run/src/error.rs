@@ -1,6 +1,7 @@
 //! Reasons why a method gave no result.
 
 use super::ended::RunError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_calibration::state_machine::CoreConfigError;
 use octant_recorder::RecorderError;
 use octant_source::SourceError;
@@ -43,6 +44,21 @@ pub enum SetupError {
     /// The recorder could not be set up.
     #[error(transparent)]
     Recorder(#[from] RecorderError),
+}
+
+impl Failing for SetupError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Source(error) => error.kind(),
+            Self::Endpoint(error) => error.kind(),
+            Self::Plant(_)
+            | Self::Core(_)
+            | Self::Fault { .. }
+            | Self::NoBaseline
+            | Self::Unattended { .. } => FailureKind::Input,
+            Self::Recorder(_) => FailureKind::Bench,
+        }
+    }
 }
 
 impl From<ConfigurationError> for SetupError {
@@ -91,4 +107,13 @@ pub enum MethodError {
     /// The run was aborted: the bench failed.
     #[error(transparent)]
     Run(#[from] RunError),
+}
+
+impl Failing for MethodError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Setup(error) => error.kind(),
+            Self::Run(error) => error.kind(),
+        }
+    }
 }

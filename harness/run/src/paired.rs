@@ -3,6 +3,7 @@
 use super::drive::Ended;
 use super::method::{MethodError, StreamKeeping, run_method};
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::{in_order, processors};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::{Method, MotionSpec, Scenario};
@@ -41,6 +42,16 @@ pub enum PairedError {
     /// Interrupted on request.
     #[error("compare: interrupted")]
     Cancelled,
+}
+
+impl Failing for PairedError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Method(error) => error.kind(),
+            Self::NoNavigation | Self::NotSimulated => FailureKind::Input,
+            Self::Cancelled => FailureKind::Inconclusive,
+        }
+    }
 }
 
 /// Result of one side with one seed.

@@ -7,6 +7,7 @@ use super::set_up::SetUp;
 use super::with_twin::run_with_twin;
 use octant_base::attendance::Attendance;
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::spawn;
 use octant_mapping::OpenedFmus;
 use octant_scenario::{Method, Scenario};
@@ -57,6 +58,14 @@ pub enum PreparedError {
      realtime.pace = \"clock\" in the scenario"
 )]
 pub struct NeverLost;
+impl Failing for PreparedError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Method(error) => error.kind(),
+            Self::Panicked => FailureKind::Bench,
+        }
+    }
+}
 
 impl<'a> Prepared<'a> {
     /// Prepares the methods of a scenario. With `twins`, each is compared with the same run without

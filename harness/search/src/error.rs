@@ -1,6 +1,7 @@
 //! Reasons why a search gave no result.
 
 use octant_base::chained_lines::ChainedLinesError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_run::method::MethodError;
 use octant_scenario::Problem;
 use std::path::PathBuf;
@@ -55,6 +56,23 @@ pub enum FaultSearchError {
     /// Interrupted on request.
     #[error("interrupted: the same command resumes")]
     Cancelled,
+}
+
+impl Failing for FaultSearchError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Method(error) => error.kind(),
+            Self::HasFaults(_)
+            | Self::Unwritable(_)
+            | Self::Unreadable(_)
+            | Self::NoCalibration
+            | Self::EmptySpace(_)
+            | Self::OtherSearch { .. } => FailureKind::Input,
+            Self::Journal { .. } | Self::Differs(_) => FailureKind::Bench,
+            Self::Cancelled => FailureKind::Inconclusive,
+            Self::TwinRefused(_) => FailureKind::Fail,
+        }
+    }
 }
 
 impl From<ChainedLinesError> for FaultSearchError {

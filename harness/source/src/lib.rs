@@ -34,6 +34,7 @@ pub use replay::Replay;
 pub use solution::SolutionSource;
 pub use text::TextSource;
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_plant::Truth;
 use octant_recorder::event::BenchRecord;
 pub use octant_sample::Epoch;
@@ -159,6 +160,19 @@ pub enum SourceError {
          expected one built with its default features, or with --features octant/can"
     )]
     WithoutCan,
+}
+
+impl Failing for SourceError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Table(error) => error.kind(),
+            Self::Use(error) => error.kind(),
+            Self::Read { .. } | Self::FileName(_) | Self::Solution(_) | Self::WithoutCan => {
+                FailureKind::Input
+            }
+            Self::TableStopped { .. } | Self::Gone { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 /// Returns the period of a nominal rate, rounded to a nanosecond.

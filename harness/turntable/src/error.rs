@@ -2,6 +2,7 @@
 
 use crate::TableAxis;
 use octant_base::address::AddressError;
+use octant_base::failing::{Failing, FailureKind};
 use std::time::Duration;
 
 /// Error of a table.
@@ -198,4 +199,65 @@ pub enum Error {
         /// Reason.
         reason: String,
     },
+}
+
+impl Failing for Error {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Dialect { .. } | Self::Address(_) => FailureKind::Input,
+            Self::Open { .. }
+            | Self::Listen { .. }
+            | Self::Gone { .. }
+            | Self::Silent { .. }
+            | Self::Moving { .. }
+            | Self::Elsewhere { .. }
+            | Self::NotHomed { .. }
+            | Self::Nonsense { .. }
+            | Self::Refused { .. }
+            | Self::Limits { .. }
+            | Self::Angle { .. }
+            | Self::Rate { .. }
+            | Self::Fault { .. }
+            | Self::Stopped { .. }
+            | Self::Lacking { .. }
+            | Self::Button { .. }
+            | Self::Alone { .. }
+            | Self::Interrupted
+            | Self::Unended { .. }
+            | Self::Shared { .. }
+            | Self::Guard { .. } => FailureKind::Bench,
+        }
+    }
+}
+
+impl Error {
+    /// Kind of a failure of a move by hand: what was asked for may be beyond the limits.
+    #[must_use]
+    pub fn kind_by_hand(&self) -> FailureKind {
+        match self {
+            Self::Angle { .. }
+            | Self::Rate { .. }
+            | Self::Lacking { .. }
+            | Self::Dialect { .. }
+            | Self::Address(_) => FailureKind::Input,
+            Self::Open { .. }
+            | Self::Listen { .. }
+            | Self::Gone { .. }
+            | Self::Silent { .. }
+            | Self::Moving { .. }
+            | Self::Elsewhere { .. }
+            | Self::NotHomed { .. }
+            | Self::Nonsense { .. }
+            | Self::Refused { .. }
+            | Self::Limits { .. }
+            | Self::Fault { .. }
+            | Self::Stopped { .. }
+            | Self::Button { .. }
+            | Self::Alone { .. }
+            | Self::Interrupted
+            | Self::Unended { .. }
+            | Self::Shared { .. }
+            | Self::Guard { .. } => FailureKind::Bench,
+        }
+    }
 }

@@ -13,6 +13,7 @@ use foxglove::{
     ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, SinkId,
     WebSocketServer, WebSocketServerHandle,
 };
+use octant_base::failing::{Failing, FailureKind};
 use octant_recorder::further::{FurtherChannel, FurtherMessages};
 use octant_recorder::reader::Item;
 use octant_topics::boundary::EpochBoundary;
@@ -56,11 +57,12 @@ pub enum FoxgloveServeError {
     },
 }
 
-impl FoxgloveServeError {
-    /// Returns whether the port is taken or not allowed, which isn't an error in the address.
-    #[must_use]
-    pub const fn is_bench(&self) -> bool {
-        matches!(self, Self::Start { .. })
+impl Failing for FoxgloveServeError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Address { .. } => FailureKind::Input,
+            Self::Start { .. } => FailureKind::Bench,
+        }
     }
 }
 

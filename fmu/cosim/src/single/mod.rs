@@ -9,6 +9,7 @@ pub mod scheduled;
 
 use input::Inputs;
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_fmu_host::instance::{Instance, InstanceError, StepOutcome};
 use octant_mapping::settings::Starts;
 use output::{Outputs, Sink};
@@ -135,6 +136,18 @@ pub enum SimulateError {
     /// The outputs can't be written.
     #[error("write the outputs: {0}")]
     Write(#[from] std::io::Error),
+}
+
+impl Failing for SimulateError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Instance(error) => error.kind_of_running(),
+            Self::Refused { .. }
+            | Self::Clock { .. }
+            | Self::NoPartition { .. }
+            | Self::Write(_) => FailureKind::Bench,
+        }
+    }
 }
 
 /// Steps an FMU from its start values to the end.

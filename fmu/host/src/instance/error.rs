@@ -1,6 +1,7 @@
 //! Errors of a running FMU.
 
 use super::VariableGroup;
+use octant_base::failing::FailureKind;
 use serde::{Deserialize, Serialize};
 
 /// Reason why an FMU could not continue. The error crosses processes, so that it holds text and no
@@ -93,6 +94,42 @@ pub enum InstanceError {
         /// `was ended by SIGSEGV in fmi2DoStep`, `gave no answer to … for 10 s`.
         what: String,
     },
+}
+
+impl InstanceError {
+    /// Kind of a failure of an FMU that is opened: it may not fit what it is opened for.
+    #[must_use]
+    pub fn kind_of_opening(&self) -> FailureKind {
+        match self {
+            Self::Load { .. }
+            | Self::Failed { .. }
+            | Self::Unsupported { .. }
+            | Self::Order { .. }
+            | Self::Value { .. }
+            | Self::Endless { .. }
+            | Self::State { .. }
+            | Self::Integration { .. } => FailureKind::Input,
+            Self::Process { .. } => FailureKind::Bench,
+        }
+    }
+}
+
+impl InstanceError {
+    /// Kind of a failure of an FMU that runs: a value may be one that its variable can't have.
+    #[must_use]
+    pub fn kind_of_running(&self) -> FailureKind {
+        match self {
+            Self::Value { .. } => FailureKind::Input,
+            Self::Load { .. }
+            | Self::Failed { .. }
+            | Self::Unsupported { .. }
+            | Self::Order { .. }
+            | Self::Endless { .. }
+            | Self::State { .. }
+            | Self::Integration { .. }
+            | Self::Process { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 impl InstanceError {

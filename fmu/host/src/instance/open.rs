@@ -16,6 +16,7 @@ use super::options::{InterfaceKind, OpenOptions, ProcessPlace};
 use super::scheduled::ScheduledExecution;
 use super::setup::Setup;
 use super::{Instance, InstanceError, fmi2, fmi3};
+use octant_base::failing::{Failing, FailureKind};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -31,6 +32,15 @@ pub enum FmuOpenError {
     /// Error of the code.
     #[error(transparent)]
     Instance(#[from] InstanceError),
+}
+
+impl Failing for FmuOpenError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Instance(error) => error.kind_of_opening(),
+            Self::Archive(_) | Self::Description(_) => FailureKind::Input,
+        }
+    }
 }
 
 /// Opens an FMU, or a folder with its unpacked content.

@@ -3,6 +3,7 @@
 use crate::case::ResultError;
 use crate::execute::ExecuteError;
 use crate::plan::PlanError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_evidence::ManifestError;
 use octant_evidence::disposition::DispositionError;
 use std::path::PathBuf;
@@ -63,4 +64,18 @@ pub enum ReportError {
     /// The manifest can't be written.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
+}
+
+impl Failing for ReportError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Plan(error) => error.kind(),
+            Self::Foreign(error) => error.kind(),
+            Self::Dispositions(error) => error.kind(),
+            Self::Form { .. } | Self::Units { .. } => FailureKind::Input,
+            Self::Result(_) | Self::System { .. } | Self::Format { .. } | Self::Manifest(_) => {
+                FailureKind::Bench
+            }
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Layout of tables in their files, and reasons why one could not be written or read.
 
+use octant_base::failing::{Failing, FailureKind};
 use std::path::PathBuf;
 
 /// Version of the tables' layout.
@@ -46,4 +47,13 @@ pub enum TableError {
         /// Reason.
         reason: String,
     },
+}
+
+impl Failing for TableError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::System { action: "write", .. } | Self::Write { .. } => FailureKind::Bench,
+            Self::System { .. } | Self::Form { .. } => FailureKind::Input,
+        }
+    }
 }

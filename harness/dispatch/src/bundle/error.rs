@@ -1,5 +1,6 @@
 //! Reasons why a bundle can't be made or used.
 
+use octant_base::failing::{Failing, FailureKind};
 use octant_campaign::plan::PlanError;
 use octant_scenario::{FileNameError, ScenarioError};
 use std::path::PathBuf;
@@ -60,6 +61,22 @@ pub enum BundleError {
         /// Value found and value expected.
         reason: String,
     },
+}
+
+impl Failing for BundleError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Plan(error) => error.kind(),
+            Self::System { action: "read", .. }
+            | Self::Scenario(_)
+            | Self::Name(_)
+            | Self::Unfit { .. }
+            | Self::Exists { .. }
+            | Self::Form { .. }
+            | Self::Entry { .. } => FailureKind::Input,
+            Self::System { .. } => FailureKind::Bench,
+        }
+    }
 }
 
 /// Reasons why an entry may not have its name. The text fits after the name.

@@ -1,6 +1,7 @@
 //! Reasons why a session can't begin or continue.
 
 use crate::port::PortError;
+use octant_base::failing::{Failing, FailureKind};
 use octant_wire::Unreadable;
 use octant_wire::message::{Bye, Reason, SessionRefusal};
 use std::fmt;
@@ -100,6 +101,21 @@ pub enum SessionError {
         /// Capability.
         what: &'static str,
     },
+}
+
+impl Failing for SessionError {
+    fn kind(&self) -> FailureKind {
+        match self {
+            Self::Refused { .. }
+            | Self::Control { .. }
+            | Self::Newer { .. }
+            | Self::OtherDevice { .. }
+            | Self::Unsupported { .. } => FailureKind::Input,
+            Self::Port(_) | Self::NoAnswer { .. } | Self::Bye { .. } | Self::StartedAnew { .. } => {
+                FailureKind::Bench
+            }
+        }
+    }
 }
 
 /// Displays a bye.

@@ -15,12 +15,16 @@ use std::path::Path;
 
 impl From<BundleError> for Failure {
     fn from(error: BundleError) -> Self {
+        let failure = Self::of(&error);
         match error {
             BundleError::Plan(error) => error.into(),
-            BundleError::Scenario(error) => Self::input(error),
-            BundleError::System { action: "read", .. } => Self::input(error).failed(),
-            BundleError::System { .. } => Self::bench(error).failed(),
-            _ => Self::input(error).failed(),
+            BundleError::Scenario(_) => failure,
+            BundleError::Name(_)
+            | BundleError::System { .. }
+            | BundleError::Unfit { .. }
+            | BundleError::Exists { .. }
+            | BundleError::Form { .. }
+            | BundleError::Entry { .. } => failure.failed(),
         }
     }
 }

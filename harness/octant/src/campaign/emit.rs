@@ -2,6 +2,7 @@
 
 use super::planned::read;
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::place::{self, CampaignPlace, Needs};
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
@@ -49,11 +50,27 @@ enum Scheduler {
     K8s,
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+impl Scheduler {
+    /// Name on the command line.
+    fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
     let Arguments { scheduler, folder, shards, jobs, array, image, claim, secret } = arguments;
     let refused = |option: &str, expected: &str| {
         Failure::input(format!("{option}: found {}, expected {expected}", folder.display()))
     };
+    if *scheduler != Scheduler::Slurm {
+        given.refuse_ids(&["array"], format!("found with {}, expected slurm", scheduler.name()))?;
+    }
+    if *scheduler != Scheduler::K8s {
+        given.refuse_ids(
+            &["image", "claim", "secret"],
+            format!("found with {}, expected k8s", scheduler.name()),
+        )?;
+    }
     let address = place::address(folder);
     if address.is_some() && *scheduler != Scheduler::K8s {
         return Err(refused("DIR", "a folder that all nodes see; on object storage emit k8s"));

@@ -10,22 +10,12 @@ use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::Plan;
 use octant_campaign::results;
 use octant_campaign::store::CampaignResults;
-use octant_campaign::table::TableError;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
 impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
-        match error {
-            MergeError::Table(
-                TableError::System { action: "write", .. } | TableError::Write { .. },
-            )
-            | MergeError::Differs { .. } => Self::bench(error).failed(),
-            MergeError::Table(_)
-            | MergeError::Nothing { .. }
-            | MergeError::Numerics { .. }
-            | MergeError::Foreign { .. } => Self::input(error).failed(),
-        }
+        Self::of(&error).failed()
     }
 }
 

@@ -9,6 +9,7 @@ mod report;
 pub(super) mod run;
 
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::place::{CampaignPlace, Needs};
 use crate::terminal::{print, print_json, write};
 use clap::{Args, Subcommand};
@@ -129,10 +130,11 @@ enum Command {
     Work,
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { command } = arguments;
+    match command {
         Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
-        Command::Run(arguments) => run::command(arguments),
+        Command::Run(arguments) => run::command(arguments, given),
         Command::Status { folder, json } => {
             let place = CampaignPlace::of(folder, Needs::Results)?;
             let folder = place.folder();
@@ -151,7 +153,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Bundle { folder, out } => bundle::bundle(folder, out),
         Command::Unbundle { bundle, folder } => bundle::unbundle(bundle, folder),
-        Command::Emit(arguments) => emit::command(arguments),
+        Command::Emit(arguments) => emit::command(arguments, given),
         Command::Result { folder, case } => result(folder, case),
         Command::Work => work(),
     }
@@ -159,26 +161,27 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 impl From<PlanError> for Failure {
     fn from(error: PlanError) -> Self {
+        let failure = Self::of(&error);
         match error {
-            PlanError::File(error) => Self::input(error),
-            PlanError::Requirements(error) => Self::input(error),
-            PlanError::System { action: "create" | "create a file in" | "write", .. } => {
-                Self::bench(error).failed()
+            // The place comes first.
+            PlanError::File(_) | PlanError::Requirements(_) => failure,
+            PlanError::System { .. } | PlanError::Contradiction { .. } | PlanError::Form { .. } => {
+                failure.failed()
             }
-            error => Self::input(error).failed(),
         }
     }
 }
 
 impl From<ExecuteError> for Failure {
     fn from(error: ExecuteError) -> Self {
+        let failure = Self::of(&error);
         match error {
             ExecuteError::Plan(error) => error.into(),
-            ExecuteError::Foreign { .. } => Self::input(error).failed(),
-            ExecuteError::NotKept(_) | ExecuteError::Result(_) => Self::bench(error),
-            ExecuteError::Ended { .. } | ExecuteError::System { .. } | ExecuteError::Part(_) => {
-                Self::bench(error).failed()
-            }
+            ExecuteError::NotKept(_) | ExecuteError::Result(_) => failure,
+            ExecuteError::Foreign { .. }
+            | ExecuteError::Ended { .. }
+            | ExecuteError::System { .. }
+            | ExecuteError::Part(_) => failure.failed(),
         }
     }
 }

@@ -11,7 +11,6 @@ use octant_campaign::report::file_names::PAGE;
 use octant_campaign::report::{CampaignReport, ReportError};
 use octant_campaign_pages::{campaign, evidence};
 use octant_evidence::discrepancy::counted;
-use octant_evidence::disposition::DispositionError;
 use octant_requirements::Verdict;
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -32,16 +31,17 @@ pub(super) struct Arguments {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let started = SystemTime::now();
-    let mut place = CampaignPlace::of(&arguments.folder, Needs::All)?;
+    let Arguments { folder, out, units } = arguments;
+    let mut place = CampaignPlace::of(folder, Needs::All)?;
     let folder = &place.folder().to_owned();
     let plan = read(folder)?;
     // An invalid key is reported before anything is written.
-    let key = if arguments.out.is_none() { signing_key()? } else { None };
+    let key = if out.is_none() { signing_key()? } else { None };
     let mut report = CampaignReport::of(&plan, folder)?;
-    if let Some(units) = arguments.units {
+    if let Some(units) = *units {
         report.show_in(units)?;
     }
-    let path = match &arguments.out {
+    let path = match out {
         Some(path) => {
             let page = campaign::render(&report, false);
             report.check()?;
@@ -69,19 +69,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {
+        let failure = Self::of(&error);
         match error {
             ReportError::Plan(error) => error.into(),
             ReportError::Foreign(error) => error.into(),
             ReportError::Form { .. }
             | ReportError::Units { .. }
-            | ReportError::Dispositions(DispositionError::Form { .. }) => {
-                Self::input(error).failed()
-            }
-            ReportError::Result(_)
+            | ReportError::Dispositions(_)
+            | ReportError::Result(_)
             | ReportError::System { .. }
-            | ReportError::Dispositions(DispositionError::System { .. })
             | ReportError::Format { .. }
-            | ReportError::Manifest(_) => Self::bench(error).failed(),
+            | ReportError::Manifest(_) => failure.failed(),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::bundle::check_origin;
 use super::planned::read;
 use crate::case_progress::CaseBar;
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::place;
 use crate::progress::watch_interrupts;
 use clap::Args;
@@ -33,6 +34,15 @@ pub(super) struct Arguments {
     /// environment of an array or an indexed job, and otherwise the whole plan.
     #[arg(long, value_name = "K/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
+    #[command(flatten)]
+    part: PartArguments,
+    #[command(flatten)]
+    stored: StorageArguments,
+}
+
+/// Cases of a part, and how they are run.
+#[derive(Debug, Args)]
+struct PartArguments {
     /// Number of parallel cases; by default the number of processors.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -55,6 +65,11 @@ pub(super) struct Arguments {
     /// any other status for a lost part.
     #[arg(long)]
     any_verdict: bool,
+}
+
+/// Options for a campaign on object storage alone.
+#[derive(Debug, Args)]
+struct StorageArguments {
     /// Working folder of a campaign on object storage, new or of an earlier run of it; by default a temporary one.
     #[arg(long, value_name = "FOLDER")]
     work: Option<PathBuf>,
@@ -72,39 +87,41 @@ fn upload_every(text: &str) -> Result<Duration, String> {
     every.ok_or_else(|| "expected a number of seconds from 0.1 to 3600".to_owned())
 }
 
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { folder, shard, part, stored } = arguments;
     watch_interrupts();
-    let shard = match arguments.shard {
-        Some(shard) => shard,
+    let shard = match shard {
+        Some(shard) => *shard,
         None => Shard::of_scheduler(|name| std::env::var(name).ok()).map_err(Failure::input)?,
     };
-    if let Some(text) = place::address(&arguments.folder) {
-        let every = arguments.upload_every.unwrap_or(UPLOAD_EVERY);
-        let work = arguments.work.as_deref();
-        return place::run_part(text, work, shard, every, |folder| run(arguments, folder, shard));
+    if let Some(text) = place::address(folder) {
+        let StorageArguments { work, upload_every } = stored;
+        let every = upload_every.unwrap_or(UPLOAD_EVERY);
+        return place::run_part(text, work.as_deref(), shard, every, |made| {
+            run(part, (made, folder), shard)
+        });
     }
-    let stored = [
-        ("--work", arguments.work.is_some()),
-        ("--upload-every", arguments.upload_every.is_some()),
-    ];
-    if let Some((option, _)) = stored.into_iter().find(|(_, is_given)| *is_given) {
-        return Err(Failure::input(format!(
-            "{option}: found the folder {}, expected a campaign on object storage, s3://BUCKET/PREFIX",
-            arguments.folder.display()
-        )));
-    }
-    run(arguments, &arguments.folder, shard)
+    given.refuse::<StorageArguments>(format!(
+        "found the folder {}, expected a campaign on object storage, s3://BUCKET/PREFIX",
+        folder.display()
+    ))?;
+    run(part, (folder, folder), shard)
 }
 
-/// Runs a part of the campaign in a folder.
-fn run(arguments: &Arguments, folder: &Path, shard: Shard) -> Result<Verdict, Failure> {
+/// Runs a part of the campaign in a folder, which the user gave under the second name.
+fn run(
+    arguments: &PartArguments,
+    (folder, named): (&Path, &Path),
+    shard: Shard,
+) -> Result<Verdict, Failure> {
+    let PartArguments { jobs, again, only, failed, undivided, any_verdict } = arguments;
     let plan = read(folder)?;
     check_origin(&plan, folder)?;
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let mut selection = CaseSelection::of(&plan, &arguments.only).map_err(Failure::input)?;
-    if arguments.failed {
+    let mut selection = CaseSelection::of(&plan, only).map_err(Failure::input)?;
+    if *failed {
         let repeating = selection.repeating_failed(&plan, folder);
         selection = repeating.map_err(|error| Failure::bench(error).failed())?;
     }
@@ -114,19 +131,24 @@ fn run(arguments: &Arguments, folder: &Path, shard: Shard) -> Result<Verdict, Fa
     let mut options = ExecuteOptions {
         folder,
         program: &program,
-        jobs: arguments.jobs.map_or_else(processors, usize::from),
+        jobs: jobs.map_or_else(processors, usize::from),
         shard,
         end: plan.cases.len(),
-        again: arguments.again || arguments.failed,
+        again: *again || *failed,
         selection,
-        together: !arguments.undivided,
+        together: !undivided,
         cancel: interrupt::flag(),
     };
     let bar = CaseBar::new("", mine, options.jobs, may_stop);
     let tell = |event: &ExecutionEvent| show(&bar, &plan, event);
     let name = |index: usize| plan.cases[index].id.to_string();
     let outcome = bar.during(&name, || in_rounds(&plan, &mut options, &tell))?;
-    conclude(arguments, &plan, folder, shard, &outcome)
+    let Some(status) = conclude(&plan, (folder, named), shard, !only.is_empty(), &outcome)? else {
+        return Ok(Verdict::Inconclusive);
+    };
+    // A case with two results is more than a verdict.
+    let is_complete = status.open == 0 && status.differing.is_empty();
+    Ok(if *any_verdict && is_complete { Verdict::Pass } else { status.verdict() })
 }
 
 /// Shows an event of an execution on the bar, and failures above it.
@@ -199,13 +221,14 @@ fn failure(id: &str, done: &CaseDone) -> Option<String> {
     differs.or_else(|| bad.then(|| format!("case {id}: {}: {reason}", done.verdict.name())))
 }
 
+/// Writes the tables of the part, and prints its status; `None` if cases are left.
 fn conclude(
-    arguments: &Arguments,
     plan: &Plan,
-    folder: &Path,
+    (folder, named): (&Path, &Path),
     shard: Shard,
+    is_selected: bool,
     outcome: &ExecutionSummary,
-) -> Result<Verdict, Failure> {
+) -> Result<Option<status::CampaignStatus>, Failure> {
     let mut text = format!(
         "{} run, {} with a result already",
         counted(outcome.run, "case", "cases"),
@@ -214,11 +237,11 @@ fn conclude(
     if outcome.left > 0 {
         text += &format!(", {} not started or interrupted: the same command resumes", outcome.left);
         crate::terminal::print(&(text + "\n"))?;
-        return Ok(Verdict::Inconclusive);
+        return Ok(None);
     }
     crate::terminal::print(&(text + "\n"))?;
     let end = match &plan.stop {
-        Some(rule) if shard == Shard::WHOLE && arguments.only.is_empty() => {
+        Some(rule) if shard == Shard::WHOLE && !is_selected => {
             let decision = status::decide(plan, folder, rule);
             decision.map_err(Failure::bench)?.end(plan.cases.len())
         }
@@ -228,21 +251,19 @@ fn conclude(
     let stored = CampaignResults::open(folder).map_err(|error| Failure::bench(error).failed())?;
     let is_there = |index: &usize| {
         let id = plan.cases.get(*index).map_or("", |case| case.id.as_str());
-        arguments.only.is_empty() || stored.has(id)
+        !is_selected || stored.has(id)
     };
     let cases = (0..end).filter(|index| shard.has(*index)).filter(is_there);
     results::tables(plan, folder, cases, |table| merge::part(folder, shard, table))
         .map_err(|error| Failure::bench(error).failed())?;
     let status = status::of(plan, folder, shard).map_err(Failure::bench)?;
-    crate::terminal::print(&(status.text() + &next(arguments, &status)))?;
-    // A case with two results is more than a verdict.
-    let is_complete = status.open == 0 && status.differing.is_empty();
-    Ok(if arguments.any_verdict && is_complete { Verdict::Pass } else { status.verdict() })
+    crate::terminal::print(&(status.text() + &next(named, is_selected, &status)))?;
+    Ok(Some(status))
 }
 
 /// Lists the commands that come next.
-fn next(arguments: &Arguments, status: &status::CampaignStatus) -> String {
-    let folder = arguments.folder.display();
+fn next(folder: &Path, is_selected: bool, status: &status::CampaignStatus) -> String {
+    let folder = folder.display();
     let mut text = String::new();
     if let Some(bad) = status.bad.first() {
         text += &format!(
@@ -250,7 +271,7 @@ fn next(arguments: &Arguments, status: &status::CampaignStatus) -> String {
             bad.case
         );
     }
-    if status.open > 0 && !arguments.only.is_empty() {
+    if status.open > 0 && is_selected {
         let open = counted(status.open, "case", "cases");
         return text + &format!("next: octant campaign run {folder}   ({open} without a result)\n");
     }

@@ -1,9 +1,8 @@
 //! Confirmation of designs by simulation, one after the other until one keeps its promise.
 
 use super::files::{States, changed, changes};
-use super::options::Arguments;
 use super::outcome::{Attempt, ConfirmationReport, Outcome, PairedSeed, name_of};
-use super::searched::{design, failed, search_failed};
+use super::searched::{DesignWork, design, failed, search_failed};
 use crate::failure::Failure;
 use crate::progress::with_progress;
 use octant_base::control::Control;
@@ -32,7 +31,13 @@ pub(super) struct Runs<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) setup: &'a DesignSetup,
     pub(super) seeds: u64,
-    pub(super) arguments: &'a Arguments,
+    /// Sample rate, as it was given.
+    pub(super) rate: &'a str,
+    /// Largest number of designs that are tried.
+    pub(super) attempts_max: u8,
+    /// File of the scenario.
+    pub(super) file: &'a Path,
+    pub(super) work: DesignWork,
 }
 
 /// What came of it.
@@ -63,7 +68,7 @@ pub(super) fn confirm(
     outcomes: &[Outcome],
     states: &mut States<'_>,
 ) -> Result<Confirmed, Failure> {
-    let most = runs.arguments.confirm_attempts;
+    let most = runs.attempts_max;
     let mut waiting = waiting(outcomes);
     let (mut attempts, mut kept) = (Vec::new(), None);
     let predicted_reference = runs.reference()?;
@@ -134,7 +139,7 @@ impl Runs<'_> {
     }
 
     fn rate(&self) -> String {
-        let rate = self.arguments.confirm_rate.trim();
+        let rate = self.rate.trim();
         match rate.parse::<f64>() {
             Ok(_) => format!("{rate} Hz"),
             Err(_) => rate.to_owned(),
@@ -166,7 +171,7 @@ impl Runs<'_> {
         let Ok(problem) = SearchProblem::new(setup.clone(), *measure, limits, *seed) else {
             return Ok(Vec::new());
         };
-        let led_in = design(self.arguments, self.setup, &problem, outcome.rotation, states)?;
+        let led_in = design(self.work, self.setup, &problem, outcome.rotation, states)?;
         let best = format!("best design after a quick round of the eight positions in {round_s} s");
         let next =
             format!("next best design after a quick round of the eight positions in {round_s} s");
@@ -232,7 +237,7 @@ impl Runs<'_> {
             while done.len() < seeds.len() {
                 let from = done.len();
                 let to = (from + BATCH).min(seeds.len());
-                let jobs = self.arguments.threads();
+                let jobs = self.work.jobs;
                 let controls = &controls[2 * from..2 * to];
                 done.extend(paired_runs(sides, &seeds[from..to], jobs, controls)?);
                 states.keep_runs(&key, &done)?;
@@ -259,7 +264,7 @@ impl Runs<'_> {
         changes.push(format!("imu.rate={}", self.rate()));
         // Nothing is recorded, but a rate of the record has to fit that of the samples.
         changes.push("record.rate=0.1 Hz".to_owned());
-        let path = self.arguments.scenario.scenario.parent().unwrap_or(Path::new(""));
+        let path = self.file.parent().unwrap_or(Path::new(""));
         let path = path.join(format!("{} of --confirm", sequence.0));
         let (text, scenario) = changed(self.scenario, &changes, &[], &path)?;
         Ok((text, MethodSide { scenario, method: Method::Primary }))

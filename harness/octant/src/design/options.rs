@@ -2,16 +2,17 @@
 
 use crate::arguments::{ScenarioArguments, seconds, seed};
 use crate::failure::Failure;
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 use octant_base::names::suggestion;
 use octant_base::pool;
 use octant_design::Rotation;
 use octant_design::candidate::{Gimbals, Limits};
 use octant_design::measure::DesignMeasure;
 use octant_design::search::SearchEffort;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("kept").args(["out", "state"]).multiple(true)))]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(super) scenario: ScenarioArguments,
@@ -26,31 +27,8 @@ pub(crate) struct Arguments {
     /// Rotation in navigation that the sequence is designed for.
     #[arg(long, value_enum, default_value_t = RotationChoice::Scenario)]
     pub(super) rotation: RotationChoice,
-    /// Gimbals that may turn in one move.
-    #[arg(long, value_enum, default_value_t = GimbalChoice::Both)]
-    pub(super) gimbals: GimbalChoice,
-    /// Range of the azimuth gimbal, cumulative, deg.
-    #[arg(long, value_name = "LOW..HIGH", default_value = "-360..360", value_parser = range, allow_hyphen_values = true)]
-    pub(super) azimuth_range: Range,
-    /// Range of the roll gimbal, cumulative, deg.
-    #[arg(long, value_name = "LOW..HIGH", default_value = "-360..360", value_parser = range, allow_hyphen_values = true)]
-    pub(super) roll_range: Range,
-    /// Grid of the angles, deg.
-    #[arg(long, value_name = "DEG", default_value_t = 45)]
-    pub(super) grid: i32,
-    /// Largest number of stops.
-    #[arg(long, value_name = "N", default_value_t = 40)]
-    pub(super) stops: usize,
-    /// Time at rest at zero with which the sequence starts: the level alignment.
-    #[arg(long, value_name = "TIME", default_value = "300 s")]
-    pub(super) lead_in: String,
-    /// Duration of a quick round of the eight positions after it, with its moves: the errors are small then
-    /// before the long dwells. By default there is none.
-    #[arg(long, value_name = "TIME")]
-    pub(super) lead_in_round: Option<String>,
-    /// Shortest dwell.
-    #[arg(long, value_name = "TIME", default_value = "30 s")]
-    pub(super) dwell_min: String,
+    #[command(flatten)]
+    pub(super) limits: LimitArguments,
     /// Seed of the search.
     #[arg(long, value_name = "N", default_value = "1", value_parser = seed)]
     pub(super) seed: u64,
@@ -72,10 +50,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SEEDS", conflicts_with = "shortest", value_parser = clap::value_parser!(u64).range(2..=100_000))]
     pub(super) confirm: Option<u64>,
     /// Sample rate of these runs.
-    #[arg(long, value_name = "RATE", default_value = "20 Hz")]
+    #[arg(long, value_name = "RATE", default_value = "20 Hz", requires = "confirm")]
     pub(super) confirm_rate: String,
     /// Largest number of designs that are tried.
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=16))]
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "confirm", value_parser = clap::value_parser!(u8).range(1..=16))]
     pub(super) confirm_attempts: u8,
     /// Write the scenario with the designed sequence and its rotation to this file.
     #[arg(long, value_name = "FILE")]
@@ -87,11 +65,41 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "state")]
     pub(super) resume: bool,
     /// Replace the files of --out and --state.
-    #[arg(long)]
+    #[arg(long, requires = "kept")]
     pub(super) force: bool,
     /// Print one JSON object.
     #[arg(long)]
     pub(super) json: bool,
+}
+
+/// Limits of gimbals and sequence.
+#[derive(Debug, Args)]
+pub(super) struct LimitArguments {
+    /// Gimbals that may turn in one move.
+    #[arg(long, value_enum, default_value_t = GimbalChoice::Both)]
+    gimbals: GimbalChoice,
+    /// Range of the azimuth gimbal, cumulative, deg.
+    #[arg(long, value_name = "LOW..HIGH", default_value = "-360..360", value_parser = range, allow_hyphen_values = true)]
+    azimuth_range: Range,
+    /// Range of the roll gimbal, cumulative, deg.
+    #[arg(long, value_name = "LOW..HIGH", default_value = "-360..360", value_parser = range, allow_hyphen_values = true)]
+    roll_range: Range,
+    /// Grid of the angles, deg.
+    #[arg(long, value_name = "DEG", default_value_t = 45)]
+    grid: i32,
+    /// Largest number of stops.
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    stops: usize,
+    /// Time at rest at zero with which the sequence starts: the level alignment.
+    #[arg(long, value_name = "TIME", default_value = "300 s")]
+    lead_in: String,
+    /// Duration of a quick round of the eight positions after it, with its moves: the errors are small then
+    /// before the long dwells. By default there is none.
+    #[arg(long, value_name = "TIME")]
+    lead_in_round: Option<String>,
+    /// Shortest dwell.
+    #[arg(long, value_name = "TIME", default_value = "30 s")]
+    dwell_min: String,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -170,7 +178,17 @@ pub(super) fn rotations(choice: RotationChoice) -> &'static [Rotation] {
 }
 
 /// Limits of gimbals and sequence.
-pub(super) fn limits(arguments: &Arguments) -> Result<Limits, Failure> {
+pub(super) fn limits(arguments: &LimitArguments) -> Result<Limits, Failure> {
+    let LimitArguments {
+        gimbals,
+        azimuth_range,
+        roll_range,
+        grid,
+        stops,
+        lead_in,
+        lead_in_round,
+        dwell_min,
+    } = arguments;
     let positive = |name: &str, text: &str| {
         let time_s = seconds(name, text)?;
         if time_s >= 0.0 {
@@ -179,19 +197,19 @@ pub(super) fn limits(arguments: &Arguments) -> Result<Limits, Failure> {
         Err(Failure::input(format!("{name}: found {text:?}, expected a time of 0 or more")))
     };
     Ok(Limits {
-        gimbals: match arguments.gimbals {
+        gimbals: match gimbals {
             GimbalChoice::Both => Gimbals::Both,
             GimbalChoice::One => Gimbals::One,
             GimbalChoice::Azimuth => Gimbals::Azimuth,
             GimbalChoice::Roll => Gimbals::Roll,
         },
-        azimuth_deg: (arguments.azimuth_range.0, arguments.azimuth_range.1),
-        roll_deg: (arguments.roll_range.0, arguments.roll_range.1),
-        grid_deg: arguments.grid,
-        stops_max: arguments.stops,
-        dwell_min_s: positive("--dwell-min", &arguments.dwell_min)?,
-        lead_in_s: positive("--lead-in", &arguments.lead_in)?,
-        round_s: match &arguments.lead_in_round {
+        azimuth_deg: (azimuth_range.0, azimuth_range.1),
+        roll_deg: (roll_range.0, roll_range.1),
+        grid_deg: *grid,
+        stops_max: *stops,
+        dwell_min_s: positive("--dwell-min", dwell_min)?,
+        lead_in_s: positive("--lead-in", lead_in)?,
+        round_s: match lead_in_round {
             Some(time) => positive("--lead-in-round", time)?,
             None => 0.0,
         },
@@ -199,10 +217,9 @@ pub(super) fn limits(arguments: &Arguments) -> Result<Limits, Failure> {
 }
 
 /// Checks, before the search, that no file is lost to its result.
-pub(super) fn refuse_to_replace(arguments: &Arguments) -> Result<(), Failure> {
-    let state = arguments.state.as_ref().filter(|_| !arguments.resume);
-    for (option, file) in [("--out", arguments.out.as_ref()), ("--state", state)] {
-        if let Some(file) = file.filter(|file| !arguments.force && file.exists()) {
+pub(super) fn refuse_to_replace(out: Option<&Path>, state: Option<&Path>) -> Result<(), Failure> {
+    for (option, file) in [("--out", out), ("--state", state)] {
+        if let Some(file) = file.filter(|file| file.exists()) {
             return Err(Failure::input(format!(
                 "{option}: {} exists already, expected another name, or --force",
                 file.display()
@@ -212,9 +229,7 @@ pub(super) fn refuse_to_replace(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-impl Arguments {
-    /// Number of threads.
-    pub(super) fn threads(&self) -> usize {
-        self.jobs.map_or_else(pool::processors, usize::from)
-    }
+/// Number of threads.
+pub(super) fn threads(jobs: Option<u16>) -> usize {
+    jobs.map_or_else(pool::processors, usize::from)
 }

@@ -1,16 +1,14 @@
 //! Searches of `octant design`: one for each rotation.
 
 use super::files::States;
-use super::options::Arguments;
 use super::outcome::{Outcome, ShortestReport, name_of};
 use crate::failure::Failure;
 use crate::progress_bar::ProgressBar;
 use octant_base::interrupt;
 use octant_calibration::positions::{from_degrees, named};
 use octant_design::report::SequenceDesign;
-use octant_design::search::{SearchError, SearchProblem, SearchState};
+use octant_design::search::{SearchEffort, SearchError, SearchProblem, SearchState};
 use octant_design::{DesignError, DesignSetup, Judge, MeasureWeights, Rotation};
-use octant_requirements::Verdict;
 
 /// Duration of the eight positions whose drift `--shortest` keeps, s.
 const EIGHT_S: f64 = 4.0 * 3600.0;
@@ -22,25 +20,30 @@ pub(super) fn failed(error: DesignError) -> Failure {
 
 /// Failure of a search.
 pub(super) fn search_failed(error: SearchError) -> Failure {
-    let message = format!("failed to {error}");
-    match error {
-        SearchError::Interrupted { .. } => {
-            Failure { status: Verdict::Inconclusive.exit_code(), message }
-        }
-        _ => Failure::input(message),
-    }
+    Failure::of(&error).failed()
+}
+
+/// Work of a search, and what of it is wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DesignWork {
+    /// Number of threads.
+    pub(super) jobs: usize,
+    pub(super) effort: SearchEffort,
+    /// The shortest calibration is searched for.
+    pub(super) shortest: bool,
+    /// Continuous rotation is evaluated too.
+    pub(super) continuous: bool,
 }
 
 /// Designs for one rotation.
 pub(super) fn design(
-    arguments: &Arguments,
+    work: DesignWork,
     setup: &DesignSetup,
     problem: &SearchProblem,
     rotation: Rotation,
     states: &mut States<'_>,
 ) -> Result<Outcome, Failure> {
-    let jobs = arguments.threads();
-    let effort = arguments.effort.work();
+    let DesignWork { jobs, effort, shortest, continuous } = work;
     let bar = ProgressBar::new(None, |progress| progress.message.clone());
     let show = |duration_s: f64, state: &SearchState, rounds: usize, best: f64| {
         bar.update(|progress| {
@@ -55,7 +58,7 @@ pub(super) fn design(
         });
     };
     let mut kept = Ok(());
-    let (problem, found, shortest) = if arguments.shortest {
+    let (problem, found, shortest) = if shortest {
         let target = eight(setup, problem)?;
         let mut told = |duration_s: f64, state: &SearchState, rounds: usize, best: f64| {
             show(duration_s, state, rounds, best);
@@ -83,7 +86,7 @@ pub(super) fn design(
     bar.finish();
     let mut design =
         SequenceDesign::of(&problem, name_of(rotation), &found).map_err(search_failed)?;
-    if arguments.continuous {
+    if continuous {
         design.continuous = Some(problem.continuous(&found.sequence).map_err(failed)?);
     }
     Ok(Outcome { rotation, problem, found, design, shortest })

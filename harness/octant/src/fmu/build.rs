@@ -45,12 +45,7 @@ struct Built {
 
 impl From<BuildError> for Failure {
     fn from(error: BuildError) -> Self {
-        match error {
-            BuildError::Write { .. } | BuildError::Program { .. } | BuildError::Model { .. } => {
-                Self::bench(error)
-            }
-            _ => Self::input(error),
-        }
+        Self::of(&error)
     }
 }
 

@@ -37,32 +37,34 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with = "no_load")]
     allow_tool: bool,
     /// Longest time for loading and initializing, and for any other call, s.
-    #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, conflicts_with = "no_load")]
     time_limit: f64,
 }
 
 /// Runs the command.
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let limit = Duration::try_from_secs_f64(arguments.time_limit)
+    // --load overrides an earlier --no-load: that is all it does.
+    let Arguments { files, json: as_json, load: _, no_load, step, allow_tool, time_limit } =
+        arguments;
+    let limit = Duration::try_from_secs_f64(*time_limit)
         .ok()
         .filter(|limit| !limit.is_zero())
         .ok_or_else(|| {
-            let found = arguments.time_limit;
             Failure::input(format!(
-                "--time-limit: found {found}, expected a positive number of seconds"
+                "--time-limit: found {time_limit}, expected a positive number of seconds"
             ))
         })?;
     let options = OpenOptions {
-        allow_tool: arguments.allow_tool,
+        allow_tool: *allow_tool,
         start_limit: limit,
         time_limit: limit,
         ..OpenOptions::default()
     };
     let mut results = Vec::new();
-    for file in &arguments.files {
-        results.push((file, one(file, arguments, &options)));
+    for file in files {
+        results.push((file, one(file, (!no_load).then_some(*step), &options)));
     }
-    if arguments.json {
+    if *as_json {
         print_json(&json(&results))?;
     } else {
         for (_, result) in &results {
@@ -83,15 +85,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(if errors { Verdict::Fail } else { Verdict::Pass })
 }
 
-/// Checks one file.
+/// Checks one file; `loaded`: with the library loaded, and with a first step or without.
 fn one(
     file: &Path,
-    arguments: &Arguments,
+    loaded: Option<bool>,
     options: &OpenOptions,
 ) -> Result<CheckReport, ArchiveError> {
     let mut checked = check(file)?;
-    if !arguments.no_load && checked.can_be_loaded() {
-        load(&mut checked, options, arguments.step);
+    if let Some(with_step) = loaded.filter(|_| checked.can_be_loaded()) {
+        load(&mut checked, options, with_step);
     }
     Ok(checked.report())
 }

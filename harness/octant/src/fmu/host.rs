@@ -8,7 +8,7 @@ use octant_requirements::Verdict;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Name of the FMU in messages.
-    #[arg(long, hide = true, default_value = "the FMU")]
+    #[arg(long, hide = true, default_value = "the FMU", conflicts_with = "unguarded")]
     name: String,
     /// Hold the FMU in this process, which another of these started.
     #[arg(long, hide = true)]
@@ -19,7 +19,8 @@ pub(super) struct Arguments {
 #[cfg(target_os = "linux")]
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     use octant_fmu_host::process::{guard::guard, host::serve};
-    let served = if arguments.unguarded { serve() } else { guard(&arguments.name) };
+    let Arguments { name, unguarded } = arguments;
+    let served = if *unguarded { serve() } else { guard(name) };
     served.map_err(Failure::input)?;
     Ok(Verdict::Pass)
 }

@@ -8,6 +8,7 @@ mod run;
 mod run_source;
 
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use clap::{Args, Subcommand};
 use octant_requirements::Verdict;
 
@@ -32,11 +33,12 @@ enum Command {
 }
 
 /// Runs the command.
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    match &arguments.command {
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { command } = arguments;
+    match command {
         Command::Build(arguments) => build::command(arguments),
         Command::Check(arguments) => check::command(arguments),
-        Command::Run(arguments) => run::command(arguments),
+        Command::Run(arguments) => run::command(arguments, given),
         Command::Host(arguments) => host::command(arguments),
     }
 }

@@ -1,26 +1,29 @@
 //! `octant fmu run`.
 
 use super::super::progress::with_progress;
-use super::arguments::{Arguments, Interface, Process, in_the_way};
+use super::arguments::{
+    Arguments, Interface, OpeningArguments, Process, SharedRunOptions, SteppingArguments,
+    in_the_way,
+};
 use crate::arguments::seconds;
 use crate::failure::Failure;
+use crate::given::GivenOptions;
 use crate::terminal::note;
 use crate::terminal::{print, print_json};
 use octant_base::control::Control;
+use octant_base::failing::{Failing, FailureKind};
 use octant_base::number::counted;
 use octant_cosim::single::input::{InputFileError, Inputs};
 use octant_cosim::single::output::{Outputs, Sink};
 use octant_cosim::single::scheduled::simulate_scheduled;
 use octant_cosim::single::{Finished, SimulateError, Span, simulate};
-use octant_fmu_host::FmuOpenError;
-use octant_fmu_host::instance::{
-    Instance, InstanceError, InterfaceKind, OpenOptions, ProcessPlace,
-};
+use octant_fmu_host::description::Description;
+use octant_fmu_host::instance::{Instance, InterfaceKind, OpenOptions, ProcessPlace};
 use octant_mapping::settings::{Starts, ValueSettings};
 use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, setting_argument};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Summary of a run.
@@ -58,30 +61,44 @@ type Simulation = fn(
 ) -> Result<Finished, SimulateError>;
 
 /// Runs the command.
-pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let scheduled = arguments.interface == Some(Interface::ScheduledExecution);
-    if scheduled && arguments.source.is_some() {
-        return Err(Failure::input(
-            "--source: found with --interface scheduled-execution, expected co-simulation or model \
-             exchange: a core makes a step for each sample",
-        ));
+pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Verdict, Failure> {
+    let Arguments { fmu, source, stepping, set, opening, out, force, json } = arguments;
+    if opening.process == Process::Shared {
+        given.refuse_ids(
+            &["time_limit"],
+            "found with --process shared, expected --process own: in the shared process a call can't be interrupted",
+        )?;
     }
-    if let (true, Some(step)) = (scheduled, &arguments.step) {
-        return Err(Failure::input(format!(
-            "--step: found {step:?} with --interface scheduled-execution, expected none: the clocks of \
-             the FMU set the times"
-        )));
+    let scheduled = opening.interface == Some(Interface::ScheduledExecution);
+    if scheduled {
+        given.refuse_ids(
+            &["source"],
+            "found with --interface scheduled-execution, expected co-simulation or model exchange: a core makes a \
+             step for each sample",
+        )?;
+        given.refuse_ids(
+            &["step"],
+            "found with --interface scheduled-execution, expected none: the clocks of the FMU set the times",
+        )?;
     }
-    if let Some(scenario) = &arguments.source {
-        return super::run_source::command(arguments, scenario);
+    if source.is_some() {
+        given.refuse::<SteppingArguments>(
+            "found with --source, expected one without the other: the scenario has inputs, times and outputs",
+        )?;
     }
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
-    in_the_way(arguments)?;
-    let mut instance = open(arguments)?;
+    let kept =
+        SharedRunOptions { fmu, set, opening, out: out.as_deref(), force: *force, json: *json };
+    if let Some(scenario) = source {
+        return super::run_source::command(&kept, scenario);
+    }
+    let SteppingArguments { input, start, stop, step, tolerance, output } = stepping;
+    in_the_way(kept.out, kept.force)?;
+    let mut instance = open(fmu, opening)?;
     let instance = instance.as_mut();
     let description = instance.description().clone();
-    let starts = starts(arguments, instance)?;
-    let mut inputs = match &arguments.input {
+    let starts = starts(fmu, set, instance)?;
+    let mut inputs = match input {
         Some(path) => Some(Inputs::read(path, &description).map_err(|error| match error {
             // The place comes first, as in messages about scenarios.
             InputFileError::Content { .. } => Failure::input(error),
@@ -89,11 +106,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         })?),
         None => None,
     };
-    let outputs = Outputs::choose(&description, &arguments.output)
+    let outputs = Outputs::choose(&description, output)
         .map_err(|error| bad(&format!("record the outputs: {error}")))?;
-    let span = span(arguments, instance, inputs.as_ref())?;
+    let times = [("--start", start), ("--stop", stop), ("--step", step)];
+    let span = span(times, *tolerance, opening.interface, &description, inputs.as_ref())?;
     let steps = span.steps().map_err(|error| bad(&format!("plan the steps: {error}")))?;
-    let mut sink = match &arguments.out {
+    let mut sink = match kept.out {
         Some(path) => Sink::file(path, &outputs, &description.model_name).map_err(|e| bad(&e))?,
         None => Sink::None,
     };
@@ -116,19 +134,20 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Ok(finished)
     });
     let finished = finished.map_err(|error| {
-        let kept = match &arguments.out {
+        let before = match kept.out {
             Some(path) => format!("; the outputs before that are in {}", path.display()),
             None => String::new(),
         };
-        match error {
-            SimulateError::Instance(InstanceError::Value { .. }) => bad(&error),
-            error => {
-                Failure::bench(format!("failed to run {}: {error}{kept}", arguments.fmu.display()))
+        match error.kind() {
+            // Before the first step, so that there are no outputs, and the FMU is named.
+            FailureKind::Input => bad(&error),
+            kind => {
+                Failure::of_kind(kind, format!("failed to run {}: {error}{before}", fmu.display()))
             }
         }
     })?;
     written.map_err(|error| Failure::bench(format!("failed to write the outputs: {error}")))?;
-    tell(arguments, &description, &span, &finished, wall_s, outputs)?;
+    tell(&kept, &description, &span, &finished, wall_s, outputs)?;
     Ok(if finished.cancelled { Verdict::Inconclusive } else { Verdict::Pass })
 }
 
@@ -140,9 +159,10 @@ fn time_limit(text: &str) -> Result<Duration, Failure> {
     })
 }
 
-fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
+fn open(fmu: &Path, opening: &OpeningArguments) -> Result<Box<dyn Instance>, Failure> {
+    let OpeningArguments { interface, process, allow_tool, time_limit: limit } = opening;
     let default = OpenOptions::default();
-    let (start_limit, time_limit) = match &arguments.time_limit {
+    let (start_limit, time_limit) = match limit {
         Some(text) => {
             let limit = time_limit(text)?;
             (limit, limit)
@@ -150,35 +170,31 @@ fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
         None => (default.start_limit, default.time_limit),
     };
     let options = OpenOptions {
-        interface: match arguments.interface {
+        interface: match interface {
             None => InterfaceKind::Any,
             Some(Interface::CoSimulation) => InterfaceKind::CoSimulation,
             Some(Interface::ModelExchange) => InterfaceKind::ModelExchange,
             Some(Interface::ScheduledExecution) => InterfaceKind::ScheduledExecution,
         },
-        place: match arguments.process {
+        place: match process {
             Process::Own => ProcessPlace::OwnProcess,
             Process::Shared => ProcessPlace::ThisProcess,
         },
-        allow_tool: arguments.allow_tool,
+        allow_tool: *allow_tool,
         start_limit,
         time_limit,
         ..default
     };
-    octant_fmu_host::open(&arguments.fmu, &options).map_err(|error| {
-        let message = format!("failed to open {}: {error}", arguments.fmu.display());
-        match error {
-            FmuOpenError::Instance(InstanceError::Process { .. }) => Failure::bench(message),
-            _ => Failure::input(message),
-        }
+    octant_fmu_host::open(fmu, &options).map_err(|error| {
+        Failure::of_kind(error.kind(), format!("failed to open {}: {error}", fmu.display()))
     })
 }
 
 /// Collects the start values of `--set`.
-fn starts(arguments: &Arguments, instance: &dyn Instance) -> Result<Starts, Failure> {
+fn starts(fmu: &Path, set: &[String], instance: &dyn Instance) -> Result<Starts, Failure> {
     let mut settings = ValueSettings::new(instance.description());
     let mut problems = Vec::new();
-    for argument in &arguments.set {
+    for argument in set {
         let set = setting_argument(argument).and_then(|setting| {
             let set = settings.set(&setting.name, &setting.values);
             set.map_err(|error| setting.at.problem(error.to_string()))
@@ -186,43 +202,39 @@ fn starts(arguments: &Arguments, instance: &dyn Instance) -> Result<Starts, Fail
         problems.extend(set.err());
     }
     if !problems.is_empty() {
-        let file = arguments.fmu.display().to_string();
+        let file = fmu.display().to_string();
         return Err(Failure::input(ScenarioError { file, problems }));
     }
     settings.finish().map_err(|error| Failure::input(format!("failed to set parameters: {error}")))
 }
 
-/// Determines start, end and step.
+/// Determines start, end and step, in this order in `times`.
 fn span(
-    arguments: &Arguments,
-    instance: &dyn Instance,
+    times: [(&str, &Option<String>); 3],
+    tolerance: Option<f64>,
+    chosen: Option<Interface>,
+    description: &Description,
     inputs: Option<&Inputs>,
 ) -> Result<Span, Failure> {
-    let description = instance.description();
     let default = &description.default_experiment;
-    let given = |name: &str, text: &Option<String>| {
-        text.as_ref().map(|text| seconds(name, text)).transpose()
-    };
-    let start_s = given("--start", &arguments.start)?.or(default.start_s).unwrap_or(0.0);
-    let stop_s = given("--stop", &arguments.stop)?
-        .or(default.stop_s)
-        .or(inputs.map(|inputs| inputs.span_s().1))
-        .ok_or_else(|| {
+    let mut given = [None; 3];
+    for (given, (name, text)) in given.iter_mut().zip(times) {
+        *given = text.as_ref().map(|text| seconds(name, text)).transpose()?;
+    }
+    let [start_s, stop_s, step_s] = given;
+    let start_s = start_s.or(default.start_s).unwrap_or(0.0);
+    let stop_s =
+        stop_s.or(default.stop_s).or(inputs.map(|inputs| inputs.span_s().1)).ok_or_else(|| {
             Failure::input(
                 "failed to plan the steps: found no stop time in the FMU, expected --stop TIME",
             )
         })?;
     let internal = || {
         let interface = description.co_simulation.as_ref()?;
-        interface
-            .fixed_internal_step_s
-            .filter(|_| arguments.interface != Some(Interface::ModelExchange))
+        interface.fixed_internal_step_s.filter(|_| chosen != Some(Interface::ModelExchange))
     };
-    let step_s = given("--step", &arguments.step)?
-        .or(default.step_s)
-        .or_else(internal)
-        .unwrap_or((stop_s - start_s) / 500.0);
-    Ok(Span { start_s, stop_s, step_s, tolerance: arguments.tolerance.or(default.tolerance) })
+    let step_s = step_s.or(default.step_s).or_else(internal).unwrap_or((stop_s - start_s) / 500.0);
+    Ok(Span { start_s, stop_s, step_s, tolerance: tolerance.or(default.tolerance) })
 }
 
 /// Prints the messages of the FMU.
@@ -233,18 +245,18 @@ fn log(instance: &mut dyn Instance) {
 }
 
 fn tell(
-    arguments: &Arguments,
-    description: &octant_fmu_host::description::Description,
+    kept: &SharedRunOptions<'_>,
+    description: &Description,
     span: &Span,
     finished: &Finished,
     wall_s: f64,
     outputs: Outputs,
 ) -> Result<(), Failure> {
-    let scheduled = arguments.interface == Some(Interface::ScheduledExecution);
-    let exchange = arguments.interface == Some(Interface::ModelExchange)
-        || description.co_simulation.is_none();
+    let chosen = kept.opening.interface;
+    let scheduled = chosen == Some(Interface::ScheduledExecution);
+    let exchange = chosen == Some(Interface::ModelExchange) || description.co_simulation.is_none();
     let told = Told {
-        fmu: arguments.fmu.display().to_string(),
+        fmu: kept.fmu.display().to_string(),
         model: description.model_name.clone(),
         fmi: description.fmi_version.clone(),
         generation_tool: description.generation_tool.clone(),
@@ -253,7 +265,7 @@ fn tell(
             true => "model exchange",
             false => "co-simulation",
         },
-        process: match arguments.process {
+        process: match kept.opening.process {
             Process::Own => "own",
             Process::Shared => "shared",
         },
@@ -267,9 +279,9 @@ fn tell(
         wall_s,
         outputs: outputs.columns.into_iter().map(|column| column.name).collect(),
         left_out: outputs.left_out,
-        out: arguments.out.clone(),
+        out: kept.out.map(Path::to_owned),
     };
-    if arguments.json {
+    if kept.json {
         return print_json(&told);
     }
     let tool = match told.generation_tool.as_str() {

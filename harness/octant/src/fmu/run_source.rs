@@ -1,7 +1,7 @@
 //! `octant fmu run --source`: a core in an FMU, with the samples of a scenario's source.
 
 use super::super::progress::with_progress;
-use super::arguments::{Arguments, Interface, Process, in_the_way};
+use super::arguments::{Interface, OpeningArguments, Process, SharedRunOptions, in_the_way};
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use octant_base::control::Control;
@@ -29,8 +29,9 @@ struct Told {
 }
 
 /// Runs the command.
-pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict, Failure> {
-    let recording = match &arguments.out {
+pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Verdict, Failure> {
+    let SharedRunOptions { fmu, set, opening, out, force, json } = *kept;
+    let recording = match out {
         Some(path) if path.extension().is_none_or(|extension| extension != "mcap") => {
             return Err(Failure::input(format!(
                 "failed to write {}: with --source the output is a recording, expected a name that \
@@ -39,7 +40,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
             )));
         }
         Some(path) => {
-            in_the_way(arguments)?;
+            in_the_way(out, force)?;
             if path.exists() {
                 std::fs::remove_file(path).map_err(|error| {
                     Failure::input(format!("failed to replace {}: {error}", path.display()))
@@ -49,7 +50,8 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
         }
         None => StreamKeeping::Hash,
     };
-    let scenario = Scenario::load(scenario, &overrides(arguments)?).map_err(Failure::input)?;
+    let scenario =
+        Scenario::load(scenario, &overrides(fmu, set, opening)?).map_err(Failure::input)?;
     let control = Control::default();
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let one = std::slice::from_ref(&control);
@@ -62,7 +64,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
     let run = run.map_err(|error| Failure::from(error).failed())?;
     let refused = run.calibration.as_ref().and_then(|calibration| calibration.refused.clone());
     let told = Told {
-        fmu: arguments.fmu.display().to_string(),
+        fmu: fmu.display().to_string(),
         scenario: scenario.title.clone(),
         samples: run.recorder.epochs,
         ended: match run.ended {
@@ -78,9 +80,9 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
         nis_mean: run.calibration.as_ref().and_then(|calibration| calibration.nis_mean),
         stream_hash: run.recorder.stream_hash.clone(),
         wall_s,
-        out: arguments.out.clone(),
+        out: out.map(Path::to_owned),
     };
-    if arguments.json {
+    if json {
         print_json(&told)?;
     } else {
         print(&text(&told))?;
@@ -96,24 +98,29 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
 }
 
 /// Returns the settings that make the FMU the scenario's endpoint.
-fn overrides(arguments: &Arguments) -> Result<Vec<String>, Failure> {
-    let file = std::path::absolute(&arguments.fmu).map_err(|error| {
-        Failure::input(format!("failed to find {}: {error}", arguments.fmu.display()))
-    })?;
+fn overrides(
+    fmu: &Path,
+    set: &[String],
+    opening: &OpeningArguments,
+) -> Result<Vec<String>, Failure> {
+    let OpeningArguments { interface, process, allow_tool, time_limit } = opening;
+    let file = std::path::absolute(fmu)
+        .map_err(|error| Failure::input(format!("failed to find {}: {error}", fmu.display())))?;
     let mut all = vec![format!("endpoint.uri=fmu:{}", file.display())];
-    match arguments.process {
+    match process {
         Process::Own => {
             all.push("endpoint.fmu.process=own".to_owned());
-            if let Some(limit) = &arguments.time_limit {
+            if let Some(limit) = time_limit {
                 all.push(format!("endpoint.fmu.time_limit={limit}"));
             }
         }
+        // The caller has refused a limit.
         Process::Shared => all.push("endpoint.fmu.process=shared".to_owned()),
     }
-    if arguments.allow_tool {
+    if *allow_tool {
         all.push("endpoint.fmu.allow_tool=true".to_owned());
     }
-    match arguments.interface {
+    match interface {
         // The caller has refused scheduled execution.
         None | Some(Interface::ScheduledExecution) => {}
         Some(Interface::CoSimulation) => {
@@ -123,7 +130,7 @@ fn overrides(arguments: &Arguments) -> Result<Vec<String>, Failure> {
             all.push("endpoint.fmu.interface=model-exchange".to_owned());
         }
     }
-    for argument in &arguments.set {
+    for argument in set {
         setting_argument(argument)
             .map_err(|problem| Failure::input(format!("--set {argument}: {}", problem.message)))?;
         all.push(format!("endpoint.fmu.parameters.{argument}"));

@@ -54,9 +54,10 @@ fn hold(
     units: UnitChoice,
     json: bool,
 ) -> Result<Verdict, Failure> {
+    let ScenarioArguments { scenario, set } = arguments;
     let plan = Plan::read(&folder.join(FILE_NAME))?;
-    let bytes = std::fs::read(&arguments.scenario).map_err(|error| {
-        Failure::input(format!("failed to read {}: {error}", arguments.scenario.display()))
+    let bytes = std::fs::read(scenario).map_err(|error| {
+        Failure::input(format!("failed to read {}: {error}", scenario.display()))
     })?;
     let blake3 = blake3::hash(&bytes).to_hex().to_string();
     if !plan.scenarios.iter().any(|planned| planned.blake3 == blake3) {
@@ -65,11 +66,11 @@ fn hold(
         return Err(Failure::input(format!(
             "failed to compare with {}: found {}, expected one of its scenarios: {}",
             folder.display(),
-            arguments.scenario.display(),
+            scenario.display(),
             names.join(", ")
         )));
     }
-    let set = (!arguments.set.is_empty()).then_some(arguments.set.as_slice());
+    let set = (!set.is_empty()).then_some(set.as_slice());
     let found = against(&plan, folder, &Selection { blake3: Some(&blake3), set })
         .map_err(|reason| Failure::input(format!("failed to {reason}")))?;
     if json {
