@@ -32,6 +32,8 @@ RATE = "20 Hz"
 # In a process that is small: one that forks counts as large as who forks it.
 MEASURED = """
 import resource, subprocess, sys
+
+from children import popen
 status = subprocess.run(sys.argv[1:]).returncode
 used = resource.getrusage(resource.RUSAGE_CHILDREN)
 print("measured", used.ru_utime + used.ru_stime, used.ru_maxrss)
@@ -87,7 +89,7 @@ def run_and_kill(folder, part, dice, kills):
     for _ in range(kills):
         # Counted in results and not in seconds alone: a part has ten cases or more, which a fast host has soon.
         enough = results() + dice.randrange(4 - kills)
-        campaign = subprocess.Popen(
+        campaign = popen(
             [OCTANT, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         while results() < enough and campaign.poll() is None:

@@ -5,12 +5,13 @@ import http.client
 import http.server
 import os
 import socket
-import subprocess
 import sys
 import threading
 import time
 import urllib.parse
 import xml.etree.ElementTree as tree
+
+from children import popen
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
@@ -85,7 +86,7 @@ class ObjectStore:
     def __init__(self, log):
         with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as free:
             self.inner = free.getsockname()[1]
-        self.moto = subprocess.Popen(
+        self.moto = popen(
             [sys.executable, "-m", "moto.server", "-H", "127.0.0.1", "-p", str(self.inner)],
             stdout=log, stderr=log)
         self.refusing, self.losing, self.log = False, 0, []

@@ -11,6 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from children import popen
 from object_server import ObjectStore
 
 OCTANT, TABLES_PYTHON = sys.argv[1:3]
@@ -52,8 +53,8 @@ def check(what, is_so, detail=""):
 def started(*arguments, **more):
     environment = {**store.environment, **more}
     words = [str(word) for word in arguments]
-    return subprocess.Popen([OCTANT, "campaign", *words], env=environment, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+    return popen([OCTANT, "campaign", *words], env=environment, text=True,
+                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
 
 
 def ended(process):

@@ -22,6 +22,8 @@ from pathlib import Path
 
 import pyvisa
 
+from children import popen
+
 OHM = 48.0
 SHORT = """schema = 1
 title = "short"
@@ -97,7 +99,7 @@ class Bench:
         powered = powered or self.ask("ROUT:CLOS? (@1)") == "1"
         if powered and self.child is None:
             command = [self.octant, "serve", "--endpoint", f"pty:{self.link}", self.folder / "s.toml"]
-            self.child = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+            self.child = popen(command, stderr=subprocess.DEVNULL)
             self.starts += 1
         elif not powered and self.child is not None:
             self.child.kill()
@@ -179,7 +181,7 @@ def main():
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             bench.scenario("", SUPPLY, "10 h")
             command = bench.command("out", bench.folder / "s.toml")
-            harness = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+            harness = popen(command, stderr=subprocess.DEVNULL)
             wait_for("the device", bench.is_on)
             time.sleep(1)
             harness.send_signal(number)

@@ -12,6 +12,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from children import popen
+
 OCTANT, SIGNALS, SEED = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 # A command that takes longer hangs.
 HANGS_S = 300
@@ -90,7 +92,7 @@ class Command:
         self.start()
 
     def start(self):
-        self.process = subprocess.Popen(
+        self.process = popen(
             [OCTANT, *self.words],
             cwd=self.folder,
             start_new_session=True,

@@ -22,6 +22,8 @@ from pathlib import Path
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader
 
+from children import popen
+
 OCTANT, SECONDS, SEED = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
 # Only what hangs takes as long, on a busy host too.
 LONG_S = 300
@@ -110,7 +112,7 @@ class Line:
 
 
 def device(folder, scenario, line):
-    return subprocess.Popen(
+    return popen(
         [OCTANT, "serve", scenario, "--endpoint", f"serial:{line.paths[1]}", "--silence", "1"],
         stdout=subprocess.DEVNULL,
         stderr=open(folder / "serve.log", "a"),
@@ -119,7 +121,7 @@ def device(folder, scenario, line):
 
 def harness(folder, scenario, line, more=(), out=None):
     out = out or folder / "run"
-    return subprocess.Popen(
+    return popen(
         [OCTANT, "run", scenario, "--endpoint", f"serial:{line.paths[0]}", "--out", out, "--force", *more],
         stdout=open(folder / "run.out", "w"),
         stderr=open(folder / "run.log", "w"),

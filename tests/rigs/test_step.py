@@ -9,6 +9,8 @@ import tempfile
 import time
 import unittest
 
+from children import popen
+
 HERE = pathlib.Path(__file__).resolve().parent
 # The tool, with as long a grace for what is left behind as a test wants, and little time between request and force.
 TOOL = "import sys; sys.path.insert(0, sys.argv.pop(1)); import step; step.GRACE_S, step.ENDING_S = {}, 0.5; step.main(sys.argv[1:])"
@@ -43,7 +45,7 @@ class Step(unittest.TestCase):
         self.folder.cleanup()
 
     def tool(self, *arguments, grace_s=0.0):
-        return subprocess.Popen(
+        return popen(
             [sys.executable, "-c", TOOL.format(grace_s), str(HERE), *map(str, arguments)],
             stdout=subprocess.PIPE,
             cwd=self.work,

@@ -15,6 +15,8 @@ import tempfile
 import websockets.exceptions
 from websockets.sync.client import connect
 
+from children import popen
+
 OCTANT = sys.argv[1]
 FIXTURES = pathlib.Path(__file__).resolve().parents[2] / "fixtures"
 STANDARD = {"/imu/data", "/fix", "/error/position", "/error/velocity", "/error/attitude"}
@@ -49,7 +51,7 @@ def ends(*arguments):
 
 def start(*arguments):
     """The program, and the address that it says it serves."""
-    process = subprocess.Popen(
+    process = popen(
         [OCTANT, *map(str, arguments)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
     said = []

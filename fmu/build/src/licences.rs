@@ -102,11 +102,10 @@ mod tests {
 
     use super::*;
     use std::collections::BTreeSet;
-    use std::process::Command;
 
     #[test]
     fn components_are_those_that_cargo_links() {
-        let tree = Command::new(env!("CARGO"))
+        let tree = octant_testing::command(env!("CARGO"))
             .args([
                 "tree",
                 "--offline",

@@ -4,6 +4,7 @@
 use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::{calibrator_can, plant};
+use octant_testing::command;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -99,7 +100,7 @@ fn compile(folder: &Path) -> Option<PathBuf> {
     std::fs::write(folder.join("calibrator.h"), header()).unwrap();
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/abuse");
     let program = folder.join("abuse");
-    let mut gcc = Command::new("gcc");
+    let mut gcc = command("gcc");
     gcc.args(["-std=gnu11", "-g", "-O1", "-Wall", "-Wextra", "-Werror", "-pthread", "-I"]);
     gcc.arg(folder).arg("-o").arg(&program);
     gcc.args(SOURCES.map(|source| sources.join(source).with_extension("c")));
@@ -129,7 +130,7 @@ fn run(mut command: Command) {
 fn every_answer_is_the_one_that_the_standard_asks_for() {
     let folder = tempfile::tempdir().unwrap();
     let Some(program) = compile(folder.path()) else { return };
-    let mut command = Command::new(program);
+    let mut command = command(program);
     command.arg(library()).arg("10000");
     run(command);
 }
@@ -140,7 +141,7 @@ fn every_answer_is_the_one_that_the_standard_asks_for() {
 fn valgrind_finds_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let program = compile(folder.path()).expect("gcc");
-    let mut command = Command::new("valgrind");
+    let mut command = command("valgrind");
     command.args(["--quiet", "--error-exitcode=99", "--leak-check=full"]);
     command.args(["--show-leak-kinds=definite,indirect,possible"]);
     command.args(["--errors-for-leak-kinds=definite,indirect,possible", "--track-origins=yes"]);

@@ -163,8 +163,11 @@ mod tests {
             for entry in std::fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
-                    // Tests and benches may start processes directly.
-                    if !["tests", "benches", "target"].iter().any(|name| path.ends_with(name)) {
+                    // Tests and benches have a starter of their own.
+                    if !["tests", "benches", "target", "testing"]
+                        .iter()
+                        .any(|name| path.ends_with(name))
+                    {
                         open.push(path);
                     }
                     continue;

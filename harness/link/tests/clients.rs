@@ -10,17 +10,18 @@ use octant_link::fault::around;
 use octant_link::harness::{Harness, Patience, SessionOptions};
 use octant_link::port::{self, Port, Pty};
 use octant_link::{Uri, Wire};
+use octant_testing::{Started, command, start};
 use octant_wire::message::{EndRole, Reason};
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::Stdio;
 use std::sync::OnceLock;
 use std::time::Duration;
 
 const CLIENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/wire/clients");
 
 fn there_is(program: &str) -> bool {
-    let mut version = Command::new(program);
+    let mut version = command(program);
     version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
     let there = version.status().is_ok_and(|status| status.success());
     let required = std::env::var_os("OCTANT_REQUIRE_PEERS").is_some();
@@ -43,7 +44,7 @@ fn clients() -> &'static [(&'static str, Vec<String>)] {
         if there_is("cc") {
             let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
                 .join(format!("octant_client-{}", std::process::id()));
-            let built = Command::new("cc")
+            let built = command("cc")
                 .args(["-std=c99", "-O2", "-o"])
                 .arg(&program)
                 .arg(format!("{CLIENTS}/octant_client.c"))
@@ -57,13 +58,13 @@ fn clients() -> &'static [(&'static str, Vec<String>)] {
 }
 
 /// A client that serves as a device, stopped at the end of the test.
-struct Device(Child);
+struct Device(Started);
 
 impl Device {
     fn new(command: &[String], at: &str) -> Self {
-        let mut device = Command::new(&command[0]);
+        let mut device = octant_testing::command(&command[0]);
         device.args(&command[1..]).args(["device", at]).stderr(Stdio::piped());
-        Self(device.spawn().unwrap())
+        Self(start(&mut device))
     }
 
     /// First line that the client writes to stderr; the others are discarded.
@@ -73,13 +74,6 @@ impl Device {
         stderr.read_line(&mut line).unwrap();
         std::thread::spawn(move || stderr.read_to_string(&mut String::new()));
         line
-    }
-}
-
-impl Drop for Device {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
     }
 }
 
@@ -144,7 +138,7 @@ fn a_client_is_a_sealed_device_on_udp() {
     std::fs::write(&samples, rows).unwrap();
     let (_served, uri) = Served::on(&format!("udp:0{secret}"), facts());
     let harness = |line: &str| {
-        let mut harness = Command::new(&command[0]);
+        let mut harness = octant_testing::command(&command[0]);
         harness.args(&command[1..]).args(["harness", line]).arg(&samples);
         let ended = harness.output().unwrap();
         (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())

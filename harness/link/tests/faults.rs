@@ -196,7 +196,8 @@ fn garbage_alone_is_told_from_silence() {
             break;
         }
         // On a busy host no answer arrived in this time, not even a damaged one.
-        assert!(told.contains("nothing at all was received") && begun.elapsed() < LONG, "{told}");
+        // Or an intact status came that the device had sent before the fault began.
+        assert!(told.contains("no output to step") && begun.elapsed() < LONG, "{told}");
     }
 }
 

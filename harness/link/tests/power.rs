@@ -70,7 +70,7 @@ fn a_device_that_stays_off_is_waited_for_as_long_as_a_hello() {
     let uri = free();
     let (mut served, reached) = Served::on(&uri, facts());
     let wire = Wire::open(&reached.to_string().parse::<Uri>().unwrap(), EndRole::Harness).unwrap();
-    let patience = Patience { hello: Duration::from_secs(2), ..options().patience };
+    let patience = Patience { hello: Duration::from_secs(5), ..options().patience };
     let options = octant_link::harness::SessionOptions { patience, ..options() };
     let mut harness = Harness::open(wire, options).unwrap();
     served.stop();

@@ -2,9 +2,10 @@
 
 use crate::campaign_report::bench::Bench;
 use crate::common::program::program;
+use octant_testing::command;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 const SCENARIO: &str = "schema = 1
 title = \"short\"
@@ -57,7 +58,7 @@ wc -l <calls
 
 fn sh(bench: &Bench, variables: &[(&str, &str)]) -> String {
     let path = format!("{}:{}", bench.at("").display(), std::env::var("PATH").unwrap());
-    let mut shell = Command::new("sh");
+    let mut shell = command("sh");
     shell.arg("job.sh").current_dir(bench.at("")).env("PATH", path);
     shell.env_remove("OCTANT_FIRST").env_remove("SLURM_ARRAY_TASK_ID");
     text(&shell.envs(variables.iter().copied()).output().unwrap())
@@ -101,7 +102,7 @@ fn the_script_for_slurm_submits_itself_in_arrays_and_the_merge() {
         "<campaign><run><it's here><--shard><2/8><--jobs><1>"
     );
     let wrapped = merge.split('|').skip_while(|word| *word != "--wrap").nth(1).unwrap();
-    let mut shell = Command::new("sh");
+    let mut shell = command("sh");
     let merged = shell.args(["-c", wrapped]).env("OCTANT", &told).output().unwrap();
     assert_eq!(text(&merged), "<campaign><merge><it's here>");
 }

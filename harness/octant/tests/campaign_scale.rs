@@ -13,9 +13,10 @@ use octant_base::control::Control;
 use octant_campaign::case;
 use octant_campaign::plan::{Case, Plan};
 use octant_campaign::store::{keep_in, writer::PartWriter};
+use octant_testing::start;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 /// Short runs: what is measured is the cost of many results, not of long ones.
@@ -134,13 +135,13 @@ fn cost(folder: &Path, command: &[&str]) -> Cost {
     let mut program = match variable("OCTANT_SCALE_PROGRAM") {
         None => program(command),
         Some(path) => {
-            let mut other = Command::new(path);
+            let mut other = octant_testing::command(path);
             other.args(command);
             other
         }
     };
     program.current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::inherit());
-    let mut child = program.spawn().unwrap();
+    let mut child = start(&mut program);
     let path = format!("/proc/{}/status", child.id());
     let (mut kib, mut used_s) = (0.0, 0.0);
     loop {
@@ -155,7 +156,7 @@ fn cost(folder: &Path, command: &[&str]) -> Cost {
         std::thread::sleep(Duration::from_millis(2));
     }
     let wall_s = begun.elapsed().as_secs_f64();
-    let output = child.wait_with_output().unwrap();
+    let output = child.output();
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{command:?}: {:?}: {said}", output.status);
     Cost { wall_s, processor_s: used_s, mib: kib / 1024.0, said }

@@ -63,20 +63,20 @@ fn samples_from_a_bus_arrive_to_the_last_bit() {
     std::fs::write(folder.path().join("unit.toml"), MAPPING).unwrap();
     let mut line = Pty::open("").unwrap();
     let uri = format!("slcan:{}?bitrate=500000", line.name());
-    let files = format!("database = {DATABASE:?}\nmapping = \"unit.toml\"\nsilence = \"5 s\"\n");
+    let files = format!("database = {DATABASE:?}\nmapping = \"unit.toml\"\nsilence = \"60 s\"\n");
     let scenario = scenario(folder.path(), &uri, &files).unwrap();
     let Kind::Live(instrument) = &scenario.source else { panic!() };
     LiveSource::check(&scenario, instrument).unwrap();
     // The adapter answers each command, and starts when its channel is open.
     let adapter = std::thread::spawn(move || {
         let (mut said, mut buffer) = (Vec::new(), [0; 64]);
-        let until = Instant::now() + Duration::from_secs(60);
+        let until = Instant::now() + octant_testing::HANGS;
         while !said.ends_with(b"O\r") {
             assert!(Instant::now() < until, "{said:?}");
             let count = line.receive(&mut buffer, Duration::from_millis(50)).unwrap();
             said.extend(&buffer[..count]);
             for _ in buffer[..count].iter().filter(|byte| **byte == b'\r') {
-                line.send(b"\r", Duration::from_secs(5)).unwrap();
+                line.send(b"\r", octant_testing::HANGS).unwrap();
             }
         }
         for number in 1..=20 {
@@ -86,7 +86,7 @@ fn samples_from_a_bus_arrive_to_the_last_bit() {
             if number == 6 {
                 text = text.replacen('\r', "\rx", 3);
             }
-            assert!(line.send(text.as_bytes(), Duration::from_secs(5)).unwrap());
+            assert!(line.send(text.as_bytes(), octant_testing::HANGS).unwrap());
         }
         (line, String::from_utf8(said).unwrap())
     });

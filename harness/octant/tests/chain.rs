@@ -9,6 +9,7 @@ use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_campaign::table::{ColumnValue as Cell, ColumnValues, ExistingTable, write};
 use octant_campaign::{merge, results};
+use octant_testing::command;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -334,7 +335,7 @@ fn what_is_added_to_a_folder_is_found_and_nothing_hangs() {
     let folder = run(TOO_NEAR);
     let run = folder.path().join("run");
     let fifo = |path: &Path| {
-        let made = std::process::Command::new("mkfifo").arg(path).status().unwrap();
+        let made = command("mkfifo").arg(path).status().unwrap();
         assert!(made.success());
     };
     let added = |name: &str, add: &dyn Fn(&Path), words: &str| {

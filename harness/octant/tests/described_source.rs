@@ -2,8 +2,8 @@
 //! fixtures/golden/described.py, which knows the units' documents and not the descriptions.
 
 use crate::common::program::{ends, json};
+use octant_testing::command;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const PLANT: &str = "schema = 1
 title = \"a unit\"
@@ -50,7 +50,7 @@ fn unit(folder: &Path, format: &str, description: &str) -> (Vec<[f64; 6]>, PathB
     let sent = samples(folder, "plant");
     assert_eq!(sent.len(), 6000);
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/described.py");
-    let made = Command::new("python3")
+    let made = command("python3")
         .arg(script)
         .arg(format)
         .args([folder.join("plant-csv/samples.csv"), folder.join("unit.bin")])
@@ -226,7 +226,7 @@ fn a_described_unit_is_characterised() {
     samples(folder.path(), "long");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/described.py");
     let table = folder.path().join("long-csv/samples.csv");
-    let made = Command::new("python3")
+    let made = command("python3")
         .arg(script)
         .arg("kvh")
         .args([&table, &folder.path().join("unit.bin")])

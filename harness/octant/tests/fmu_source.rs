@@ -6,9 +6,9 @@ use octant_fmu_build::{Options, build};
 use octant_recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Mode, Output as Answer, Sample, Status, Truth};
+use octant_testing::command;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::OnceLock;
 
 /// Builds our own FMUs once, and returns one.
@@ -132,7 +132,7 @@ fn both_ends_as_fmus_give_the_same_run_and_the_manifest_names_them() {
         assert_eq!(second["model"], "Calibrator");
         assert_eq!(second["file"], endpoint_fmu.as_str());
         assert!(second["generation_tool"].as_str().unwrap().starts_with("Octant "));
-        let digest = Command::new("sha256sum").arg(&endpoint_fmu).output().unwrap().stdout;
+        let digest = command("sha256sum").arg(&endpoint_fmu).output().unwrap().stdout;
         let digest = String::from_utf8(digest).unwrap();
         assert_eq!(second["sha256"], digest.split_whitespace().next().unwrap());
         // The core on the recording, again in the FMU.

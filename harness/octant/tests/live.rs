@@ -3,10 +3,11 @@
 //! however a device ends, the bench reports it.
 
 use crate::common::program::OCTANT;
+use octant_testing::{Started, command, start};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
 const LOCKSTEP: &str =
@@ -28,7 +29,7 @@ samples = "full"
 
 /// Running `octant serve`, ended with the test.
 struct Served {
-    child: Child,
+    child: Started,
     /// URI for the harness.
     uri: String,
     said: Option<std::thread::JoinHandle<String>>,
@@ -36,17 +37,23 @@ struct Served {
 
 impl Served {
     fn new(endpoint: &str, scenario: &Path) -> Self {
-        Self::with(endpoint, scenario, &[])
+        // Longer than a busy host stands still.
+        Self::with("60", endpoint, scenario, &[])
     }
 
-    fn with(endpoint: &str, scenario: &Path, more: &[&str]) -> Self {
-        let mut child = Command::new(OCTANT)
-            .args(["serve", "--silence", "2", "--endpoint", endpoint])
-            .args(more)
-            .arg(scenario)
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+    /// A device that gives up a harness after a silence, s.
+    fn with_silence(silence: &str, endpoint: &str, scenario: &Path) -> Self {
+        Self::with(silence, endpoint, scenario, &[])
+    }
+
+    fn with(silence: &str, endpoint: &str, scenario: &Path, more: &[&str]) -> Self {
+        let mut child = start(
+            command(OCTANT)
+                .args(["serve", "--silence", silence, "--endpoint", endpoint])
+                .args(more)
+                .arg(scenario)
+                .stderr(Stdio::piped()),
+        );
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         let mut line = String::new();
         stderr.read_line(&mut line).unwrap();
@@ -61,7 +68,7 @@ impl Served {
 
     fn signal(&self, signal: &str) {
         let pid = self.child.id().to_string();
-        assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+        assert!(command("kill").args([signal, &pid]).status().unwrap().success());
     }
 
     /// Stops it; returns its exit status and its output after the first line.
@@ -69,13 +76,6 @@ impl Served {
         self.signal(signal);
         let status = self.child.wait().unwrap().code();
         (status, self.said.take().unwrap().join().unwrap())
-    }
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 
@@ -93,7 +93,7 @@ impl Bench {
     }
 
     fn run(&self, scenario: &Path, out: &str, more: &[&str]) -> Output {
-        Command::new(OCTANT)
+        command(OCTANT)
             .args(["run", "--out"])
             .arg(self.folder.path().join(out))
             .args(more)
@@ -124,7 +124,7 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
         let served = Served::new(endpoint, &bench.scenario);
         let out = format!("live-{i}");
         // Long time limits, so that a busy host causes no repeats: only real losses are counted.
-        let patient = ["--set", "endpoint.link.repeat=5 s", "--set", "endpoint.link.answer=30 s"];
+        let patient = ["--set", "endpoint.link.repeat=5 s", "--set", "endpoint.link.answer=300 s"];
         let words = [&["--endpoint", &served.uri], &patient[..]].concat();
         let found = bench.hash(&out, &words);
         assert_eq!(found, expected, "{endpoint}");
@@ -138,7 +138,7 @@ fn ten_minutes_are_the_same_bits_in_process_and_over_every_port() {
     assert_eq!(bench.hash("exec", &["--endpoint", &device]), expected);
     // The device's answers are those of the core in process on the recording.
     let recording = bench.folder.path().join("live-0/recording.mcap");
-    let replayed = Command::new(OCTANT).arg("replay").arg(recording).output().unwrap();
+    let replayed = command(OCTANT).arg("replay").arg(recording).output().unwrap();
     let said = String::from_utf8_lossy(&replayed.stdout);
     assert!(replayed.status.success() && said.contains("bit for bit"), "{said}");
 }
@@ -154,7 +154,7 @@ fn a_run_by_the_clock_over_a_port_shows_its_lateness_over_the_run() {
     for endpoint in ["udp:0", "pty:"] {
         let served = Served::new(endpoint, &bench.scenario);
         let out = endpoint.trim_end_matches([':', '0']);
-        let patient = ["--set", "endpoint.link.answer=30 s", "--realtime"];
+        let patient = ["--set", "endpoint.link.answer=300 s", "--realtime"];
         let words = [&["--endpoint", &served.uri], &patient[..]].concat();
         // On a busy host answers are late, and the run is inconclusive; its commands are late too then, and its hash
         // is another one.
@@ -316,15 +316,15 @@ fn a_device_that_is_killed_is_an_error_of_the_bench() {
     let bench = Bench::new(&std::fs::read_to_string(LOCKSTEP).unwrap());
     for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
         let served = Served::new(endpoint, &bench.scenario);
-        let mut child = Command::new(OCTANT)
-            .args(["run", "--out"])
-            .arg(bench.folder.path().join(format!("killed-{i}")))
-            .args(["--set", "endpoint.link.answer=1 s", "--endpoint", &served.uri])
-            .arg(&bench.scenario)
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = start(
+            command(OCTANT)
+                .args(["run", "--out"])
+                .arg(bench.folder.path().join(format!("killed-{i}")))
+                .args(["--set", "endpoint.link.answer=5 s", "--endpoint", &served.uri])
+                .arg(&bench.scenario)
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped()),
+        );
         let recording = format!("killed-{i}.partial/recording.mcap");
         grows(&bench.folder.path().join(recording));
         served.signal("-KILL");
@@ -346,16 +346,16 @@ fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
     let bench = Bench::new(&SHORT.replace("\"5 s\"", "\"60 s\""));
     let expected = bench.hash("in-process", &[]);
     for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
-        let served = Served::new(endpoint, &bench.scenario);
+        let served = Served::with_silence("5", endpoint, &bench.scenario);
         let out = bench.folder.path().join(format!("killed-{i}"));
-        let mut child = Command::new(OCTANT)
-            .args(["run", "--endpoint", &served.uri, "--out"])
-            .arg(&out)
-            .arg(&bench.scenario)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = start(
+            command(OCTANT)
+                .args(["run", "--endpoint", &served.uri, "--out"])
+                .arg(&out)
+                .arg(&bench.scenario)
+                .stdout(Stdio::null())
+                .stderr(Stdio::null()),
+        );
         grows(&out.with_extension("partial").join("recording.mcap"));
         child.kill().unwrap();
         assert_eq!(child.wait().unwrap().code(), None, "it was killed before its end");
@@ -369,7 +369,7 @@ fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
 fn grows(recording: &Path) {
     let begun = Instant::now();
     while std::fs::metadata(recording).map_or(0, |about| about.len()) < 100_000 {
-        assert!(begun.elapsed() < Duration::from_secs(60), "the run doesn't get on");
+        assert!(begun.elapsed() < octant_testing::HANGS, "the run doesn't get on");
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -378,23 +378,23 @@ fn grows(recording: &Path) {
 fn a_stop_of_both_ends_is_no_silence() {
     let bench = Bench::new(&std::fs::read_to_string(LOCKSTEP).unwrap());
     let expected = bench.hash("in-process", &[]);
-    let served = Served::new("udp:0", &bench.scenario);
+    let served = Served::with_silence("4", "udp:0", &bench.scenario);
     let out = bench.folder.path().join("stopped");
-    let mut child = Command::new(OCTANT)
-        .args(["run", "--set", "endpoint.link.answer=2 s", "--endpoint", &served.uri, "--out"])
-        .arg(&out)
-        .arg(&bench.scenario)
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = start(
+        command(OCTANT)
+            .args(["run", "--set", "endpoint.link.answer=4 s", "--endpoint", &served.uri, "--out"])
+            .arg(&out)
+            .arg(&bench.scenario)
+            .stdout(Stdio::null()),
+    );
     grows(&bench.folder.path().join("stopped.partial/recording.mcap"));
     let signal_both = |signal: &str| {
         let all = [child.id(), served.child.id()].map(|pid| pid.to_string());
-        assert!(Command::new("kill").arg(signal).args(all).status().unwrap().success());
+        assert!(command("kill").arg(signal).args(all).status().unwrap().success());
     };
     signal_both("-STOP");
     // Twice as long as either end waits for the other.
-    std::thread::sleep(Duration::from_secs(4));
+    std::thread::sleep(Duration::from_secs(8));
     signal_both("-CONT");
     assert!(child.wait().unwrap().success());
     assert_eq!(bench.summary("stopped")["stream_hash"].as_str().unwrap(), expected);

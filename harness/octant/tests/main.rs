@@ -24,6 +24,7 @@ mod capture;
 mod case_progress;
 mod chain;
 mod characterise;
+mod child_processes;
 mod compare_refused;
 mod completions;
 mod covariance_golden;

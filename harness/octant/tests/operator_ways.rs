@@ -1,6 +1,7 @@
 //! The terminal and the page of a run as ways to the person at its bench.
 
 use crate::common::attended::{Bench, DOOR, Going, LEVEL, gather, record};
+use octant_testing::start;
 use serde_json::Value;
 use std::fs::File;
 use std::io::Write;
@@ -17,7 +18,7 @@ pub fn on_terminal(command: &mut Command) -> (File, Going) {
     let name = ptsname(&ours, Vec::new()).unwrap().into_string().unwrap();
     let theirs = || Stdio::from(File::options().read(true).write(true).open(&name).unwrap());
     command.stdin(theirs()).stderr(theirs());
-    let child = command.spawn().unwrap();
+    let child = start(command);
     let ours = File::from(ours);
     (ours.try_clone().unwrap(), Going { said: gather(ours), child })
 }

@@ -3,6 +3,7 @@
 use crate::common::program::{OCTANT, ended, ends, json, octant};
 use crate::outside_text::{nothing_acts, nothing_acts_in};
 use octant_power::simulate::{Peculiarities, SimulatedInstrument, within};
+use octant_testing::{Started, command, start};
 use serde_json::Value;
 use std::net::TcpListener;
 use std::path::PathBuf;
@@ -10,7 +11,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-const LONG: Duration = Duration::from_secs(60);
+const LONG: Duration = octant_testing::HANGS;
 
 /// Eight seconds of calibration at one stop and two of navigation.
 const SHORT: &str = r#"
@@ -41,16 +42,13 @@ const RELAY: &str = "relay = 4\n";
 /// Device that runs while it has power.
 #[derive(Default)]
 struct Device {
-    child: Option<Child>,
+    child: Option<Started>,
     starts: u32,
 }
 
 impl Device {
     fn stop(&mut self) {
-        if let Some(mut child) = self.child.take() {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
+        self.child = None;
     }
 }
 
@@ -84,7 +82,7 @@ impl Bench {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
         let supply = instrument.port();
         let text = format!(
-            "{procedure}{faults}\n[endpoint]\nuri = \"tcp:{port}\"\n[endpoint.link]\nhello = \"60 s\"\nanswer = \"20 s\"\n\
+            "{procedure}{faults}\n[endpoint]\nuri = \"tcp:{port}\"\n[endpoint.link]\nhello = \"300 s\"\nanswer = \"20 s\"\n\
              [power]\nport = \"{supply}\"\nreply = \"20 s\"\nsettle = \"20 s\"\nrest = \"10 ms\"\n{power}"
         );
         std::fs::write(&scenario, text).unwrap();
@@ -96,12 +94,11 @@ impl Bench {
             if !powered {
                 device.stop();
             } else if device.child.is_none() {
-                let mut serve = Command::new(OCTANT);
+                let mut serve = command(OCTANT);
                 let serve =
                     serve.args(["serve", "--silence", "60", "--endpoint", &format!("tcp:{port}")]);
-                device.child = Some(
-                    serve.arg(&file).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap(),
-                );
+                device.child =
+                    Some(start(serve.arg(&file).stdout(Stdio::null()).stderr(Stdio::null())));
                 device.starts += 1;
             }
         });
@@ -109,7 +106,7 @@ impl Bench {
     }
 
     fn command(&self, more: &[&str]) -> Command {
-        let mut command = Command::new(OCTANT);
+        let mut command = command(OCTANT);
         command.args(["run", "--out"]).arg(self.folder.path().join("out"));
         command.args(more).arg(&self.scenario);
         command
@@ -135,7 +132,7 @@ impl Bench {
     fn in_process(&self, faults: &str) -> String {
         let (file, out) = (self.folder.path().join("p.toml"), self.folder.path().join("p"));
         std::fs::write(&file, format!("{SHORT}{faults}")).unwrap();
-        let mut run = Command::new(OCTANT);
+        let mut run = command(OCTANT);
         let output = run.args(["run", "--no-twin", "--out"]).arg(&out).arg(&file).output().unwrap();
         assert!(matches!(output.status.code(), Some(0 | 1 | 3)), "{output:?}");
         json(&out.join("summary.json"))["stream_hash"].as_str().unwrap().to_owned()
@@ -144,17 +141,17 @@ impl Bench {
     /// Starts a run, waits until the device is on, and lets it be ended; returns status and words.
     fn ended_by(&self, more: &[&str], end: impl FnOnce(&Child)) -> (Option<i32>, String) {
         let mut run = self.command(more);
-        let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let child = start(run.stdout(Stdio::piped()).stderr(Stdio::piped()));
         assert!(within(LONG, || self.instrument.is_on(2)));
         end(&child);
-        let output = child.wait_with_output().unwrap();
+        let output = child.output();
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
     }
 }
 
 fn signal(child: &Child, signal: &str) {
     let id = child.id().to_string();
-    assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
+    assert!(command("kill").args([signal, &id]).status().unwrap().success());
 }
 
 fn said(output: &Output) -> String {
@@ -274,11 +271,11 @@ fn an_interrupt_leaves_the_output_as_it_is_to_be_left() {
         let cut = CUT.replace("500 ms", "60 s").replace("at = \"4 s\"", "at = \"1 s\"");
         let bench = Bench::that_takes("100 s", &cut, SUPPLY, 20.0);
         let mut run = bench.command(&["--no-twin"]);
-        let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let child = start(run.stdout(Stdio::piped()).stderr(Stdio::piped()));
         assert!(within(LONG, || bench.starts() == 1));
         assert!(within(LONG, || !bench.instrument.is_on(2)));
         signal(&child, number);
-        let output = child.wait_with_output().unwrap();
+        let output = child.output();
         assert_eq!(output.status.code(), Some(status), "{number}: {}", said(&output));
         assert!(!bench.instrument.is_on(2));
         assert_eq!(bench.starts(), 1, "nothing was switched on again");
@@ -334,11 +331,11 @@ fn a_device_that_answers_while_its_power_is_cut_was_never_cut() {
     let bench = Bench::that_takes("10 min", &CUT.replace("4 s", "9 min"), RELAY, 20.0);
     let (instrument, device) = (bench.instrument.clone(), Arc::clone(&bench.device));
     let mut run = bench.command(&["--no-twin"]);
-    let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = start(run.stdout(Stdio::piped()).stderr(Stdio::piped()));
     assert!(within(LONG, || device.lock().unwrap().starts == 1));
     // From here on the relay switches nothing.
     instrument.on_change(|_, _, _| {});
-    let output = child.wait_with_output().unwrap();
+    let output = child.output();
     let words = said(&output);
     assert_eq!(output.status.code(), Some(4), "{words}");
     assert!(words.contains("failed to cut the power of tcp:127.0.0.1"), "{words}");

@@ -266,12 +266,14 @@ fn late_answers_are_counted_and_recorded_with_their_samples() {
 #[test]
 fn an_endpoint_that_falls_silent_ends_the_run() {
     let held = |number| if number >= 50 { u32::MAX } else { 0 };
-    let (ended, kept, summary, _) = drive(held, "silence = \"100 ms\"\n", None);
+    let (ended, kept, summary, _) = drive(held, "silence = \"1 s\"\n", None);
     let error = ended.unwrap_err();
-    assert!(error.starts_with("endpoint slow is gone: no answer to sample 50 for 0.1"), "{error}");
+    let waited = error.strip_prefix("endpoint slow is gone: no answer to sample 50 for ");
+    let waited_s: f64 = waited.and_then(|w| w.split(' ').next()?.parse().ok()).expect(&error);
+    assert!(waited_s >= 1.0, "{error}");
     assert_eq!(summary.epochs, 49, "what was answered is recorded");
-    // 20 periods of silence; fewer frames if the host stalled meanwhile.
-    assert!((50..75).contains(&kept.pacing.frames), "{:?}", kept.pacing);
+    // 200 periods of silence; fewer frames if the host stalled meanwhile.
+    assert!((50..260).contains(&kept.pacing.frames), "{:?}", kept.pacing);
 }
 
 #[test]

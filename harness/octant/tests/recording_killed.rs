@@ -5,6 +5,7 @@ use crate::common::epochs::{push, stream};
 use crate::common::program::{ended, octant, program, test_as_process};
 use octant_recorder::reader::{Epochs, Recording, contents};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
+use octant_testing::start;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::Stdio;
@@ -34,12 +35,12 @@ fn a_kill_costs_less_than_a_second() {
     let folder = tempfile::tempdir().unwrap();
     for (round, run_ms) in [1300, 1750, 2100].into_iter().enumerate() {
         let path = folder.path().join(format!("{round}.mcap"));
-        let mut child = test_as_process("recording_killed::child_that_records_slowly")
-            .env(PATH, &path)
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = start(
+            test_as_process("recording_killed::child_that_records_slowly")
+                .env(PATH, &path)
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped()),
+        );
         let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
         // Times at which each epoch was reported as recorded.
         let mut said: Vec<(Instant, u64)> = Vec::new();
@@ -116,11 +117,11 @@ fn the_program_killed_at_any_moment_leaves_the_beginning_of_its_run() {
     {
         let out = folder.path().join(format!("killed-{round}"));
         let recording = folder.path().join(format!("killed-{round}.partial/recording.mcap"));
-        let mut child = program(&["run", scenario, "--out", out.to_str().unwrap()])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = start(
+            program(&["run", scenario, "--out", out.to_str().unwrap()])
+                .stdout(Stdio::null())
+                .stderr(Stdio::null()),
+        );
         while std::fs::metadata(&recording).map_or(0, |file| file.len()) < bytes {
             assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
             std::thread::sleep(Duration::from_millis(1));

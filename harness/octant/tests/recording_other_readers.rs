@@ -3,8 +3,8 @@
 
 use crate::common::epochs::{push, stream};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
+use octant_testing::command;
 use std::path::Path;
-use std::process::Command;
 
 #[test]
 fn the_python_readers_find_the_same_messages() {
@@ -30,7 +30,7 @@ fn the_python_readers_find_the_same_messages() {
             push(&mut recorder, step).unwrap();
         }
         let summary = recorder.finish().unwrap();
-        let output = Command::new(&python)
+        let output = command(&python)
             .arg(&script)
             .arg(&path)
             .args(
@@ -61,7 +61,7 @@ fn the_python_readers_find_the_same_messages() {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 4;
         std::fs::write(&path, &bytes).unwrap();
-        let output = Command::new(&python).arg(&script).arg(&path).output().unwrap();
+        let output = command(&python).arg(&script).arg(&path).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
     }
 }

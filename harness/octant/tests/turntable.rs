@@ -3,10 +3,10 @@
 
 use crate::common::program::OCTANT;
 use crate::common::table::{Bench, Felt, Running, Stage, wait_for};
+use octant_testing::{command, start};
 use octant_turntable::TableAxis;
 use octant_turntable::simulate::ControllerBehaviour;
 use serde_json::Value;
-use std::process::Command;
 
 #[test]
 fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
@@ -123,12 +123,12 @@ fn ended_on_the_way(more: &str, end: impl FnOnce(&Stage, &Running)) -> (Option<i
 fn an_instrument_that_is_lost_stops_the_table() {
     let (status, reasons) = ended_on_the_way("", |stage, _| stage.instrument.fall_silent());
     assert_eq!(status, Some(4));
-    assert!(reasons.contains("no reading for 1 s"), "{reasons}");
+    assert!(reasons.contains("no reading for 5 s"), "{reasons}");
 }
 
 #[test]
 fn a_table_that_stops_itself_ends_the_run_and_is_named() {
-    let (status, reasons) = ended_on_the_way("reply = \"200 ms\"\n", |stage, _| {
+    let (status, reasons) = ended_on_the_way("reply = \"3 s\"\n", |stage, _| {
         stage.server.with(|controller, _| controller.behave(ControllerBehaviour::Silent));
     });
     assert_eq!(status, Some(4));
@@ -138,8 +138,7 @@ fn a_table_that_stops_itself_ends_the_run_and_is_named() {
 #[test]
 fn somebody_on_the_command_line_stops_it() {
     let (status, reasons) = ended_on_the_way("", |stage, _| {
-        let output =
-            Command::new(OCTANT).args(["turntable", "stop", &stage.port]).output().unwrap();
+        let output = command(OCTANT).args(["turntable", "stop", &stage.port]).output().unwrap();
         let said = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success() && said.contains("the program that drives"), "{said}");
     });
@@ -217,11 +216,11 @@ fn by_hand_on_a_pseudo_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let link = folder.path().join("table");
     let name = format!("serial:{}?baud=115200", link.display());
-    let mut simulated = Command::new(OCTANT)
-        .args(["turntable", "simulate", &format!("pty:{}", link.display())])
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
+    let simulated = start(
+        command(OCTANT)
+            .args(["turntable", "simulate", &format!("pty:{}", link.display())])
+            .stderr(std::process::Stdio::null()),
+    );
     wait_for("the terminal", || link.exists());
     let scenario = folder.path().join("s.toml");
     std::fs::write(
@@ -235,7 +234,7 @@ fn by_hand_on_a_pseudo_terminal() {
     .unwrap();
     let scenario = scenario.to_str().unwrap();
     let octant = |arguments: &[&str]| {
-        let output = Command::new(OCTANT).arg("turntable").args(arguments).output().unwrap();
+        let output = command(OCTANT).arg("turntable").args(arguments).output().unwrap();
         let out = String::from_utf8_lossy(&output.stdout).into_owned();
         (output.status.code(), out + &String::from_utf8_lossy(&output.stderr))
     };
@@ -270,6 +269,5 @@ fn by_hand_on_a_pseudo_terminal() {
     assert!(said.contains("stop sent through its own port"), "{said}");
     let (status, said) = octant(&["status", "tcp:127.0.0.1:1"]);
     assert_eq!(status, Some(4), "{said}");
-    simulated.kill().unwrap();
-    simulated.wait().unwrap();
+    drop(simulated);
 }

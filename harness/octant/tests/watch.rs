@@ -6,6 +6,7 @@ use octant_evidence::{Existing, RunFolder};
 use octant_recorder::event::Pace;
 use octant_recorder::reader::{Item, Recording};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
+use octant_testing::start;
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::place::RunPlace;
 use octant_watch::tail::{PollEnd, Tail, TailError};
@@ -302,11 +303,11 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     let alone = ["run", "s.toml", "--out", "runs/alone", "--realtime"];
     ended(octant_in(here, &alone), 0);
 
-    let mut run = program(&["run", "s.toml", "--out", "runs/watched", "--realtime"])
-        .current_dir(here)
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut run = start(
+        program(&["run", "s.toml", "--out", "runs/watched", "--realtime"])
+            .current_dir(here)
+            .stdout(Stdio::null()),
+    );
     wait_for(&here.join("runs/watched.partial/recording.mcap"), &mut run);
     // The file exists before it has content.
     let page = loop {
@@ -318,12 +319,7 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     };
     // The newest run in progress is the only one.
     let watch = |arguments: &[&str]| {
-        program(arguments)
-            .current_dir(here)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap()
+        start(program(arguments).current_dir(here).stdout(Stdio::piped()).stderr(Stdio::piped()))
     };
     let newest = watch(&["watch", "--plain"]);
     let named = watch(&["watch", "runs/watched"]);
@@ -333,7 +329,7 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     leaves.wait().unwrap();
     assert!(run.wait().unwrap().success());
     for watch in [newest, named] {
-        let output = watch.wait_with_output().unwrap();
+        let output = watch.output();
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         shows(&text, &["by the clock: none", "100.0 %", "1 of 1 faults fired", "overruns"]);

@@ -235,7 +235,7 @@ fn requests_of_another_process_are_replied_to_and_bad_ones_refused() {
     assert!(!desk.attendance().is_closed(0));
     let (path, asked) = (folder.path().to_owned(), answer.clone());
     let other =
-        std::thread::spawn(move || mailbox::request(&path, &asked, Duration::from_secs(20)));
+        std::thread::spawn(move || mailbox::request(&path, &asked, Duration::from_secs(300)));
     while !other.is_finished() {
         assert!(open.serve(|request| request.apply(&desk, AnswerWay::Command)).is_empty());
         std::thread::sleep(Duration::from_millis(5));

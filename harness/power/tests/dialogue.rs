@@ -7,8 +7,8 @@ use std::io::{BufRead, BufReader, Write};
 use std::net::TcpListener;
 use std::time::Duration;
 
-const REPLY: Duration = Duration::from_secs(10);
-const SHORT: Duration = Duration::from_secs(1);
+const REPLY: Duration = octant_testing::HANGS;
+const SHORT: Duration = Duration::from_secs(3);
 
 /// An instrument that answers each query with the next of these lines, and hangs up after them.
 fn that_says(replies: &'static [&'static str]) -> String {

@@ -3,6 +3,7 @@
 use crate::plan;
 use octant_power::simulate::{Peculiarities, SimulatedInstrument, within};
 use octant_power::{Outlet, PowerError, PowerOutlet, PowerPlan, SupplySetting, write_all_ends};
+use octant_testing::command;
 use std::time::Duration;
 
 fn instrument() -> SimulatedInstrument {
@@ -195,7 +196,7 @@ fn the_end_comes_over_a_new_connection_where_the_old_one_is_mute() {
     instrument.becomes(Peculiarities { silent: true, ..Peculiarities::default() });
     // Nobody answers on any connection: it is told, and the bytes are written all the same.
     outlet.end().unwrap_err();
-    assert!(within(Duration::from_secs(10), || !instrument.is_on(2)));
+    assert!(within(octant_testing::HANGS, || !instrument.is_on(2)));
 }
 
 #[test]
@@ -212,14 +213,14 @@ fn a_program_that_cannot_go_on_writes_the_end_states() {
     let this = "outlet::a_program_that_cannot_go_on_writes_the_end_states";
     for (end_on, set_v) in [(false, 6.0), (true, 24.0)] {
         let instrument = instrument();
-        let mut child = std::process::Command::new(std::env::current_exe().unwrap());
+        let mut child = command(std::env::current_exe().unwrap());
         child.args(["--exact", this]).env(PORT, instrument.port());
         if end_on {
             child.env("OCTANT_TEST_POWER_END_ON", "1");
         }
         assert!(child.output().unwrap().status.success());
         let is_left = || instrument.is_on(2) == end_on && instrument.set_v(2) == set_v;
-        assert!(within(Duration::from_secs(10), is_left), "{instrument:?}");
+        assert!(within(octant_testing::HANGS, is_left), "{instrument:?}");
         // It was on at its lowered voltage before.
         assert!(instrument.heard().contains(&"VOLT 6".to_owned()));
     }

@@ -4,12 +4,11 @@
 use octant_base::serial::SerialPort;
 use octant_power::ScpiDialogue;
 use std::io::{Read, Write};
-use std::time::Duration;
 
 #[test]
 fn the_dialogue_is_the_same_on_a_serial_line() {
     let (mut near, far, name) = SerialPort::pair().unwrap();
-    near.set_wait(Duration::from_secs(10));
+    near.set_wait(octant_testing::HANGS);
     let instrument = std::thread::spawn(move || {
         let (mut line, mut heard, mut byte) = (String::new(), Vec::new(), [0]);
         while near.read_exact(&mut byte).is_ok() {
@@ -29,7 +28,7 @@ fn the_dialogue_is_the_same_on_a_serial_line() {
         heard
     });
     let port = format!("serial:{name}?baud=9600");
-    let mut dialogue = ScpiDialogue::open(&port, Duration::from_secs(10), true).unwrap();
+    let mut dialogue = ScpiDialogue::open(&port, octant_testing::HANGS, true).unwrap();
     drop(far);
     assert_eq!(dialogue.identity(), "M,S,0,1");
     assert_eq!(dialogue.number("MEAS:VOLT?").unwrap(), 5.0);

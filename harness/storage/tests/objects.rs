@@ -1,6 +1,7 @@
 //! Objects are written once, or over another, and an interrupt ends reading.
 
 use octant_storage::{PutOutcome, Storage, StorageAddress, StorageError, StorageOptions};
+use octant_testing::command;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -97,7 +98,7 @@ fn an_interrupt_ends_reading() {
     let storage = in_folder(folder.path(), Some(&CANCEL));
     // A pipe that nobody writes: opening it waits.
     let pipe = folder.path().join("pipe");
-    if !std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|made| made.success()) {
+    if !command("mkfifo").arg(&pipe).status().is_ok_and(|made| made.success()) {
         return;
     }
     let error = std::thread::scope(|scope| {

@@ -4,7 +4,6 @@ use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::ControllerBehaviour;
 use octant_turntable::{Following, TableAxis, TablePlan, press, stop_by_hand};
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 fn plan(port: &str) -> TablePlan {
@@ -15,14 +14,14 @@ fn plan(port: &str) -> TablePlan {
         period: Duration::from_millis(10),
         guard: None,
         home: true,
-        start: Duration::from_secs(60),
+        start: octant_testing::HANGS,
         tolerance_rad: degrees(0.001),
         units: 1,
     }
 }
 
 fn start(plan: &TablePlan) -> Following {
-    Following::start(plan, &mut Command::new("none")).unwrap()
+    Following::start(plan, &mut octant_base::child::command("none")).unwrap()
 }
 
 fn set_point(azimuth: f64, roll: f64) -> GimbalCommand {
@@ -42,7 +41,7 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
     let (mut compared, mut moves) = (0, 0);
     for (azimuth, roll) in [(0.0, 12.0), (-7.0, 12.0), (0.0, 0.0)].into_iter().cycle() {
         // A busy host looks seldom: the moves are repeated until there were enough comparisons.
-        if moves >= 3 && (compared > 10 || begun.elapsed() > Duration::from_secs(60)) {
+        if moves >= 3 && (compared > 10 || begun.elapsed() > octant_testing::HANGS) {
             break;
         }
         moves += 1;
@@ -130,11 +129,14 @@ fn a_table_that_does_not_arrive_does_not_start() {
     // The table was stopped at some angle: the way to zero takes longer than permitted, on any host.
     (hasty.start, hasty.home) = (Duration::from_millis(300), false);
     hasty.settings.limits.axes[1].rate_radps = degrees(0.1);
-    let error = Following::start(&hasty, &mut Command::new("none")).unwrap_err().to_string();
+    let error =
+        Following::start(&hasty, &mut octant_base::child::command("none")).unwrap_err().to_string();
     assert!(error.ends_with("the table still moves after 300ms"), "{error}");
     let mut narrow = plan(&name);
     narrow.settings.limits.axes[1].least_rad = degrees(5.0);
-    let error = Following::start(&narrow, &mut Command::new("none")).unwrap_err().to_string();
+    let error = Following::start(&narrow, &mut octant_base::child::command("none"))
+        .unwrap_err()
+        .to_string();
     assert_eq!(error, "roll 0.0000° is beyond its limits, 5° to 365°");
 }
 
@@ -162,7 +164,7 @@ fn another_program_can_press_the_stop() {
     let (server, name) = tcp_at(ensemble(), 1.0);
     assert_eq!(press(Some(&name)).unwrap(), []);
     let table = start(&plan(&name));
-    let error = Following::start(&plan(&name), &mut Command::new("none"));
+    let error = Following::start(&plan(&name), &mut octant_base::child::command("none"));
     // The second one isn't served: the controller listens to the first.
     assert!(error.is_err());
     assert!(!table.is_stopped());

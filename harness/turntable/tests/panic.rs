@@ -2,8 +2,8 @@
 //! every table of a process, including those of the other tests.
 
 use crate::common::*;
+use octant_testing::command;
 use octant_turntable::{TableAxis, Turntable, on_panic};
-use std::process::Command;
 
 /// Environment variable that marks the separate process.
 const ALONE: &str = "OCTANT_PANICS_ALONE";
@@ -12,7 +12,7 @@ const ALONE: &str = "OCTANT_PANICS_ALONE";
 #[test]
 fn a_panic_in_any_thread_stops_it() {
     if std::env::var_os(ALONE).is_none() {
-        let output = Command::new(std::env::current_exe().unwrap())
+        let output = command(std::env::current_exe().unwrap())
             .args(["--exact", "panic::a_panic_in_any_thread_stops_it", "--nocapture"])
             .env(ALONE, "1")
             .output()

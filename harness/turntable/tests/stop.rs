@@ -94,7 +94,8 @@ fn the_end_leaves_it_at_rest() {
 #[cfg(unix)]
 mod processes {
     use super::*;
-    use std::process::{Child, Command, Stdio};
+    use octant_testing::{Started, command};
+    use std::process::{Child, Stdio};
 
     const ADDRESS: &str = "OCTANT_TABLE_UNDER_TEST";
     const GUARDED: &str = "OCTANT_TABLE_GUARDED";
@@ -107,7 +108,9 @@ mod processes {
         octant_turntable::on_signals().unwrap();
         let mut driver = drive(&name, ensemble(), settings());
         if std::env::var_os(GUARDED).is_some() {
-            let mut program = Command::new(env!("CARGO_BIN_EXE_octant-turntable"));
+            // A guard outlives what it guards: no command of the tests.
+            let program = env!("CARGO_BIN_EXE_octant-turntable");
+            let mut program = octant_base::child::command(program);
             driver.guard(program.arg("guard"), Duration::from_secs(5)).unwrap();
         }
         driver.rate(TableAxis::Roll, degrees(0.5)).unwrap();
@@ -117,22 +120,22 @@ mod processes {
         }
     }
 
-    fn start(name: &str, guarded: bool) -> Child {
+    fn start(name: &str, guarded: bool) -> Started {
         start_with(name, guarded, Stdio::null())
     }
 
-    fn start_with(name: &str, guarded: bool, stderr: Stdio) -> Child {
-        let mut command = Command::new(std::env::current_exe().unwrap());
+    fn start_with(name: &str, guarded: bool, stderr: Stdio) -> Started {
+        let mut command = command(std::env::current_exe().unwrap());
         command.args(["--exact", "stop::processes::harness", "--ignored", "--nocapture"]);
         command.env(ADDRESS, name).stdout(Stdio::null()).stderr(stderr);
         if guarded {
             command.env(GUARDED, "1");
         }
-        command.spawn().unwrap()
+        octant_testing::start(&mut command)
     }
 
     fn signal(child: &Child, signal: &str) {
-        let status = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let status = command("kill").args([signal, &child.id().to_string()]).status().unwrap();
         assert!(status.success());
     }
 
@@ -192,11 +195,11 @@ mod processes {
         // Without guard and watchdog the table continues to turn.
         assert!(turns(&server, TableAxis::Roll));
         let program = env!("CARGO_BIN_EXE_octant-turntable");
-        let status = Command::new(program).args(["stop", &name]).status().unwrap();
+        let status = command(program).args(["stop", &name]).status().unwrap();
         assert!(status.success());
         wait_for("rest", || rests(&server));
         let status =
-            Command::new(program).args(["stop", "tcp:127.0.0.1:1"]).stderr(Stdio::null()).status();
+            command(program).args(["stop", "tcp:127.0.0.1:1"]).stderr(Stdio::null()).status();
         assert_eq!(status.unwrap().code(), Some(4));
     }
 }

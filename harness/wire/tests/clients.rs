@@ -6,10 +6,11 @@
 
 use crate::common::peer::{Echo, Peer, hello, serve};
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Reference, Sample};
+use octant_testing::{Started, command, start};
 use octant_wire::message::*;
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -25,14 +26,14 @@ struct Client {
 
 impl Client {
     fn run(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(&self.command[0]);
+        let mut command = command(&self.command[0]);
         command.args(&self.command[1..]).args(arguments);
         command
     }
 }
 
 fn there_is(program: &str) -> bool {
-    let mut version = Command::new(program);
+    let mut version = command(program);
     version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
     let there = version.status().is_ok_and(|status| status.success());
     let required = std::env::var_os("OCTANT_REQUIRE_PEERS").is_some();
@@ -55,7 +56,7 @@ fn clients() -> &'static [Client] {
         if there_is("cc") {
             let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
                 .join(format!("octant_client-{}", std::process::id()));
-            let built = Command::new("cc")
+            let built = command("cc")
                 .args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o"])
                 .arg(&program)
                 .arg(format!("{FIXTURES}/clients/octant_client.c"))
@@ -302,7 +303,7 @@ fn the_clients_notice_an_answer_that_is_not_the_echo() {
         // This device wasn't restarted, but has an offset that the harness doesn't expect.
         let mut echo = Echo::new(Some(octant_sample::Parameters::from_array(&[1e-9; 30])));
         let (mut done, mut answer, mut aiding) = (StepNumber::default(), Vec::new(), None);
-        while let Some(message) = peer.receive(Duration::from_secs(60)) {
+        while let Some(message) = peer.receive(octant_testing::HANGS) {
             let request = match message {
                 Message::Bye(_) => break,
                 Message::Hello(theirs) => {
@@ -379,31 +380,18 @@ fn the_clients_refuse_a_newer_harness() {
     }
 }
 
-/// A child that is stopped on drop.
-struct Background(Child);
-
-impl Drop for Background {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
 /// Starts a device that listens on UDP; also returns its port.
-fn listen(client: &Client, options: &[&str]) -> (Background, String) {
-    let mut child = client
-        .run(&["device", "udp-listen:127.0.0.1:0"])
-        .args(options)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+fn listen(client: &Client, options: &[&str]) -> (Started, String) {
+    let mut child = start(
+        client.run(&["device", "udp-listen:127.0.0.1:0"]).args(options).stderr(Stdio::piped()),
+    );
     let mut line = String::new();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     stderr.read_line(&mut line).unwrap();
     // Later output doesn't matter, but must be read so that the pipe never fills.
     std::thread::spawn(move || stderr.read_to_string(&mut String::new()));
     let port = line.trim().rsplit(' ').next().unwrap().to_owned();
-    (Background(child), port)
+    (child, port)
 }
 
 #[test]
@@ -454,12 +442,12 @@ fn a_device_obeys_the_harness_alone_that_said_hello() {
         };
         let (first, second) = (socket(), socket());
         say(&first, &Message::Hello(hello(EndRole::Harness, 1)));
-        assert!(heard(&first, 60_000), "{}", client.name);
+        assert!(heard(&first, 300_000), "{}", client.name);
         say(&second, &Message::Hello(hello(EndRole::Harness, 2)));
         say(&second, &Message::TimeRequest(TimeRequest::default()));
         assert!(!heard(&second, 300), "{}: a second harness was heard", client.name);
         say(&first, &Message::TimeRequest(TimeRequest::default()));
-        assert!(heard(&first, 60_000), "{}: the first one is heard no more", client.name);
+        assert!(heard(&first, 300_000), "{}: the first one is heard no more", client.name);
     }
 }
 
@@ -487,19 +475,14 @@ fn the_clients_talk_to_each_other_over_a_serial_line() {
     let file = file_of_samples();
     for device in clients() {
         for harness in clients() {
-            let terminals =
-                Command::new("python3").args(["-c", TERMINALS]).stdout(Stdio::piped()).spawn();
-            let mut terminals = Background(terminals.unwrap());
+            let mut terminals =
+                start(command("python3").args(["-c", TERMINALS]).stdout(Stdio::piped()));
             let mut line = String::new();
-            BufReader::new(terminals.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+            BufReader::new(terminals.stdout.take().unwrap()).read_line(&mut line).unwrap();
             let [a, b] =
                 <[&str; 2]>::try_from(line.split_whitespace().collect::<Vec<_>>()).unwrap();
-            let _device = Background(
-                device
-                    .run(&["device", &format!("serial:{a}?baud=115200")])
-                    .stderr(Stdio::null())
-                    .spawn()
-                    .unwrap(),
+            let _device = start(
+                device.run(&["device", &format!("serial:{a}?baud=115200")]).stderr(Stdio::null()),
             );
             let output = harness
                 .run(&["harness", &format!("serial:{b}?baud=115200")])

@@ -11,10 +11,10 @@ use octant_core::functions::*;
 use octant_core::status;
 use octant_core::types::{CAiding, CConfig, COutput, CSample, layout};
 use octant_sample::{Aiding, Output, Reference, Sample};
+use octant_testing::command;
 use std::ffi::{CStr, c_void};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::ptr::{null, null_mut};
 
 fn here(path: &str) -> PathBuf {
@@ -39,7 +39,7 @@ fn library() -> PathBuf {
 
 /// Compiles a program; `None`: there is no C compiler here.
 fn compile(source: &Path, program: &Path, links: bool) -> Option<()> {
-    let mut gcc = Command::new("gcc");
+    let mut gcc = command("gcc");
     gcc.args(["-std=c11", "-O1", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I"]);
     gcc.arg(here("include")).arg("-o").arg(program).arg(source);
     if links {
@@ -59,7 +59,7 @@ fn compile(source: &Path, program: &Path, links: bool) -> Option<()> {
 }
 
 fn said(program: &Path, arguments: &[&Path]) -> String {
-    let output = Command::new(program).args(arguments).output().unwrap();
+    let output = command(program).args(arguments).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{}: {errors}", output.status);
     String::from_utf8(output.stdout).unwrap()

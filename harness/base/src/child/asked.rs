@@ -187,12 +187,12 @@ mod tests {
         );
         for question in ["a", "b"] {
             child.ask(question.into());
-            let reply = reply(&mut child, 10_000);
+            let reply = reply(&mut child, 300_000);
             assert!(matches!(&reply, AskedReply::Line(line) if *line == format!("{question}!")));
         }
         child.ask("c".into());
-        assert!(matches!(reply(&mut child, 10_000), AskedReply::Line(line) if line == "c!"));
-        let ended = reply(&mut child, 10_000);
+        assert!(matches!(reply(&mut child, 300_000), AskedReply::Line(line) if line == "c!"));
+        let ended = reply(&mut child, 300_000);
         let AskedReply::Ended(ChildEnded::Status(status), words) = ended else {
             panic!("{ended:?}")
         };
@@ -209,7 +209,7 @@ mod tests {
         let ended = child.reply(Duration::MAX, &AtomicBool::new(true)).unwrap();
         assert!(matches!(ended, AskedReply::Ended(ChildEnded::Cancelled, _)), "{ended:?}");
         let mut child = shell("kill -9 $$");
-        let ended = reply(&mut child, 10_000);
+        let ended = reply(&mut child, 300_000);
         assert!(
             matches!(&ended, AskedReply::Ended(ChildEnded::Outside(by), _) if by == "SIGKILL"),
             "{ended:?}"

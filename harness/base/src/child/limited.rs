@@ -178,11 +178,12 @@ fn outside(_: ExitStatus) -> Option<String> {
 #[cfg(target_os = "linux")]
 mod tests {
     use super::*;
+    use octant_testing::{Started, command, start};
     use rustix::process::{Pid, Signal, kill_process};
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
 
-    fn started() -> (Child, Pid) {
-        let child = Command::new("sleep").arg("1000").spawn().unwrap();
+    fn started() -> (Started, Pid) {
+        let child = start(command("sleep").arg("1000"));
         let pid = Pid::from_raw(i32::try_from(child.id()).unwrap()).unwrap();
         (child, pid)
     }
@@ -209,7 +210,7 @@ mod tests {
 
     #[test]
     fn input_that_is_not_read_does_not_outlast_the_limit() {
-        let child = Command::new("sleep").arg("1000").stdin(Stdio::piped()).spawn().unwrap();
+        let child = start(command("sleep").arg("1000").stdin(Stdio::piped())).release();
         // More than a pipe holds.
         let input = vec![0; 1 << 20];
         let never = AtomicBool::new(false);

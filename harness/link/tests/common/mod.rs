@@ -94,7 +94,7 @@ pub(crate) fn facts() -> Facts {
 }
 
 /// Longer than any host needs: ends a test that hangs.
-pub(crate) const LONG: Duration = Duration::from_secs(60);
+pub(crate) const LONG: Duration = octant_testing::HANGS;
 
 pub(crate) fn options() -> SessionOptions {
     SessionOptions {

@@ -4,6 +4,7 @@ use super::bench::{Bench, SCENARIO, core, entries, names};
 use crate::common::program::{ends, json};
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::{BundleContents, SCHEMA};
+use octant_testing::command;
 use std::path::{Path, PathBuf};
 
 #[test]
@@ -89,7 +90,7 @@ fn the_same_plan_gives_the_same_bytes_wherever_it_was_made() {
     let list = BundleContents::from_json(Path::new("it"), &contents[0].1).unwrap();
     assert_eq!(list.schema, SCHEMA);
     let octant = crate::common::program::OCTANT;
-    let digest = std::process::Command::new("sha256sum").arg(octant).output().unwrap().stdout;
+    let digest = command("sha256sum").arg(octant).output().unwrap().stdout;
     let digest = String::from_utf8(digest).unwrap();
     assert_eq!(list.program_sha256.as_deref(), digest.split_whitespace().next());
     // Each entry is in the folder of its own hash; no path of the planning computer is inside.

@@ -1,10 +1,11 @@
 //! Runs with a person at the bench: their scenario, what they say, and how they are answered.
 
 use super::program::OCTANT;
+use octant_testing::{Started, command, start};
 use serde_json::Value;
 use std::io::Read;
 use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -18,7 +19,7 @@ pub const LEVEL: &str = "[[operator]]\nid = \"level\"\nask = \"Read the level.\"
     answer = \"number\"\nunit = \"mm/m\"\nleast = -0.1\nmost = 0.1\nwho = \"required\"\n";
 
 /// Time after which a run counts as hanging.
-const HANGS: Duration = Duration::from_secs(120);
+const HANGS: Duration = octant_testing::HANGS;
 
 pub struct Bench {
     folder: tempfile::TempDir,
@@ -37,7 +38,7 @@ impl Bench {
 
     /// The run in the folder `run`.
     pub fn command(&self, more: &[&str]) -> Command {
-        let mut command = Command::new(OCTANT);
+        let mut command = command(OCTANT);
         command.current_dir(self.folder.path()).env_remove("OCTANT_OPERATOR");
         command.args(["run", "s.toml", "--out", "run"]).args(more);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -49,13 +50,13 @@ impl Bench {
         let mut command = self.command(more);
         command.args([
             "--endpoint",
-            &format!("exec:{OCTANT} serve --silence 1 --endpoint stdio: s.toml"),
+            &format!("exec:{OCTANT} serve --silence 3 --endpoint stdio: s.toml"),
         ]);
         command
     }
 
     pub fn octant(&self, words: &[&str]) -> Output {
-        Command::new(OCTANT).current_dir(self.folder.path()).args(words).output().unwrap()
+        command(OCTANT).current_dir(self.folder.path()).args(words).output().unwrap()
     }
 
     /// Answers from another process.
@@ -91,13 +92,13 @@ pub fn said(output: &Output) -> (Option<i32>, String) {
 
 /// A run that goes on, and what it said so far.
 pub struct Going {
-    pub child: Child,
+    pub child: Started,
     pub said: Arc<Mutex<String>>,
 }
 
 impl Going {
     pub fn start(command: &mut Command) -> Self {
-        let mut child = command.spawn().unwrap();
+        let mut child = start(command);
         let stderr = child.stderr.take().unwrap();
         Self { said: gather(stderr), child }
     }
@@ -117,7 +118,7 @@ impl Going {
 
     pub fn signal(&self, signal: &str) {
         let pid = self.child.id().to_string();
-        assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+        assert!(command("kill").args([signal, &pid]).status().unwrap().success());
     }
 
     /// Waits for its end.
@@ -132,13 +133,6 @@ impl Going {
         std::thread::sleep(Duration::from_millis(100));
         let said = self.said.lock().unwrap().clone();
         (status, said)
-    }
-}
-
-impl Drop for Going {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

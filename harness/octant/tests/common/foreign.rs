@@ -4,9 +4,9 @@
 
 use octant_fmu_host::description::Standard;
 use octant_fmu_host::library::platforms;
+use octant_testing::command;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Names of these FMUs, without `scheduled_fmi3`: it has only the functions that its own tests call.
 pub const NAMES: [&str; 13] = [
@@ -95,7 +95,7 @@ fn build(name: &str, folder: &Path) {
         .unwrap();
     let own = sources().join(format!("{name}.c"));
     let library = binaries.join(format!("{name}{}", std::env::consts::DLL_SUFFIX));
-    let mut gcc = Command::new("gcc");
+    let mut gcc = command("gcc");
     gcc.args(["-std=gnu11", "-O1", "-g", "-fPIC", "-shared", "-Wall", "-Wextra", "-Werror"]);
     gcc.args(["-fvisibility=default", "-Wno-infinite-recursion"]);
     if own.is_file() {
@@ -123,7 +123,7 @@ pub fn altered(name: &str, code: &str, replaced: &[&str]) -> tempfile::TempDir {
     // The option below renames the functions here too.
     let undone: String = replaced.iter().map(|name| format!("#undef {name}\n")).collect();
     std::fs::write(&more, undone + code).unwrap();
-    let status = Command::new("gcc")
+    let status = command("gcc")
         .args(["-std=gnu11", "-O1", "-fPIC", "-shared", "-fvisibility=default"])
         .args(replaced.iter().map(|name| format!("-D{name}=own_{name}")))
         .arg(sources().join(format!("{name}.c")))

@@ -1,6 +1,7 @@
 //! The program `octant`, started as a user starts it.
 
 use super::readers::read_written;
+use octant_testing::command;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -10,7 +11,7 @@ pub const OCTANT: &str = env!("CARGO_BIN_EXE_octant");
 
 /// Builds a command of the program with its arguments.
 pub fn program(arguments: &[&str]) -> Command {
-    let mut command = Command::new(OCTANT);
+    let mut command = command(OCTANT);
     command.args(arguments);
     command
 }
@@ -65,7 +66,7 @@ pub fn passes_as_process(test: &str) -> Output {
 ///
 /// `test` includes its module: `fmu_process::prints`.
 pub fn test_as_process(test: &str) -> Command {
-    let mut command = Command::new(std::env::current_exe().unwrap());
+    let mut command = command(std::env::current_exe().unwrap());
     command.args(["--exact", test, "--ignored", "--nocapture", "--test-threads=1"]);
     command
 }

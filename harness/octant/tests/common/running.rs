@@ -1,14 +1,12 @@
 //! Runs a command that starts processes of its own, and sends signals to any of them.
 
 use super::program::program;
+use octant_testing::{HANGS, Started, start};
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Child, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
-
-/// Time after which a command counts as hanging.
-const HANGS: Duration = Duration::from_secs(300);
 
 /// Receiver of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +21,7 @@ pub enum Target {
 
 /// Running command, in a group of its own.
 pub struct Running {
-    child: Child,
+    child: Started,
 }
 
 impl Running {
@@ -32,7 +30,7 @@ impl Running {
         let mut command = program(arguments);
         command.current_dir(folder).process_group(0);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        Self { child: command.spawn().unwrap() }
+        Self { child: start(&mut command) }
     }
 
     /// Waits for processes of the command; empty if it has ended.
@@ -73,7 +71,7 @@ impl Running {
             assert!(begun.elapsed() < HANGS, "it doesn't end");
             std::thread::sleep(Duration::from_millis(2));
         }
-        self.child.wait_with_output().unwrap()
+        self.child.output()
     }
 }
 

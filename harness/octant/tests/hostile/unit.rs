@@ -61,7 +61,7 @@ pub struct Twist {
 }
 
 /// Alters nothing.
-pub const HONEST: Twist = Twist { answer: |_| {}, parameters: |_, _, _| {}, silence_ms: 2000 };
+pub const HONEST: Twist = Twist { answer: |_| {}, parameters: |_, _, _| {}, silence_ms: 60_000 };
 
 /// Answer on its way.
 pub struct Turn<'a> {
@@ -211,8 +211,8 @@ pub fn run_of(scenario: &Scenario, over: Over, twist: Twist) -> Result<Summary, 
     let served = Served::new(over, scenario, twist);
     let at = [
         format!("endpoint.uri={}", served.uri),
-        "endpoint.link.answer=10 s".to_owned(),
-        "endpoint.link.hello=5 s".to_owned(),
+        "endpoint.link.answer=300 s".to_owned(),
+        "endpoint.link.hello=300 s".to_owned(),
     ];
     let text = scenario.to_resolved_toml(
         scenario.seed,

@@ -1,11 +1,12 @@
 //! Shared parts of the tests.
 
 use octant_plant::config::TurntableConfig as Config;
+pub(crate) use octant_testing::wait_for;
 use octant_turntable::simulate::{Controller, SimulatedServer};
 use octant_turntable::{
     AxisLimits, Dialect, Driver, DriverSettings, TableAxis, TableLimits, TablePort, open,
 };
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// An invented language: another end of line, degrees a minute, one status line without a rate, one
 /// stop for both axes.
@@ -95,15 +96,6 @@ pub(crate) fn drive(
     settings: DriverSettings,
 ) -> Driver<Box<dyn TablePort>> {
     Driver::new(open(name).unwrap(), name, dialect, settings).unwrap()
-}
-
-/// Waits for a condition, long enough for any machine.
-pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
-    let until = Instant::now() + Duration::from_secs(60);
-    while !come() {
-        assert!(Instant::now() < until, "{what} did not come");
-        std::thread::sleep(Duration::from_millis(5));
-    }
 }
 
 /// True if the simulated axis really turns.

@@ -4,18 +4,19 @@ use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
     GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters, Reference,
 };
+use octant_testing::{HANGS, Started, start};
 use octant_wire::message::*;
 use octant_wire::requests::{RequestDecision, Requests};
 use octant_wire::serial::{DecodeEvent, SerialDecoder, SerialEncoder};
 use std::collections::VecDeque;
 use std::io::{Read, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// A client as a child process, with its standard input and output as the line.
 pub(crate) struct Peer {
-    pub(crate) child: Child,
+    pub(crate) child: Started,
     input: Option<ChildStdin>,
     output: Receiver<Vec<u8>>,
     encoder: SerialEncoder,
@@ -26,12 +27,8 @@ pub(crate) struct Peer {
 
 impl Peer {
     pub(crate) fn spawn(command: &mut Command) -> Self {
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the client can be started");
+        let mut child =
+            start(command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()));
         let mut stdout = child.stdout.take().expect("it is piped");
         let (sender, output) = channel();
         std::thread::spawn(move || {
@@ -94,8 +91,8 @@ impl Peer {
         messages: &[Message],
         mut answer: impl FnMut(&Message) -> Option<T>,
     ) -> T {
-        // One minute, which is also long for a busy host.
-        for _ in 0..150 {
+        let begun = Instant::now();
+        while begun.elapsed() < HANGS {
             for message in messages {
                 self.send(message);
             }
@@ -113,7 +110,7 @@ impl Peer {
     /// Closes the line; returns the exit status and the stderr of the child.
     pub(crate) fn finish(mut self) -> (i32, String) {
         self.input = None;
-        let output = self.child.wait_with_output().expect("the child ends");
+        let output = self.child.output();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         (output.status.code().unwrap_or(-1), said)
     }
@@ -217,7 +214,7 @@ pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
     let (mut session, mut echo, mut heard) = (0, Echo::new(None), 0);
     let mut requests = Requests::new(StepPacing::LockStep);
     let mut answer: Vec<Message> = Vec::new();
-    while let Some(message) = peer.receive(Duration::from_secs(60)) {
+    while let Some(message) = peer.receive(HANGS) {
         heard += 1;
         if lost.is_some_and(|n| heard % n == n / 2) {
             continue;
