@@ -153,12 +153,7 @@ fn what_can_not_be_scheduled_is_told_in_words() {
             2,
             "run by co-simulation: it has scheduled execution",
         ),
-        (
-            &scheduled,
-            with(&["--step", "0.1"]),
-            2,
-            "--step: found \"0.1\" with --interface scheduled",
-        ),
+        (&scheduled, with(&["--step", "0.1"]), 2, "--step: found with --interface scheduled"),
         (
             &scheduled,
             with(&["--source", "x.toml"]),
