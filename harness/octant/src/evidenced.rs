@@ -421,6 +421,7 @@ fn rerun(request: &RunRequest, used_seed: u64) -> Vec<String> {
         planned_faults: _,
         require,
         realtime,
+        stop_when_lost,
         no_twin,
         live: _,
         json: _,

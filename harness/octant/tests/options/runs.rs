@@ -31,6 +31,7 @@ pub(super) const ROWS: &[Row] = &[
     ("run", "--endpoint", &[Acts("run ../short.toml [--endpoint nonsense]", "found \"nonsense\""), Refused("run ../fmus/octant.ssp --endpoint in-process", SYSTEM)]),
     ("run", "--only-faults", &[Acts("run ../faulty.toml [--only-faults=]", "exit status 0"), Refused("run ../fmus/octant.ssp --only-faults=", SYSTEM)]),
     ("run", "--realtime", &[Tested("realtime::the_clock_changes_nothing_of_what_is_computed"), Refused("run ../fmus/octant.ssp --realtime", SYSTEM)]),
+    ("run", "--stop-when-lost", &[Tested("realtime::a_run_whose_bench_is_lost_ends_there_where_it_is_told_to"), Refused("run ../fmus/octant.ssp --stop-when-lost", SYSTEM)]),
     ("run", "--no-twin", &[Acts("run ../faulty.toml --out a [--no-twin]", "\"counterfactual\": null"), Refused("run ../fmus/octant.ssp --no-twin", SYSTEM)]),
     ("run", "--live", &[Acts("run ../short.toml [--live=nonsense]", "serve at \"nonsense\""), Refused("run ../fmus/octant.ssp --live", SYSTEM)]),
     ("run", "--answers", &[Tested("operator::a_file_answers_a_simulated_run_and_changes_no_bit"), Refused("run ../short.toml --answers a.toml", "the scenario has no steps"), Refused("run ../fmus/octant.ssp --answers a.toml", SYSTEM)]),
