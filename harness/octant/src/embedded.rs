@@ -3,8 +3,9 @@
 //! A run is the one of `octant run`, with the same folder of evidence; only the terminal is left out.
 
 pub use crate::attendant::OperatorWays;
-pub use crate::evidenced::{Evidence, RunRequest};
+pub use crate::evidenced::Evidence;
 pub use crate::failure::Failure;
+pub use crate::run_request::RunRequest;
 
 use crate::evidenced::{Answers, Asked, Begun, evidence, fmus};
 use crate::progress::Follower;

@@ -49,6 +49,7 @@ mod report;
 mod requirements;
 mod run;
 mod run_folder;
+mod run_request;
 mod run_system;
 mod score;
 mod score_solution;

@@ -1,7 +1,8 @@
 //! `octant run`.
 
-use super::evidenced::{self, RunRequest};
+use super::evidenced;
 use super::run_folder::{free_name, in_the_way};
+use super::run_request::RunRequest;
 use super::run_system::{SharedOptions, SystemArguments};
 use crate::arguments::ScenarioArguments;
 use crate::attendant::OperatorWays;

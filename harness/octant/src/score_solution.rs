@@ -1,7 +1,8 @@
 //! `octant score --solution`: the solution of any instrument, scored against a reference trajectory.
 
-use crate::evidenced::{self, RunRequest};
+use crate::evidenced;
 use crate::failure::Failure;
+use crate::run_request::RunRequest;
 use crate::source_uri::from_here;
 use clap::Args;
 use octant_requirements::Verdict;

@@ -214,7 +214,7 @@ fn a_device_program_gets_no_secret_and_its_words_are_marked_and_escaped() {
         seen.display()
     );
     std::fs::write(&script, body).unwrap();
-    let output = Command::new(OCTANT)
+    let output = command(OCTANT)
         .args(["run", bench.scenario.to_str().unwrap(), "--out"])
         .arg(bench.folder.path().join("out"))
         .arg("--endpoint")
@@ -418,7 +418,7 @@ fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     let said = refused(&["--set", "site.latitude=40 deg"], 2);
     assert!(said.contains("give both the same scenario"), "{said}");
     // Both have the same seed too.
-    let seeded = Served::with("udp:0", &bench.scenario, &["--seed", "7"]);
+    let seeded = Served::with("60", "udp:0", &bench.scenario, &["--seed", "7"]);
     for (more, status) in [(&[][..], 2), (&["--seed", "7"], 0)] {
         let all = [&["--endpoint", seeded.uri.as_str()], more].concat();
         let output = bench.run(&bench.scenario, "seeded", &all);
