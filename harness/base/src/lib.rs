@@ -17,6 +17,7 @@
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
+//! | [`memory`] | ends of the program where the system refuses memory or a thread |
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
 //! | [`utc`] | times of the host as text |
@@ -32,6 +33,7 @@ pub mod display;
 pub mod encoding;
 pub mod hash;
 pub mod interrupt;
+pub mod memory;
 pub mod names;
 pub mod not_finite;
 pub mod number;

@@ -27,7 +27,6 @@ mod fmu;
 mod followed;
 pub mod grades;
 mod live;
-pub mod memory;
 mod minimise;
 pub mod new;
 mod nightly;
