@@ -266,7 +266,7 @@ def measures(listed):
         groups.setdefault(path.split(".")[0], {})[path] = [unit_words(unit), sign, cell(about.partition(": ")[2] or about), needs]
     text = (f"# Measures\n\nAll {len(units)} numbers that a [requirement](../docs/requirements.md#measures) of a scenario, a "
             "campaign or a file of requirements can limit: paths into "
-            "[`summary.json`](../docs/results.md#summaryjson-schema-2). A limit is a plain number, or a quantity where the table "
+            "[`summary.json`](../docs/results.md#summaryjson-schema-3). A limit is a plain number, or a quantity where the table "
             "names a unit; a plain number is in that unit. A measure with ± can be negative: bars about it take its "
             'magnitude, `"|calibration.parameters.g_zz.error|"`. A run has a measure if it has what the last column names.\n\n')
     for top, found in groups.items():

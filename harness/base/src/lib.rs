@@ -19,6 +19,7 @@
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
 //! | [`address`] | addresses of ports as text, the same for every device |
+//! | [`memory`] | ends of the program where the system refuses memory or a thread |
 //! | [`serial`] | serial ports and pseudo terminals |
 //! | [`arrow`] | units of columns, in the metadata of Parquet files |
 //! | [`utc`] | times of the host as text |
@@ -36,6 +37,7 @@ pub mod encoding;
 pub mod failing;
 pub mod hash;
 pub mod interrupt;
+pub mod memory;
 pub mod names;
 pub mod not_finite;
 pub mod number;

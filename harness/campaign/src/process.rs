@@ -10,8 +10,6 @@ use std::process::Command;
 
 /// Number of attempts at a case whose process is ended from outside, before that is reported.
 pub const TRIES: u32 = 3;
-/// Words of a process that the system gave no more memory.
-pub const OUT_OF_MEMORY: &str = "out of memory";
 /// Option of the program that gives the id of the starting process.
 const PARENT: &str = "--parent";
 

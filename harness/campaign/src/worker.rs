@@ -6,12 +6,13 @@
 use super::case::CaseResult;
 use super::execution::{CaseDone, ExecuteError};
 use super::plan::{Case, Plan};
-use super::process::{OUT_OF_MEMORY, command};
+use super::process::command;
 use super::status::StatusError;
 use super::store::writer::PartWriter;
 use super::store::{CampaignResults, StoreOutcome, has_at, keep_in};
 use super::work::{CaseJob, RecordAt, WORDS, WorkReply, said};
 use octant_base::child::{AskedChild, AskedReply, ChildEnded};
+use octant_base::memory::OUT_OF_MEMORY;
 use octant_requirements::Verdict;
 use std::path::Path;
 use std::process::ExitStatus;

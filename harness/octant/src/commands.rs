@@ -165,7 +165,7 @@ pub(crate) fn say_build() {
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {
-    crate::memory::on_no_thread();
+    octant_base::memory::on_no_thread();
     ExitCode::from(status())
 }
 

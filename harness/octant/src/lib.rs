@@ -28,7 +28,6 @@ mod followed;
 mod given;
 pub mod grades;
 mod live;
-pub mod memory;
 mod minimise;
 pub mod new;
 mod nightly;

@@ -53,7 +53,8 @@ fn names_of_files_and_of_the_operator_act_nowhere() {
     let mut all = vec![first];
     for arguments in [
         &["run", "s.toml", "--out", HOSTILE][..],
-        &["run", "s.toml", "--out", "again", "--source", &source],
+        &["run", "s.toml", "--out", "other", "--source", &source],
+        &["run", "s.toml", "--out", "again"],
         &["run", HOSTILE],
         &["run", "s.toml", "--out", "other", "--endpoint", HOSTILE],
         &["run", "s.toml", "--set", HOSTILE],

@@ -406,8 +406,8 @@ fn a_summary_survives_its_file_and_a_newer_schema_is_refused() {
     let order = ["schema", "octant", "scenario", "seed", "verdict", "requirements", "stream_hash"];
     let places: Vec<_> = order.map(|key| text.find(&format!("\n  \"{key}\"")).unwrap()).into();
     assert!(places.is_sorted(), "the order of the fields is that of the type");
-    let other = text.replacen("\"schema\": 2", "\"schema\": 3", 1);
-    assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 3 }));
+    let other = text.replacen("\"schema\": 3", "\"schema\": 4", 1);
+    assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 4 }));
     assert!(matches!(Summary::from_json("{}"), Err(SummaryError::Form(_))));
 }
 

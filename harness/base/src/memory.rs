@@ -7,8 +7,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// Beginning of what is said about memory, by which a parent process knows it.
-const MEMORY: &str = octant_campaign::process::OUT_OF_MEMORY;
+/// Words of a process that the system gave no more memory, by which another one knows it.
+pub const OUT_OF_MEMORY: &str = "out of memory";
 
 /// The system's allocator, which ends the program when it has no memory left.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,7 +20,7 @@ impl Allocator {
         if memory.is_null() {
             end(&[
                 "error: ",
-                MEMORY,
+                OUT_OF_MEMORY,
                 ": the system refused it; what was recorded stays readable; expected a higher limit (ulimit -v, the \
                  container's), fewer --jobs or a shorter run\n",
             ]);
@@ -59,8 +59,8 @@ unsafe impl GlobalAlloc for Allocator {
 }
 
 /// Makes the panic of a thread that the system refuses end the program with a sentence. `std::thread` and
-/// [`octant_base::pool`] panic then, in the middle of work that other threads wait for.
-pub(crate) fn on_no_thread() {
+/// [`crate::pool`] panic then, in the middle of work that other threads wait for.
+pub fn on_no_thread() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         let text = panic.payload_as_str().unwrap_or_default();
@@ -68,7 +68,7 @@ pub(crate) fn on_no_thread() {
         if of.iter().any(|start| text.starts_with(start)) {
             end(&[
                 "error: ",
-                MEMORY,
+                OUT_OF_MEMORY,
                 " or threads: the system refused a thread; what was recorded stays readable; expected higher limits \
                  (ulimit -v, ulimit -u, the container's) or fewer --jobs\n",
             ]);
@@ -95,6 +95,6 @@ fn end(parts: &[&str]) {
 #[cfg(not(unix))]
 fn end(_: &[&str]) {}
 
-/// Status of a broken bench.
+/// Exit status of a broken bench, that of `octant_requirements::Verdict::Error`.
 #[cfg(unix)]
-const STATUS: i32 = octant_requirements::Verdict::Error.exit_code() as i32;
+const STATUS: i32 = 4;
