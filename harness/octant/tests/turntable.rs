@@ -11,7 +11,7 @@ use serde_json::Value;
 #[test]
 fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
     let stage = Stage::new();
-    let bench = Bench::new(&stage, 20, "home = true\nwatchdog = \"5 s\"\n");
+    let bench = Bench::new(&stage, 20, "home = true\nwatchdog = \"8 s\"\n");
     let (status, said) = bench.run(&[]).wait();
     assert!(matches!(status, Some(0 | 1 | 3)), "{status:?}: {said}");
     assert!((stage.angle(TableAxis::Roll) - 20.0).abs() < 1e-4 && stage.rests());
@@ -19,7 +19,7 @@ fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
     let homed = log.iter().filter(|line| line.starts_with("PROGRAM RUN")).count();
     assert_eq!(homed, 2);
     // The watchdog was on, and was reset.
-    assert!(log.iter().any(|line| line == "IGLOBAL(34) = 5000"));
+    assert!(log.iter().any(|line| line == "IGLOBAL(34) = 8000"));
     assert_eq!(
         log.iter().rfind(|line| line.starts_with("IGLOBAL(34)")).unwrap(),
         "IGLOBAL(34) = 0"

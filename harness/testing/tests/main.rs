@@ -1,6 +1,5 @@
 //! Children end with their test, however that ends.
 #![allow(clippy::unwrap_used)]
-
 #![cfg(target_os = "linux")]
 
 use octant_testing::{Started, command, start, wait_for};

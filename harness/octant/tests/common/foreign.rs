@@ -157,7 +157,7 @@ pub const BAD_ENDS: [(&[&str], &str, &str); 4] = [
     (
         &[],
         "#include <unistd.h>\n__attribute__((destructor)) static void f(void) { for (;;) pause(); }",
-        "gave no answer to the unloading of its library for 1 s, and was ended",
+        "gave no answer to the unloading of its library for 5 s, and was ended",
     ),
 ];
 

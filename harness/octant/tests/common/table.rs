@@ -129,6 +129,7 @@ fn play(
     let mut encoder = AnyEncoder::new(Protocol::Octant);
     let (started, start_ns) = table.with(|_, now_ns| (Instant::now(), now_ns));
     let (mut sample, mut aiding) = Default::default();
+    let mut is_read = false;
     for number in 1.. {
         let due = started + Duration::from_nanos(number * PERIOD_NS);
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
@@ -154,8 +155,10 @@ fn play(
         let reading = Reading::of_sample(&sample);
         let status = reading.status | Status::GIMBAL_INVALID;
         let reading = Reading { gimbal: None, status, ..reading };
-        // While there is no reader the line is full: data without room is lost, as on a real one.
-        let _ = line.send(encoder.encode(&reading).unwrap(), Duration::ZERO);
+        // While there is no reader the line is full: data without room is lost, as on a real one. A reader that a busy
+        // host holds up is waited for; the instrument is late then, and its stamps are right.
+        let wait = if is_read { Duration::from_secs(2) } else { Duration::ZERO };
+        is_read = line.send(encoder.encode(&reading).unwrap(), wait).unwrap_or(false);
     }
 }
 
