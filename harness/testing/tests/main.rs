@@ -1,6 +1,7 @@
 //! Children end with their test, however that ends.
 #![allow(clippy::unwrap_used)]
 #![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, reason = "tests")]
 
 use octant_testing::{Started, command, start, wait_for};
 use std::io::{BufRead, BufReader};
