@@ -12,13 +12,7 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[arg(
-        value_name = "PORT",
-        help = format!(
-            "Port of a supply or of relays, {}, or a scenario with [power]",
-            octant_power::POWER_PORT.expected()
-        )
-    )]
+    #[arg(value_name = "PORT", help = octant_power::port_help())]
     port: String,
     /// Channel of the supply.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
