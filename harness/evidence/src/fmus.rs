@@ -5,15 +5,45 @@ use octant_mapping::OpenedFmus;
 use octant_mapping::stepper::UseError;
 use octant_scenario::{Fmu, Process, Scenario};
 
-/// Collects the facts about the FMUs of a scenario, which run from the same openings.
+/// Reasons why a run can't have its FMUs.
+#[derive(Debug, thiserror::Error)]
+pub enum FmuFactsError {
+    /// One can't be opened.
+    #[error(transparent)]
+    Use(#[from] UseError),
+    /// One can't have as many instances as the run needs.
+    #[error(
+        "run {tasks} instances of {file}: a process can hold only one, expected process = \"own\" in {role}.fmu"
+    )]
+    Once {
+        /// Number of instances.
+        tasks: usize,
+        /// The file.
+        file: String,
+        /// Its table in the scenario.
+        role: String,
+    },
+}
+
+/// Collects the facts about the FMUs of a scenario, which run from the same openings, each in this number of tasks at
+/// a time.
 ///
 /// # Errors
-/// If one can't be read.
-pub fn fmus(scenario: &Scenario, fmus: &OpenedFmus) -> Result<Vec<FmuFacts>, UseError> {
-    [("source", scenario.source.fmu()), ("endpoint", scenario.endpoint.fmu())]
-        .into_iter()
-        .filter_map(|(role, fmu)| Some(facts(scenario, role, fmu?, fmus)))
-        .collect()
+/// If one can't be read, or can't have so many instances.
+pub fn fmus(
+    scenario: &Scenario,
+    tasks: usize,
+    fmus: &OpenedFmus,
+) -> Result<Vec<FmuFacts>, FmuFactsError> {
+    let of = |(role, fmu): (_, Option<_>)| Some(facts(scenario, role, fmu?, fmus));
+    let roles = [("source", scenario.source.fmu()), ("endpoint", scenario.endpoint.fmu())];
+    let found: Vec<FmuFacts> = roles.into_iter().filter_map(of).collect::<Result<_, _>>()?;
+    match found.iter().find(|fmu| fmu.only_once && fmu.process == "shared") {
+        Some(FmuFacts { file, role, .. }) if tasks > 1 => {
+            Err(FmuFactsError::Once { tasks, file: file.clone(), role: role.clone() })
+        }
+        _ => Ok(found),
+    }
 }
 
 fn facts(

@@ -20,7 +20,7 @@ pub mod manifest;
 mod names;
 pub mod signature;
 
-pub use fmus::fmus;
+pub use fmus::{FmuFactsError, fmus};
 pub use folder::LOCK;
 pub use folder::{Existing, FolderError, RunFolder};
 pub use inputs::{InputFacts, InputHashError, inputs};

@@ -255,6 +255,24 @@ fn slcan_bus(options: &AddressParts<'_>) -> Result<Bus, UriError> {
     Ok(Bus { nominal_bps, data_bps })
 }
 
+/// Text of help for the port of an instrument that sends.
+#[must_use]
+pub fn instrument_help() -> String {
+    format!(
+        "Port of the instrument: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), udp:PORT (on loopback), \
+         udp:ADDRESS:PORT, tcp:PORT"
+    )
+}
+
+/// Text of help for the port of a server.
+#[must_use]
+pub fn server_help() -> String {
+    format!(
+        "Port of the server: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), can:INTERFACE, slcan:PORT, udp:PORT \
+         (on loopback), udp:ADDRESS:PORT, or pty: for a new pseudo terminal"
+    )
+}
+
 /// Form of an address on a serial line, with the default rate.
 fn serial_form(scheme: &str) -> String {
     format!("{scheme}:PORT?baud=RATE ({DEFAULT_BAUD} by default), such as {scheme}:/dev/ttyUSB0")

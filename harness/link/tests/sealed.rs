@@ -29,7 +29,7 @@ fn at(address: SocketAddr, secret: Option<&str>) -> Uri {
 
 fn address(uri: &Uri) -> SocketAddr {
     let Uri::Udp(udp) = uri else { panic!("{uri}") };
-    format!("{}:{}", udp.address.host, udp.address.port).parse().unwrap()
+    udp.address.to_string().parse().unwrap()
 }
 
 /// Checks that a harness at an address gets no session, and why.

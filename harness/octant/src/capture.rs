@@ -7,7 +7,6 @@ use clap::Args;
 use octant_base::interrupt;
 use octant_link::Uri;
 use octant_link::port::{self, Bytes, Port};
-use octant_link::uri::DEFAULT_BAUD;
 use octant_requirements::Verdict;
 use octant_wire::message::EndRole;
 use std::fs::{File, OpenOptions};
@@ -17,13 +16,7 @@ use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct CaptureArguments {
-    #[arg(
-        value_name = "URI",
-        help = format!(
-            "Port of the instrument: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), udp:PORT (on loopback), \
-             udp:ADDRESS:PORT, tcp:PORT"
-        )
-    )]
+    #[arg(value_name = "URI", help = octant_link::uri::instrument_help())]
     uri: String,
     /// New file for the bytes.
     #[arg(long, value_name = "FILE")]

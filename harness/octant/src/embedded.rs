@@ -7,7 +7,7 @@ pub use crate::evidenced::Evidence;
 pub use crate::failure::Failure;
 pub use crate::run_request::RunRequest;
 
-use crate::evidenced::{Answers, Asked, Begun, evidence, fmus};
+use crate::evidenced::{Answers, Asked, Begun, evidence, without_fmus};
 use crate::progress::Follower;
 use octant_base::control::Control;
 use octant_mapping::OpenedFmus;
@@ -68,7 +68,8 @@ impl Bench {
             ));
         }
         let opened = OpenedFmus::default();
-        let begun = asked.begin(&request, fmus(&asked.scenario, 1, &opened)?)?;
+        let fmus = octant_evidence::fmus(&asked.scenario, 1, &opened).map_err(without_fmus)?;
+        let begun = asked.begin(&request, fmus)?;
         let path = begun.folder.path().join("recording.mcap");
         let file = StreamKeeping::File(&path);
         let (scenario, seed) = (&asked.scenario, asked.seed);

@@ -12,7 +12,9 @@ use crate::source_uri::from_here;
 use crate::terminal::{note, print, write};
 use octant_base::number::counted;
 use octant_evidence::signature::SigningKey;
-use octant_evidence::{Existing, FmuFacts, InputFacts, Manifest, RunFacts, RunFolder};
+use octant_evidence::{
+    Existing, FmuFacts, FmuFactsError, InputFacts, Manifest, RunFacts, RunFolder,
+};
 use octant_mapping::OpenedFmus;
 use octant_operator::OperatorRecord;
 use octant_report as report;
@@ -21,8 +23,7 @@ use octant_requirements::equipment::Day;
 use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
-use octant_run::prepared::tasks;
-use octant_run::{Ended, MethodRun, Prepared, Run, raw_counts};
+use octant_run::{Ended, MethodRun, Prepared, Run, prepared, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
 use octant_score::junit::junit;
@@ -78,7 +79,8 @@ pub(crate) fn evidence(request: &RunRequest, follower: &Follower<'_>) -> Result<
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");
     }
     let opened = OpenedFmus::default();
-    let fmus = fmus(scenario, tasks(scenario, twins), &opened)?;
+    let tasks = prepared::tasks(scenario, twins);
+    let fmus = octant_evidence::fmus(scenario, tasks, &opened).map_err(without_fmus)?;
     let prepared = prepare(scenario, seed, twins, &opened)?;
     if request.stop_when_lost {
         prepared.stop_when_lost().map_err(Failure::input)?;
@@ -310,22 +312,9 @@ pub(crate) fn execute(
     })
 }
 
-/// Collects the manifest's facts about the FMUs of a run with a number of parallel tasks.
-pub(crate) fn fmus(
-    scenario: &Scenario,
-    tasks: usize,
-    opened: &OpenedFmus,
-) -> Result<Vec<FmuFacts>, Failure> {
-    let fmus = octant_evidence::fmus(scenario, opened)
-        .map_err(|e| Failure::input(format!("failed to {e}")))?;
-    match fmus.iter().find(|fmu| fmu.only_once && fmu.process == "shared") {
-        Some(fmu) if tasks > 1 => Err(Failure::input(format!(
-            "failed to run {tasks} instances of {}: a process can hold only one, expected \
-             process = \"own\" in {}.fmu",
-            fmu.file, fmu.role
-        ))),
-        _ => Ok(fmus),
-    }
+/// Failure of a run that can't have its FMUs.
+pub(crate) fn without_fmus(error: FmuFactsError) -> Failure {
+    Failure::input(error).failed()
 }
 
 /// Output of a run, for programs and for readers.

@@ -14,13 +14,7 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[arg(
-        value_name = "PORT",
-        help = format!(
-            "Port of a supply or of relays, {}, or a scenario with [power]",
-            octant_power::POWER_PORT.expected()
-        )
-    )]
+    #[arg(value_name = "PORT", help = octant_power::port_help())]
     port: String,
     #[command(flatten)]
     of_port: PortArguments,

@@ -129,7 +129,7 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
     // Nor have the operator's answers.
     scenario.operator.clear();
     let opened = OpenedFmus::default();
-    let fmus = match octant_evidence::fmus(&scenario, &opened) {
+    let fmus = match octant_evidence::fmus(&scenario, 1, &opened) {
         Ok(fmus) => fmus,
         Err(error) => return Ok(cannot(format!("not possible: failed to {error}"))),
     };

@@ -8,7 +8,6 @@ use octant_base::interrupt;
 use octant_endpoint::ServedCore;
 use octant_link::Uri;
 use octant_link::device::{Notice, serve};
-use octant_link::uri::DEFAULT_BAUD;
 use octant_realtime::schedule::{self, Wish};
 use octant_requirements::Verdict;
 use octant_run::method::{MethodError, SetupError, core_of};
@@ -25,14 +24,7 @@ pub(super) struct Arguments {
     /// Change one key of the scenario, as the harness does.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    #[arg(
-        long,
-        value_name = "URI",
-        help = format!(
-            "Port of the server: serial:PORT?baud=RATE ({DEFAULT_BAUD} by default), can:INTERFACE, slcan:PORT, udp:PORT \
-             (on loopback), udp:ADDRESS:PORT, or pty: for a new pseudo terminal"
-        )
-    )]
+    #[arg(long, value_name = "URI", help = octant_link::uri::server_help())]
     endpoint: String,
     /// Seed of the harness's run, instead of the scenario's.
     #[arg(long, value_name = "N", value_parser = crate::arguments::seed, allow_negative_numbers = true)]

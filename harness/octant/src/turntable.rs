@@ -83,13 +83,7 @@ enum Action {
 
 #[derive(Debug, Args)]
 struct Table {
-    #[arg(
-        value_name = "TABLE",
-        help = format!(
-            "Port of the controller, {}, or a scenario with [turntable.drive]",
-            octant_turntable::TABLE_PORT.expected()
-        )
-    )]
+    #[arg(value_name = "TABLE", help = octant_turntable::port_help())]
     table: String,
     /// Command language of the controller: a name, or a file with a table of patterns.
     #[arg(long, value_name = "DIALECT")]

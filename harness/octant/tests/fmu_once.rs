@@ -17,12 +17,12 @@ fn copy(name: &str, folder: &Path) -> PathBuf {
     path
 }
 
-/// Writes a scenario of 10 s, or of 20 s with an FMU as the core, with its FMU in a folder.
+/// Writes a scenario of less than a minute, with its FMU in a folder.
 fn scenario(name: &str, folder: &Path) -> PathBuf {
     let fmu = copy(name, folder);
     let text = match name {
-        "imu_fmi2" => imu("").replace("4 min", "10 s"),
-        "core_fmi2" => core("").replace("60 s", "10 s").replace("12 s", "2 s"),
+        "imu_fmi2" => imu("").replace("4 min", "20 s"),
+        "core_fmi2" => core("").replace("60 s", "20 s").replace("12 s", "2 s"),
         _ => "schema = 1\n[motion]\nkind = \"dockside\"\nheading = \"30 deg\"\n\
               [procedure.calibration]\nduration = \"10 s\"\nstops = [{}]\n[source]\nuri = \"fmu:FMU\"\n\
               [source.fmu]\nstep = \"10 ms\"\n[source.fmu.map]\n\
@@ -174,7 +174,7 @@ fn a_file_that_is_overwritten_after_its_opening_changes_nothing() {
         let scenario = Scenario::load(&file, &[shared]).unwrap_or_else(|e| panic!("{e}"));
         let fmu = folder.path().join(format!("{name}.fmu"));
         let (hash, fmus) = (sha256(&fmu).unwrap(), OpenedFmus::default());
-        let facts = octant_evidence::fmus(&scenario, &fmus).unwrap();
+        let facts = octant_evidence::fmus(&scenario, 1, &fmus).unwrap();
         assert_eq!(facts[0].sha256.as_ref(), Some(&hash));
         // In place, as a build does that writes its FMU anew.
         std::fs::write(&fmu, "another").unwrap();
@@ -182,7 +182,7 @@ fn a_file_that_is_overwritten_after_its_opening_changes_nothing() {
         let runs = prepared.run(folder.path()).unwrap_or_else(|e| panic!("{e}"));
         assert!(runs[0].broken.is_none() && runs[0].recorder.epochs > 0);
         assert_eq!(runs[0].twin.is_some(), !faults.is_empty());
-        assert_eq!(octant_evidence::fmus(&scenario, &fmus).unwrap()[0].sha256, Some(hash));
+        assert_eq!(octant_evidence::fmus(&scenario, 1, &fmus).unwrap()[0].sha256, Some(hash));
         // Another run opens the file again.
         let error = Prepared::of(&scenario, 1, false, &OpenedFmus::default()).unwrap_err();
         assert!(error.to_string().contains("is no zip archive"), "{error}");

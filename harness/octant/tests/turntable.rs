@@ -190,7 +190,7 @@ fn what_makes_no_sense_is_refused_before_anything_moves() {
         ),
         (
             "turntable.drive.port=\"can:can0\"",
-            "turntable.drive.port: open can:can0: the address has neither tcp: nor serial:",
+            "turntable.drive.port: found \"can:can0\", expected tcp:HOST:PORT, or serial:DEVICE",
         ),
         (
             "turntable.drive.guard=\"10 ms\"",

@@ -22,7 +22,7 @@ pub mod simulate;
 
 pub use error::PowerError;
 pub use last_words::write_all_ends;
-pub use line::{POWER_PORT, check_power_port};
+pub use line::{POWER_PORT, check_power_port, port_help};
 pub use outlet::{PowerOutlet, PowerReading, Switching};
 pub use plan::{Outlet, PowerPlan, SupplySetting};
 pub use scpi::ScpiDialogue;

@@ -17,6 +17,13 @@ const REPLY_BYTES_MAX: usize = 4096;
 /// Pause between two looks at a serial port.
 const LOOK: Duration = Duration::from_millis(20);
 
+/// Text of help for an argument that is a port of a supply.
+#[must_use]
+pub fn port_help() -> String {
+    let ports = POWER_PORT.expected();
+    format!("Port of a supply or of relays, {ports}, or a scenario with [power]")
+}
+
 fn address(port: &str) -> Result<InstrumentAddress, PowerError> {
     POWER_PORT.parse(port).map_err(PowerError::Address)
 }

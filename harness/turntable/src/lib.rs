@@ -48,7 +48,7 @@ pub use follow::Follower;
 pub use following::{Following, TablePlan, Told, packed, unpacked};
 pub use guard::{FAREWELL, Guard, guard, run_guard};
 pub use limits::{AxisLimits, TableLimits};
-pub use port::{TABLE_PORT, TablePort, check_port, open};
+pub use port::{TABLE_PORT, TablePort, check_port, open, port_help};
 pub use shared::{GuestEnd, TableGuest, TableHost};
 pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
 pub use supervisor::Supervisor;

@@ -80,6 +80,13 @@ impl TablePort for Box<dyn TablePort> {
 /// Ports of a table's controller. A TCP port has to be written: it belongs to the controller, of which there are many.
 pub const TABLE_PORT: InstrumentPort = InstrumentPort { default_port: None, default_baud: 115_200 };
 
+/// Text of help for an argument that is a port of a table.
+#[must_use]
+pub fn port_help() -> String {
+    let ports = TABLE_PORT.expected();
+    format!("Port of the controller, {ports}, or a scenario with [turntable.drive]")
+}
+
 /// Checks that a text is the address of a table, without opening it.
 ///
 /// # Errors
