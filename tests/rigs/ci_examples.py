@@ -22,6 +22,7 @@ import tarfile
 import tempfile
 import time
 
+from children import popen
 from ci_server import TOKEN, Server
 from ruamel.yaml import YAML
 
@@ -90,7 +91,7 @@ class Job:
     def script(self, shell, text, cwd=None, **variables):
         file = self.folder.parent / f"{self.folder.name}.sh"
         file.write_text(text)
-        self.child = subprocess.Popen([*shell, str(file)], cwd=cwd or self.folder, env={**self.environment, **variables},
+        self.child = popen([*shell, str(file)], cwd=cwd or self.folder, env={**self.environment, **variables},
                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                       start_new_session=True)
         try:

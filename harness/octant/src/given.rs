@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args, Command};
+use clap::{ArgMatches, Args};
 
 /// Options that the user gave to a command and to its subcommands. An option that has its default isn't one of them.
 #[derive(Debug, Default)]
@@ -13,7 +13,7 @@ pub(crate) struct GivenOptions {
 
 impl GivenOptions {
     /// Collects the options of a command line.
-    pub(crate) fn of(command: &Command, matches: &ArgMatches) -> Self {
+    pub(crate) fn of(command: &clap::Command, matches: &ArgMatches) -> Self {
         let mut options = Vec::new();
         let (mut command, mut matches) = (command, matches);
         loop {
@@ -33,7 +33,7 @@ impl GivenOptions {
 
     /// Refuses the options of `A`, which a way of the command can't obey: `reason` says why, after the option's name.
     pub(crate) fn refuse<A: Args>(&self, reason: impl std::fmt::Display) -> Result<(), Failure> {
-        let group = A::augment_args(Command::new("group"));
+        let group = A::augment_args(clap::Command::new("group"));
         let ids: Vec<&str> = group.get_arguments().map(|option| option.get_id().as_str()).collect();
         self.refuse_ids(&ids, reason)
     }

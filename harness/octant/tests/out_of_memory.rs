@@ -2,7 +2,7 @@
 
 use crate::common::program::OCTANT;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// Ends what hangs.
@@ -11,19 +11,19 @@ const LONG: Duration = Duration::from_secs(120);
 /// Runs the program with at most so much address space, KiB.
 #[track_caller]
 fn within(kib: u64, folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::new("sh");
+    let mut command = octant_testing::command("sh");
     command.arg("-c").arg(format!("ulimit -v {kib}; exec {OCTANT:?} {arguments}"));
     command.current_dir(folder).stdin(Stdio::null());
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = octant_testing::start(command.stdout(Stdio::piped()).stderr(Stdio::piped()));
     let begun = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if begun.elapsed() > LONG {
             child.kill().unwrap();
-            panic!("it hangs with {kib} KiB: {:?}", child.wait_with_output().unwrap());
+            panic!("it hangs with {kib} KiB: {:?}", child.output());
         }
         std::thread::sleep(Duration::from_millis(10));
     }
-    child.wait_with_output().unwrap()
+    child.output()
 }
 
 const SCENARIO: &str = "schema = 1\ntitle = \"short\"\n[procedure.calibration]\nduration = \"20 s\"\n\

@@ -431,5 +431,5 @@ fn a_scenario_names_the_output_by_hand() {
     ends(&["power", file, "off"], 0);
     assert!(!bench.instrument.is_on(2));
     let (_, words) = ends(&["power", file, "--channel", "1", "on"], 2);
-    assert!(words.contains("expected none of them"), "{words}");
+    assert!(words.contains("expected no such option, or a port"), "{words}");
 }

@@ -71,7 +71,7 @@ fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
 fn a_part_is_run_to_its_first_failure_alone() {
     let run = |more: &[&str]| -> Value {
         let limited = "ulimit -f 2; exec \"$0\" \"$@\"";
-        let mut command = std::process::Command::new("sh");
+        let mut command = octant_testing::command("sh");
         command.args(["-c", limited, OCTANT, "selftest", "--answers", "--jobs", "1", "--json"]);
         let output = command.args(more).output().unwrap();
         assert_eq!(output.status.code(), Some(4), "{output:?}");

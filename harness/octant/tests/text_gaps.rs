@@ -100,7 +100,7 @@ fn four_gaps_of_a_second_move_no_parameter() {
     assert!(!told.contains("missing"), "{told}");
     let (gaps, told) = calibrated(folder.path(), "gaps", true);
     assert!(
-        told.contains("34800 rows, 4 gaps, the longest 1 s, the first after the row of 119.98 s"),
+        told.contains("32800 rows, 4 gaps, the longest 1 s, the first after the row of 119.98 s"),
         "{told}"
     );
     assert!(told.contains("200 samples are missing, and the core bridges the gaps"), "{told}");

@@ -41,7 +41,7 @@ impl Bench {
 }
 
 fn pipe(path: &Path) {
-    assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    assert!(octant_testing::command("mkfifo").arg(path).status().unwrap().success());
 }
 
 #[test]

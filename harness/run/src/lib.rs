@@ -27,6 +27,7 @@ pub mod faulted;
 pub mod filtered;
 pub mod findings;
 pub mod follow;
+mod health_events;
 pub mod host;
 pub mod in_time;
 mod interfere;

@@ -13,7 +13,7 @@ use super::true_motion::TrueMotion;
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
-use octant_report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, SolutionSeries};
+use octant_report::{GimbalPoint, NisPoint, ParameterPoint, SolutionSeries};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Innovation, Mode, NavigationCovariance, Output, Status};
 use octant_score::alignment::SolutionPoint;
@@ -483,23 +483,5 @@ impl Watcher {
     #[must_use]
     pub fn elapsed_s(&self) -> f64 {
         self.last_ns as f64 * 1e-9
-    }
-
-    /// Lists the core's reports, in order of time.
-    #[must_use]
-    pub fn events(&self) -> Vec<HealthEvent> {
-        let mut events: Vec<HealthEvent> = self
-            .health
-            .episodes()
-            .iter()
-            .map(|episode| HealthEvent {
-                hours: episode.start.seconds() / 3600.0,
-                duration_s: episode.end.ns.saturating_sub(episode.start.ns) as f64 * 1e-9,
-                name: episode.name().to_owned(),
-                detail: format!("{} epochs", episode.epochs),
-            })
-            .collect();
-        events.sort_by(|a, b| a.hours.total_cmp(&b.hours));
-        events
     }
 }

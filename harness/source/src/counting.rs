@@ -3,7 +3,6 @@
 //! Rows may be missing. A gap is not repaired here: the row after it stands for one period, as every other row does, its
 //! sample's number is advanced by the missing samples, and the core bridges the gap.
 
-use super::rate_check::RateCheck;
 use octant_base::number::{counted, plain};
 use octant_recorder::event::{BenchReadings, BenchRecord};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -81,11 +80,10 @@ pub(super) const MISSING_MAX: u64 = 10;
 /// Converts rows into counts and carries the remainder of each axis.
 ///
 /// A row may be split into equal parts of its interval, so that counts can hold faster rates.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Counting {
     quantity: RecordedQuantity,
     period: FittedPeriod,
-    rate: RateCheck,
     /// Number of samples per row.
     split: u64,
     previous_ns: Option<u64>,
@@ -156,7 +154,6 @@ impl Counting {
         Ok(Self {
             quantity,
             period: FittedPeriod { sum_ns: nominal_ns, intervals: 1 },
-            rate: RateCheck::new(nominal_ns),
             split: u64::from(split),
             previous_ns: None,
             pending: None,
@@ -165,14 +162,6 @@ impl Counting {
             gaps: Gaps::default(),
             triads: Triads::default(),
         })
-    }
-
-    /// Ends the rows.
-    ///
-    /// # Errors
-    /// If their rate isn't that of the scenario.
-    pub(super) fn end(&mut self) -> Result<(), String> {
-        self.rate.end()
     }
 
     /// Describes gaps of which more rows are missing than a file may lack.
@@ -230,7 +219,6 @@ impl Counting {
             }
             Some(previous) => match row.time_ns.checked_sub(previous) {
                 Some(interval) if interval >= self.split => {
-                    self.rate.interval(interval as f64 * 1e-9)?;
                     let missing = self.period.missing(interval);
                     if missing == 0 { interval } else { self.gap(previous, interval, missing) }
                 }
@@ -378,7 +366,6 @@ mod tests {
             counting.begin(row(stamp_ns, value)).unwrap();
             samples.extend(std::iter::from_fn(|| counting.next()));
         }
-        counting.end().unwrap();
         (samples, counting)
     }
 
@@ -441,16 +428,12 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_another_rate_are_refused() {
-        let mut counting = Counting::new(RecordedQuantity::Rates, 5_000_000, 1).unwrap();
-        let refused = (1..100).find_map(|k| {
-            while counting.next().is_some() {}
-            counting.begin(row(k * 10_000_000, 0.0)).err()
-        });
-        let refused = refused.unwrap();
-        assert!(
-            refused.contains("10.0000 ms apart, 100.0 Hz, expected 5.0000 ms by imu.rate"),
-            "{refused}"
+    fn rows_of_half_the_rate_are_a_file_with_gaps() {
+        let half = (1..=100).map(|k| k * 10_000_000);
+        let (_, counting) = counted_rows(RecordedQuantity::Rates, 1, half);
+        assert_eq!(
+            counting.cut_short("a.csv").unwrap(),
+            "a.csv has gaps: 99 rows missing, 100 there"
         );
     }
 

@@ -87,10 +87,7 @@ impl<R: Read> Foreign<R> {
             if let Some(sample) = self.counting.next() {
                 return Ok(Some(Epoch { sample, aiding: None }));
             }
-            let Some(message) = self.messages.next()? else {
-                self.counting.end()?;
-                return Ok(None);
-            };
+            let Some(message) = self.messages.next()? else { return Ok(None) };
             self.take(&message).map_err(|reason| self.messages.in_message(&reason))?;
         }
     }

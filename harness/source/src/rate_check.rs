@@ -11,7 +11,7 @@ const INTERVALS_MIN: usize = 10;
 const TOLERANCE: f64 = 0.05;
 
 /// The first intervals of the readings.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct RateCheck {
     period_s: f64,
     last_ns: Option<u64>,
@@ -42,22 +42,7 @@ impl RateCheck {
         let passed_ns = stamp_ns.zip(self.last_ns).map(|(now, last)| now.saturating_sub(last));
         self.last_ns = stamp_ns;
         let passed_s = passed_ns.filter(|ns| *ns > 0).map(|ns| ns as f64 * 1e-9);
-        match reading.interval_s.or(passed_s) {
-            Some(interval_s) => self.interval(interval_s),
-            None => Ok(()),
-        }
-    }
-
-    /// Takes the interval between two readings, s.
-    ///
-    /// # Errors
-    /// If it is the last one that is looked at, and the rate isn't that of the scenario.
-    #[inline]
-    pub(super) fn interval(&mut self, interval_s: f64) -> Result<(), String> {
-        if self.is_done {
-            return Ok(());
-        }
-        self.intervals_s.push(interval_s);
+        self.intervals_s.extend(reading.interval_s.or(passed_s));
         if self.intervals_s.len() < INTERVALS { Ok(()) } else { self.end() }
     }
 

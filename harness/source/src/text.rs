@@ -105,7 +105,6 @@ impl TextSource {
             }
         }
         if !more {
-            self.counting.end().map_err(|reason| self.first.rows.error(reason))?;
             return Ok(false);
         }
         self.rows += 1;

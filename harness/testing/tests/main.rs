@@ -1,5 +1,4 @@
 //! Children end with their test, however that ends.
-#![allow(clippy::unwrap_used)]
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
