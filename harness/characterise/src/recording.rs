@@ -70,13 +70,6 @@ impl RestingRecording {
             let set = [more, set].concat();
             Scenario::parse(text, &name, path.parent().unwrap_or(Path::new("")), &set)
         };
-        if described.is_none() && !is("toml") && !set.is_empty() {
-            return Err(fail(
-                "--set: found a recording without a scenario, which has no keys to change, expected --scenario, or a \
-                 scenario (.toml) in place of the recording"
-                    .to_owned(),
-            ));
-        }
         let mut of_table = false;
         let scenario = match described {
             Some(file) => Scenario::load(file, &[&[uri][..], set].concat())?,
