@@ -19,6 +19,8 @@ import duckdb
 import pandas
 import polars
 
+from children import popen
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OCTANT, REPLICATES = sys.argv[1], int(sys.argv[2])
 COST = sys.argv[3:] == ["cost"]
@@ -33,7 +35,6 @@ RATE = "20 Hz"
 MEASURED = """
 import resource, subprocess, sys
 
-from children import popen
 status = subprocess.run(sys.argv[1:]).returncode
 used = resource.getrusage(resource.RUSAGE_CHILDREN)
 print("measured", used.ru_utime + used.ru_stime, used.ru_maxrss)

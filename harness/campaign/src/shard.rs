@@ -1,7 +1,7 @@
 //! Parts of a plan, for several processes or machines.
 
 /// Part of a plan: every n-th case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shard {
     /// Number of the part, from 1.
     pub number: u32,

@@ -258,7 +258,9 @@ fn late_answers_are_counted_and_recorded_with_their_samples() {
     assert_eq!((kept.pacing.frames, kept.pacing.late_answers), (400, 4));
     assert_eq!(late.epochs, 400, "every answer found its sample");
     assert_eq!(late.stream_hash, in_time.stream_hash, "the gimbals stand: nothing hangs on when");
-    assert!(kept.pacing.answer_us.max > 14_000.0, "{:?}", kept.pacing);
+    // Three periods; frames that a stalled host makes late follow each other at once.
+    let lateness_us = kept.pacing.lateness_us.max;
+    assert!(kept.pacing.answer_us.max + lateness_us > 14_000.0, "{:?}", kept.pacing);
     let total: u64 = kept.pacing.lateness_histogram_ns.iter().map(|[_, count]| count).sum();
     assert_eq!(total, 400);
 }

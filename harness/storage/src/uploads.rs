@@ -1,7 +1,8 @@
 //! Uploads of a worker's results, as numbered segments.
 //!
-//! A worker appends to its part files as ever. Whenever enough is there, or enough time has passed, the records
-//! that the storage doesn't have become the next segment. It is written only if nothing has its name. If something has,
+//! A worker appends to its part files. Whenever enough is there, or enough time has passed, the records
+//! that the storage doesn't have become the next segment; so do those that an earlier worker of another shard left in
+//! the folder. It is written only if nothing has its name. If something has,
 //! another worker of the same shard is there: its segment is taken over, and the next number is tried.
 
 use super::error::StorageError;
@@ -60,7 +61,7 @@ impl<'a> SegmentUploads<'a> {
         shard: Shard,
         limits: UploadLimits,
     ) -> Result<Self, StorageError> {
-        let source = SegmentSource::of(work.path(), shard);
+        let source = SegmentSource::of(work.path());
         let folder = work.path().join(FOLDER);
         let mut uploads =
             Self { storage, shard, limits, folder, source, next: 1, uploaded: (0, 0) };

@@ -4,6 +4,7 @@ use super::error::StorageError;
 use super::layout::{BUNDLE, RESULTS, SegmentName, may_share};
 use super::storage::Storage;
 use octant_campaign::execute::Shard;
+use octant_campaign::store::segment::shards;
 use octant_dispatch::bundle::contents::{BundleContents, FILE_NAME as LIST};
 use octant_dispatch::bundle::error::BundleError;
 use octant_dispatch::bundle::unpack::unpack;
@@ -17,7 +18,7 @@ use tempfile::TempDir;
 pub enum WorkScope {
     /// The plan and its files.
     Plan,
-    /// These, and every result that the worker of a shard can have.
+    /// These, and every result that the worker of a shard can have, or an earlier one in the same folder.
     Shard(Shard),
     /// The plan, its files and every result.
     Results,
@@ -119,9 +120,16 @@ impl WorkFolder {
         listed: &BTreeMap<String, u64>,
         scope: WorkScope,
     ) -> Result<(), StorageError> {
-        let is_needed = |name: &SegmentName| match scope {
-            WorkScope::Shard(shard) => may_share(name.shard, shard),
-            _ => true,
+        let workers = match scope {
+            WorkScope::Shard(shard) => {
+                let mut shards = shards(&self.path)?;
+                shards.insert(shard);
+                Some(shards)
+            }
+            _ => None,
+        };
+        let is_needed = |name: &SegmentName| {
+            workers.as_ref().is_none_or(|all| all.iter().any(|shard| may_share(name.shard, *shard)))
         };
         let names = listed.keys().filter_map(|name| SegmentName::parse(name));
         self.segments = names.filter(is_needed).collect();

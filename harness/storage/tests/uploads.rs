@@ -59,6 +59,27 @@ fn a_restarted_worker_has_what_was_uploaded() {
 }
 
 #[test]
+fn results_that_a_worker_of_another_shard_left_in_the_folder_are_uploaded_once() {
+    let (storage, ids) = stored(6);
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path().join("work");
+    let fetch = |shard| WorkFolder::fetch(&storage, Some(&at), WorkScope::Shard(shard)).unwrap();
+    let first = fetch(shard(1, 3));
+    put(first.path(), shard(1, 3), &ids[0], 100);
+    uploads(&storage, &first, shard(1, 3)).upload().unwrap();
+    // Never uploaded.
+    put(first.path(), shard(1, 3), &ids[3], 100);
+    let other = fetch(shard(2, 3));
+    put(other.path(), shard(2, 3), &ids[1], 100);
+    let mut uploading = uploads(&storage, &other, shard(2, 3));
+    uploading.upload().unwrap();
+    assert_eq!(uploading.uploaded().0, 2, "ids 1 and 3");
+    let all = results(&WorkFolder::fetch(&storage, None, WorkScope::Results).unwrap());
+    assert_eq!([0, 1, 3].map(|k| all.known(&ids[k]).unwrap().len()), [1; 3]);
+    assert_eq!(all.len(), 3);
+}
+
+#[test]
 fn two_workers_of_a_shard_never_replace_each_others_results() {
     let (storage, ids) = stored(3);
     let (one, other) = (fetched(&storage, Shard::WHOLE), fetched(&storage, Shard::WHOLE));

@@ -8,7 +8,7 @@ use super::frame::{Checksum, FILE_HEAD, SCHEMA, file_head};
 use super::scan::{scan, scan_from};
 use super::writer::{EXTENSION, FOLDER};
 use crate::shard::Shard;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -25,25 +25,23 @@ pub struct Segment {
     read: BTreeMap<PathBuf, u64>,
 }
 
-/// Records of a shard's part files, and which of them are stored elsewhere.
+/// Records of a folder's part files, and which of them are stored elsewhere.
+///
+/// A worker takes over the results that it finds in its folder, whichever shard they were made for.
 #[derive(Debug)]
 pub struct SegmentSource {
     folder: PathBuf,
-    /// Beginning of the names of the shard's part files.
-    stem: String,
     stored: HashSet<Checksum>,
     /// Byte of each part up to which every record is stored.
     read: BTreeMap<PathBuf, u64>,
 }
 
 impl SegmentSource {
-    /// Begins with the part files of a shard in the folder of a campaign, none of whose records is stored
-    /// elsewhere.
+    /// Begins with the part files in the folder of a campaign, none of whose records is stored elsewhere.
     #[must_use]
-    pub fn of(folder: &Path, shard: Shard) -> Self {
-        let stem = format!("{}.", shard.stem());
+    pub fn of(folder: &Path) -> Self {
         let (stored, read) = (HashSet::new(), BTreeMap::new());
-        Self { folder: folder.join(FOLDER), stem, stored, read }
+        Self { folder: folder.join(FOLDER), stored, read }
     }
 
     /// Notes the records of a segment that is stored already, and returns how many there are.
@@ -149,25 +147,44 @@ impl SegmentSource {
         self.read.get(path).copied().unwrap_or(FILE_HEAD as u64)
     }
 
-    /// Lists the part files that workers of the shard write, in the order of their names.
+    /// Lists the part files that workers write, in the order of their names.
     fn parts(&self) -> Result<Vec<PathBuf>, PartError> {
-        let entries = match std::fs::read_dir(&self.folder) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(PartError::system("read", &self.folder)(error)),
-        };
-        let mut found = Vec::new();
-        for entry in entries {
-            let entry = entry.map_err(PartError::system("read", &self.folder))?;
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let number = name.strip_prefix(&self.stem).and_then(|rest| {
-                rest.strip_suffix(EXTENSION).and_then(|rest| rest.strip_suffix('.'))
-            });
-            if number.is_some_and(|number| number.parse::<u64>().is_ok()) {
-                found.push(entry.path());
-            }
-        }
+        let mut found: Vec<PathBuf> =
+            parts(&self.folder)?.into_iter().map(|(path, _)| path).collect();
         found.sort();
         Ok(found)
     }
+}
+
+/// Lists the shards whose workers have written part files into the folder of a campaign.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn shards(folder: &Path) -> Result<BTreeSet<Shard>, PartError> {
+    Ok(parts(&folder.join(FOLDER))?.into_iter().map(|(_, shard)| shard).collect())
+}
+
+/// Lists the part files of workers in the folder of the results, without segments.
+fn parts(folder: &Path) -> Result<Vec<(PathBuf, Shard)>, PartError> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(PartError::system("read", folder)(error)),
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(PartError::system("read", folder))?;
+        if let Some(shard) = shard_of_part(&entry.file_name().to_string_lossy()) {
+            found.push((entry.path(), shard));
+        }
+    }
+    Ok(found)
+}
+
+/// Returns the shard of a part file by its name, `K-of-N.NUMBER.octres`; `None` for any other file.
+fn shard_of_part(name: &str) -> Option<Shard> {
+    let (stem, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.rsplit_once('.')?;
+    number.parse::<u64>().ok()?;
+    let (number, of) = stem.split_once("-of-")?;
+    Shard::parse(&format!("{number}/{of}")).ok()
 }
