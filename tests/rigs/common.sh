@@ -101,6 +101,7 @@ named_tests() {
 # all of it again. Tests and program are of one build: the release profile, with all features, and what the tests add to them.
 # The Python module has no test that cargo could run, and a rig of its own.
 test_profile=(--release --workspace --exclude octant-python --features octant/full,octant-mapping/testing,octant-state/outline)
+export RUSTC_WORKSPACE_WRAPPER=$PWD/tests/rigs/rustc
 build_reference() {
   rm -rf .rigs/reference
   CARGO_TARGET_DIR=.rigs/reference CARGO_INCREMENTAL=0 cargo build --release --package octant-calibration --quiet
