@@ -83,6 +83,19 @@ def send(process, number):
         pass
 
 
+def share_as_nice(process):
+    """Gives the session of a process the share of the processors that this process has.
+
+    Where Linux schedules sessions (sched_autogroup_enabled), each has an equal share, however nice its processes are.
+    """
+    try:
+        with open(f"/proc/{process}/autogroup", "w", encoding="ascii") as file:
+            file.write(str(os.getpriority(os.PRIO_PROCESS, 0)))
+    except OSError:
+        # Another system, another scheduler, or a niceness that was changed a moment ago.
+        pass
+
+
 class Terminal:
     """Copies what is added to the log to the terminal."""
 
@@ -129,6 +142,8 @@ class Step:
             start_new_session=bool(log),
         )
         self.session = self.child.pid if log else None
+        if self.session:
+            share_as_nice(self.session)
 
     def watch_whole(self, log):
         """Notices the end of tests/run itself, also by SIGKILL."""

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The tool that runs steps, on commands that leave processes behind, on signals, and on an end by force."""
 
+import os
 import pathlib
 import signal
 import subprocess
@@ -87,6 +88,12 @@ class Step(unittest.TestCase):
         script = "mkfifo line; (cat <line; exit 0) & exec 3>line; echo passed"
         self.assertEqual(self.ended(self.log, "bash", "-c", script, grace_s=HANGS_S), (0, ""))
         self.assertEqual(self.log.read_text(), "passed\n")
+
+    @unittest.skipUnless(os.access("/proc/self/autogroup", os.W_OK), "Linux without sessions in its scheduler")
+    def test_a_nice_step_has_the_share_of_a_nice_process(self):
+        script = "until grep -q 'nice 7$' /proc/self/autogroup; do sleep 0.01; done"
+        command = ["nice", "-n", "7", sys.executable, str(HERE / "step.py"), str(self.log), "bash", "-c", script]
+        self.assertEqual(subprocess.run(command, timeout=HANGS_S).returncode, 0)
 
     def test_a_failure_is_shown_while_the_step_goes_on(self):
         tool = self.tool("--live", self.log, "bash", "-c", "echo FAILED one; until [ -e go ]; do sleep 0.01; done")

@@ -3,13 +3,13 @@
 /// Side on which the cause of a failure lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FailureKind {
-    /// What was given: a file, an option, settings that contradict each other.
+    /// The input is wrong: a file, an option, settings that contradict each other.
     Input,
-    /// What it was run with: a device, a library, the file system, this program.
+    /// The bench failed: a device, a library, the file system, this program.
     Bench,
     /// Nothing failed and nothing is shown, as after an interruption.
     Inconclusive,
-    /// What is tested failed.
+    /// The device or program under test failed.
     Fail,
 }
 

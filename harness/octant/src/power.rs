@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     action: Action,
 }
 
-/// What the `[power]` of a scenario says, for a port.
+/// Settings of a scenario's `[power]`, for a port.
 #[derive(Debug, Args)]
 struct PortArguments {
     /// Channel of the supply.

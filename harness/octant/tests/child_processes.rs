@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What starts a process in another way.
+/// Calls that start a process in another way.
 const STARTS: [&str; 2] = [concat!("Command::", "new("), concat!(".spawn", "()")];
 
 /// Lines with code of tests that start a process in another way. A file of a library has its unit tests at

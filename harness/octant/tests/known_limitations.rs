@@ -37,7 +37,7 @@ fn every_limitation_names_its_test_or_has_a_reason() {
     assert!(count > 20, "{count}");
 }
 
-/// What a scenario is refused with; empty where it isn't.
+/// Returns the message with which a scenario is refused; empty if it is accepted.
 fn refusal(keys: &str) -> String {
     let text = format!("schema = 1\n{keys}");
     Scenario::parse(&text, "s.toml", Path::new(""), &[])
@@ -45,7 +45,7 @@ fn refusal(keys: &str) -> String {
         .map_or_else(String::new, |error| error.to_string())
 }
 
-/// What a command that is refused says.
+/// Returns the message of a command that is refused.
 #[track_caller]
 fn refused(scenario: &str, command: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();

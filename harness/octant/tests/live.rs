@@ -235,7 +235,7 @@ fn a_device_program_gets_no_secret_and_its_words_are_marked_and_escaped() {
     assert!(!said.contains('\u{1b}'), "{said}");
     // Its last words stand before the message about its end.
     assert!(said.find(line) < said.find("the program ended: exit status: 3"), "{said}");
-    // Of the flood after them a part is shown.
+    // Only a part of the flood after them is shown.
     assert!(said.len() < 500_000 && said.contains("bytes of its output were dropped"));
 }
 

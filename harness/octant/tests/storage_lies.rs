@@ -174,7 +174,7 @@ fn results_that_the_storage_forgets_or_cuts_stay_here_and_are_no_success() {
         let (_, error) = ended(server.says(folder.path(), &["campaign", "run", ADDRESS]), 4);
         assert!(error.contains("the storage confirmed it, and reading it back found"), "{error}");
         assert!(error.contains(found) && error.contains(".octres"), "{error}");
-        // What it names goes on, without a case that is run again.
+        // The folder that it names resumes, and no case is run again.
         let work = error.split("--work ").nth(1).unwrap().split(" goes on").next().unwrap();
         let honest = Server::start(Service::Honest);
         ended(honest.says(folder.path(), &["campaign", "bundle", "alone", "--out", ADDRESS]), 0);

@@ -15,7 +15,7 @@ fn workflows() -> Vec<PathBuf> {
     found
 }
 
-/// What is wrong with a line that names an action; its name with its hash and version, where nothing is.
+/// Returns the name, hash and version of the action that a line names, or what is wrong with the line.
 fn pinned(line: &str) -> Result<(String, String), String> {
     let form = Regex::new(r"^uses: ([\w.-]+/[\w./-]+)@([0-9a-f]{40}) # (v\d+\.\d+\.\d+)$").unwrap();
     let line = line.trim().trim_start_matches("- ");

@@ -205,7 +205,7 @@ impl Drop for Mailbox {
             }
             std::thread::sleep(LOOK);
         }
-        // Of a link that was put in its place, the link goes.
+        // If a link was put in its place, the link is removed and not its target.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

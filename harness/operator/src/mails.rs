@@ -1,6 +1,6 @@
 //! Folder of requests and replies, held open.
 //!
-//! Whoever may write into the run's folder may plant links there. On Unix the folder itself is held, its files are named from
+//! Anyone who may write into the run's folder may plant links there. On Unix the folder itself is held, its files are named from
 //! it and opened without following links, and a new file never takes the place of another: nothing outside is read or
 //! written, whatever is planted at any moment.
 

@@ -61,7 +61,7 @@ fn a_request_that_is_no_regular_file_is_refused_and_told() {
     ] {
         assert!(told.iter().any(|line| line.contains(name) && line.contains(why)), "{told:?}");
     }
-    // What can't be taken away is told once.
+    // An entry that can't be removed is reported once.
     assert!(bench.refuses().is_empty());
 }
 

@@ -285,7 +285,7 @@ impl FoxgloveServer {
             handle.stop().wait().await;
             gate.empty().await;
         };
-        // What doesn't end by itself ends with the runtime.
+        // Tasks that are still open end with the runtime.
         let _ = runtime.block_on(async { tokio::time::timeout(END_MAX, end).await });
         runtime.shutdown_timeout(END_MAX);
     }

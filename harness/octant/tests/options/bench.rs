@@ -120,7 +120,7 @@ const TEXT_MAX: u64 = 1_000_000;
 /// Folder with the files, in which each line gets a folder of its own.
 pub(super) struct Bench {
     folder: tempfile::TempDir,
-    /// What lines did.
+    /// Outcomes of lines.
     found: RefCell<BTreeMap<Vec<String>, String>>,
 }
 

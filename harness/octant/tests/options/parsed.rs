@@ -1,4 +1,4 @@
-//! What is parsed is obeyed: options are taken out of their struct by name, all of them.
+//! Every parsed option is obeyed: option structs are destructured by name, without `..`.
 
 use super::sources::rust_files;
 use regex::Regex;

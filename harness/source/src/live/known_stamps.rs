@@ -384,7 +384,7 @@ mod tests {
         let (within_us, delay) = (time.within_us.unwrap(), time.line_delay.unwrap());
         // A busy host reads the clocks less exactly.
         assert!((15.0..20_000.0).contains(&within_us), "{within_us}");
-        // Of the arrival, not of the reading 80 ms later.
+        // The time of arrival, not that of the reading 80 ms later.
         assert!((20.0..sent_ms + 80.0).contains(&delay.least_ms), "{delay:?} {sent_ms}");
         assert_eq!(delay.early, 0);
         // 36 arcseconds a millisecond.
