@@ -9,7 +9,7 @@ The exit status is that of the command. A process that is left running when the 
 and makes a status of 1: a test or a rig has lost it. A signal to step.py ends the command and all that it started.
 There is no pipe between the command and the log, so no process can hold this up by holding the output open.
 
-On Linux every descendant is found, also a daemon: step.py is their subreaper. Elsewhere only the session's process
+On Linux every descendant is found, also a daemon: step.py is their subreaper. Elsewhere only the command's process
 group is ended.
 """
 
@@ -83,17 +83,15 @@ def send(process, number):
         pass
 
 
-def share_as_nice(process):
-    """Gives the session of a process the share of the processors that this process has.
+def begin_group():
+    """Begins a process group, in which reading or setting the terminal fails and does not stop a process.
 
-    Where Linux schedules sessions (sched_autogroup_enabled), each has an equal share, however nice its processes are.
+    It is no session: where Linux schedules sessions (sched_autogroup_enabled), each has an equal share of the processors,
+    however nice its processes are, and however many of them wait.
     """
-    try:
-        with open(f"/proc/{process}/autogroup", "w", encoding="ascii") as file:
-            file.write(str(os.getpriority(os.PRIO_PROCESS, 0)))
-    except OSError:
-        # Another system, another scheduler, or a niceness that was changed a moment ago.
-        pass
+    os.setpgrp()
+    signal.signal(signal.SIGTTIN, signal.SIG_IGN)
+    signal.signal(signal.SIGTTOU, signal.SIG_IGN)
 
 
 class Terminal:
@@ -133,17 +131,15 @@ class Step:
         self.terminal = Terminal(log if live else None)
         self.live = live
         self.log = out
-        # A session of its own, but for the whole, which stays that of the terminal.
+        # A process group of its own, but for the whole, whose group has the terminal.
         self.child = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL if log else None,
             stdout=out,
             stderr=out,
-            start_new_session=bool(log),
+            preexec_fn=begin_group if log else None,
         )
-        self.session = self.child.pid if log else None
-        if self.session:
-            share_as_nice(self.session)
+        self.group = self.child.pid if log else None
 
     def watch_whole(self, log):
         """Notices the end of tests/run itself, also by SIGKILL."""
@@ -211,8 +207,8 @@ class Step:
         """Ends everything below: by request, then by force."""
         begun = time.monotonic()
         asked = set()
-        if self.session and sys.platform != "linux":
-            send(-self.session, signal.SIGTERM)
+        if self.group and sys.platform != "linux":
+            send(-self.group, signal.SIGTERM)
         while living := self.left():
             waited_s = time.monotonic() - begun
             if waited_s > 3.0 * ENDING_S:
@@ -227,8 +223,8 @@ class Step:
                     send(process, signal.SIGCONT)
                     asked.add(process)
             self.wait(0.05)
-        if self.session and sys.platform != "linux":
-            send(-self.session, signal.SIGKILL)
+        if self.group and sys.platform != "linux":
+            send(-self.group, signal.SIGKILL)
         self.terminal.copy()
 
     def say(self, line):

@@ -89,11 +89,9 @@ class Step(unittest.TestCase):
         self.assertEqual(self.ended(self.log, "bash", "-c", script, grace_s=HANGS_S), (0, ""))
         self.assertEqual(self.log.read_text(), "passed\n")
 
-    @unittest.skipUnless(os.access("/proc/self/autogroup", os.W_OK), "Linux without sessions in its scheduler")
-    def test_a_nice_step_has_the_share_of_a_nice_process(self):
-        script = "until grep -q 'nice 7$' /proc/self/autogroup; do sleep 0.01; done"
-        command = ["nice", "-n", "7", sys.executable, str(HERE / "step.py"), str(self.log), "bash", "-c", script]
-        self.assertEqual(subprocess.run(command, timeout=HANGS_S).returncode, 0)
+    def test_a_step_is_a_process_group_in_the_session_of_its_caller(self):
+        script = "read -r _ _ _ _ group session _ </proc/$$/stat; echo $(($$ - group)) $session"
+        self.assertEqual(self.ended("--live", self.log, "bash", "-c", script), (0, f"0 {os.getsid(0)}\n"))
 
     def test_a_failure_is_shown_while_the_step_goes_on(self):
         tool = self.tool("--live", self.log, "bash", "-c", "echo FAILED one; until [ -e go ]; do sleep 0.01; done")
