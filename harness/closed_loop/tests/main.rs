@@ -18,3 +18,4 @@ mod further_states;
 mod gimbal_angles;
 mod smoothing;
 mod state_core;
+mod sway_conditions;

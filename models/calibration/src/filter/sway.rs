@@ -1,10 +1,14 @@
-//! States of a ship's sway beside those of the filter: displacement and velocity of three axes, with
-//! their correlation to the error states.
+//! States of a ship's sway beside those of the filter, with their correlation to the error states.
 //!
 //! The position of the dock differs from the instrument's by the sway s: the error of a measurement
 //! is `δr + s`. The sway drives no other state, so it stands beside the
-//! covariance of the error states as a border. Its axes are those of the ship at rest, surge, sway
-//! and heave, because each has periods of its own.
+//! covariance of the error states as a border.
+//!
+//! Surge, sway and heave each have a period and a size of their own, estimated along the axes of the
+//! ship: three modes. The direction of a horizontal mode says nothing to the filter: each has the
+//! same variance along every horizontal axis, with states in north and east. A mode that is narrow
+//! across its axis would measure the heading against that axis, which is known from the first
+//! azimuth alone, and in an oblique sea, where surge and sway correlate, isn't the ship's.
 
 use super::oscillator::{OfPair, Oscillator, Recursion};
 use crate::covariance::{Covariance, CovarianceRow, DR, MOVING, STATE_COUNT, Transition};
@@ -12,8 +16,11 @@ use crate::covariance::{Covariance, CovarianceRow, DR, MOVING, STATE_COUNT, Tran
 use crate::covariance::{load_rows, save_rows};
 use nalgebra::{Matrix3, Vector3};
 
-/// States of the sway: displacement and velocity of surge, sway and heave, m and m/s.
-const SWAY: usize = 6;
+/// States of the sway, displacement and velocity of each, m and m/s: surge north and east, sway north
+/// and east, heave down.
+const SWAY: usize = 10;
+/// Mode and axis of n of each displacement.
+const PLACES: [(usize, usize); SWAY / 2] = [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2)];
 /// Measurements over which the mean heading is taken.
 const HEADING_COUNT: u32 = 32;
 /// Velocities of the first estimate; each later one takes twice as many, from new ones.
@@ -53,7 +60,8 @@ impl octant_state::State for Border {
 #[derive(Clone, Debug)]
 pub(super) struct SwayStates {
     period_s: f64,
-    axes: [Oscillator; 3],
+    /// Modes: surge, sway and heave.
+    modes: [Oscillator; 3],
     state: [f64; SWAY],
     own: [[f64; SWAY]; SWAY],
     cross: Border,
@@ -73,7 +81,7 @@ pub(super) struct SwayStates {
 #[cfg(feature = "state")]
 octant_state::state! {
     SwayStates {
-        values: axes, state, own, heading, heading_sum, headings, since, wanted, estimated, recursions;
+        values: modes, state, own, heading, heading_sum, headings, since, wanted, estimated, recursions;
         parts: cross;
         kept: period_s, stride;
         check: Self::check_counts
@@ -99,7 +107,7 @@ impl SwayStates {
         let stride = libm::ceil(SPACING_S / period_s - 1e-9).max(1.0);
         let mut sway = Self {
             period_s,
-            axes: [Oscillator::unknown(); 3],
+            modes: [Oscillator::unknown(); 3],
             state: [0.0; SWAY],
             own: [[0.0; SWAY]; SWAY],
             cross: Border([[0.0; 40]; SWAY]),
@@ -121,10 +129,10 @@ impl SwayStates {
         self.state = [0.0; SWAY];
         self.cross = Border([[0.0; 40]; SWAY]);
         self.own = [[0.0; SWAY]; SWAY];
-        for (axis, oscillator) in self.axes.iter().enumerate() {
-            let [displacement, velocity] = oscillator.stationary();
-            self.own[2 * axis][2 * axis] = displacement;
-            self.own[2 * axis + 1][2 * axis + 1] = velocity;
+        for (place, (mode, _)) in PLACES.into_iter().enumerate() {
+            let [displacement, velocity] = self.modes[mode].stationary();
+            self.own[2 * place][2 * place] = displacement;
+            self.own[2 * place + 1][2 * place + 1] = velocity;
         }
     }
 
@@ -136,9 +144,10 @@ impl SwayStates {
                 row[i] = phi.iter().zip(&before).map(|(a, b)| a * b).sum();
             }
         }
-        let transitions = self.axes.map(|axis| axis.transition(elapsed_s));
-        for (axis, t) in transitions.iter().enumerate() {
-            let (p, v) = (2 * axis, 2 * axis + 1);
+        let transitions = self.modes.map(|mode| mode.transition(elapsed_s));
+        for (place, (mode, _)) in PLACES.into_iter().enumerate() {
+            let t = &transitions[mode];
+            let (p, v) = (2 * place, 2 * place + 1);
             let turned = |p: f64, v: f64| (t[0][0] * p + t[0][1] * v, t[1][0] * p + t[1][1] * v);
             (self.state[p], self.state[v]) = turned(self.state[p], self.state[v]);
             for j in 0..STATE_COUNT {
@@ -152,47 +161,65 @@ impl SwayStates {
                 (row[p], row[v]) = turned(row[p], row[v]);
             }
         }
-        for (axis, t) in transitions.iter().enumerate() {
-            let noise: OfPair = self.axes[axis].noise(t);
+        for (place, (mode, _)) in PLACES.into_iter().enumerate() {
+            let noise: OfPair = self.modes[mode].noise(&transitions[mode]);
             for i in 0..2 {
                 for j in 0..2 {
-                    self.own[2 * axis + i][2 * axis + j] += noise[i][j];
+                    self.own[2 * place + i][2 * place + j] += noise[i][j];
                 }
             }
         }
     }
 
-    /// Axes of the sway in n, as columns.
+    /// Axes of the ship in n, as columns.
     fn axes_in_n(&self) -> Matrix3<f64> {
         let (cos, sin) = self.heading;
         Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
     }
 
-    /// What the sway is believed to add to the error of a measurement, in n, m.
+    /// Displacement that the sway is believed to have, in n, m.
     pub(super) fn expected_m(&self) -> Vector3<f64> {
-        self.axes_in_n() * Vector3::from_fn(|axis, _| self.state[2 * axis])
+        let mut sum = Vector3::zeros();
+        for (place, (_, axis)) in PLACES.into_iter().enumerate() {
+            sum[axis] += self.state[2 * place];
+        }
+        sum
     }
 
     /// Covariance of the innovation in n without the noise of the reference.
     pub(super) fn innovation_covariance(&self, errors: &Covariance) -> Matrix3<f64> {
-        let c = self.axes_in_n();
-        let of_errors = Matrix3::from_fn(|i, j| errors.at(DR + i, DR + j));
-        let cross = c * Matrix3::from_fn(|k, j| self.cross.0[2 * k][DR + j]);
-        let own = Matrix3::from_fn(|k, l| self.own[2 * k][2 * l]);
-        of_errors + cross + cross.transpose() + c * own * c.transpose()
+        let mut sum = Matrix3::from_fn(|i, j| errors.at(DR + i, DR + j));
+        for (k, (_, i)) in PLACES.into_iter().enumerate() {
+            for j in 0..3 {
+                let cross = self.cross.0[2 * k][DR + j];
+                sum[(i, j)] += cross;
+                sum[(j, i)] += cross;
+            }
+            for (l, (_, j)) in PLACES.into_iter().enumerate() {
+                sum[(i, j)] += self.own[2 * k][2 * l];
+            }
+        }
+        sum
     }
 
-    fn gain(&self, axis: usize, errors: &Covariance) -> Gain {
-        let along = self.axes_in_n().column(axis).into_owned();
-        let k = 2 * axis;
-        let mut gain = Gain { errors: self.cross.0[k], sway: self.own.map(|row| row[k]) };
-        for (a, share) in along.iter().enumerate() {
-            for (out, p) in gain.errors.iter_mut().zip(&errors.rows()[DR + a]) {
+    /// Gain of the measurement along a unit vector in n, before it is divided by its variance.
+    fn gain(&self, along: &Vector3<f64>, errors: &Covariance) -> Gain {
+        let mut gain = Gain { errors: [0.0; 40], sway: [0.0; SWAY] };
+        let mut add = |share: f64, of_errors: &CovarianceRow, of_sway: [f64; SWAY]| {
+            for (out, p) in gain.errors.iter_mut().zip(of_errors) {
                 *out += share * p;
             }
-            for (out, row) in gain.sway.iter_mut().zip(&self.cross.0) {
-                *out += share * row[DR + a];
+            for (out, p) in gain.sway.iter_mut().zip(of_sway) {
+                *out += share * p;
             }
+        };
+        for (a, share) in along.iter().enumerate() {
+            let column = core::array::from_fn(|k| self.cross.0[k][DR + a]);
+            add(*share, &errors.rows()[DR + a], column);
+        }
+        for (place, (_, axis)) in PLACES.into_iter().enumerate() {
+            let column = core::array::from_fn(|k| self.own[k][2 * place]);
+            add(along[axis], &self.cross.0[2 * place], column);
         }
         gain
     }
@@ -213,12 +240,14 @@ impl SwayStates {
         self.estimated = self.estimated.saturating_add(u32::from(self.wanted > FIRST_COUNT));
         for axis in 0..3 {
             let along = self.axes_in_n().column(axis).into_owned();
-            let gain = self.gain(axis, errors);
-            let k = 2 * axis;
+            let gain = self.gain(&along, errors);
             let at: f64 = (0..3).map(|a| along[a] * gain.errors[DR + a]).sum();
-            let scale = 1.0 / libm::sqrt(at + gain.sway[k] + r);
+            let own = PLACES.into_iter().enumerate();
+            let own: f64 = own.map(|(place, (_, a))| along[a] * gain.sway[2 * place]).sum();
+            let scale = 1.0 / libm::sqrt(at + own + r);
             let estimated: f64 = (0..3).map(|a| along[a] * x[DR + a]).sum();
-            let normalized = (along.dot(error) - estimated - self.state[k]) * scale;
+            let sway = along.dot(&self.expected_m());
+            let normalized = (along.dot(error) - estimated - sway) * scale;
 
             let of_errors = gain.errors.map(|value| value * scale);
             let of_sway = gain.sway.map(|value| value * scale);
@@ -242,7 +271,7 @@ impl SwayStates {
             }
             if !held {
                 let square = (normalized * normalized).min(LEARNED_MAX);
-                self.axes[axis].damp(learning * (square - LEARNED_MEAN));
+                self.modes[axis].damp(learning * (square - LEARNED_MEAN));
             }
         }
     }
@@ -254,7 +283,7 @@ impl SwayStates {
             self.heading_sum = (self.heading_sum.0 + cos, self.heading_sum.1 + sin);
             self.headings += 1;
             if self.headings == HEADING_COUNT {
-                self.turn_axes();
+                self.set_axes();
             }
             return;
         }
@@ -269,11 +298,11 @@ impl SwayStates {
         }
         if self.recursions[0].count() >= self.wanted {
             let spacing_s = self.period_s * f64::from(self.stride);
-            for (axis, recursion) in self.axes.iter_mut().zip(&self.recursions) {
-                let found = recursion.solve(spacing_s, axis);
+            for (mode, recursion) in self.modes.iter_mut().zip(&self.recursions) {
+                let found = recursion.solve(spacing_s, mode);
                 // Innovations tell the damping better than velocities, once there are some.
-                let damping = if self.wanted == FIRST_COUNT { found.damping } else { axis.damping };
-                *axis = Oscillator { damping, ..found };
+                let damping = if self.wanted == FIRST_COUNT { found.damping } else { mode.damping };
+                *mode = Oscillator { damping, ..found };
             }
             self.recursions = [Recursion::default(); 3];
             self.wanted = self.wanted.saturating_mul(2);
@@ -286,29 +315,12 @@ impl SwayStates {
         self.recursions.iter_mut().for_each(Recursion::interrupt);
     }
 
-    /// Turns the axes from those of n to the mean heading.
-    fn turn_axes(&mut self) {
+    /// Sets the axes of the ship to the mean heading.
+    fn set_axes(&mut self) {
         let (x, y) = self.heading_sum;
         let length = libm::sqrt(x * x + y * y);
-        if length < 0.5 * f64::from(HEADING_COUNT) {
-            return;
-        }
-        let (cos, sin) = (x / length, y / length);
-        self.heading = (cos, sin);
-        let turned = |n: f64, e: f64| (cos * n + sin * e, cos * e - sin * n);
-        for (surge, sway) in [(0, 2), (1, 3)] {
-            (self.state[surge], self.state[sway]) = turned(self.state[surge], self.state[sway]);
-            for j in 0..STATE_COUNT {
-                (self.cross.0[surge][j], self.cross.0[sway][j]) =
-                    turned(self.cross.0[surge][j], self.cross.0[sway][j]);
-            }
-            for j in 0..SWAY {
-                (self.own[surge][j], self.own[sway][j]) =
-                    turned(self.own[surge][j], self.own[sway][j]);
-            }
-            for row in &mut self.own {
-                (row[surge], row[sway]) = turned(row[surge], row[sway]);
-            }
+        if length >= 0.5 * f64::from(HEADING_COUNT) {
+            self.heading = (x / length, y / length);
         }
     }
 }
@@ -327,7 +339,7 @@ mod tests {
         n as f64 / 1009.0 - 0.5
     }
 
-    /// A filter with a full covariance of 45 states, the sway's last, and the same as one matrix.
+    /// A filter with a full covariance of all states, the sway's last, and the same as one matrix.
     fn example() -> (SwayStates, Covariance, Full) {
         let a = Full::from_fn(scatter);
         let full = a * a.transpose() + Full::identity();
@@ -339,7 +351,7 @@ mod tests {
         }
         let mut sway = SwayStates::new(1.0);
         sway.heading = (0.8, 0.6);
-        sway.axes[1] = Oscillator { omega_radps: 0.6, damping: 0.05, sigma_m: 0.4 };
+        sway.modes[1] = Oscillator { omega_radps: 0.6, damping: 0.05, sigma_m: 0.4 };
         for k in 0..SWAY {
             sway.state[k] = scatter(k, 3);
             for j in 0..STATE_COUNT {
@@ -371,7 +383,9 @@ mod tests {
         let mut h = SVector::<f64, ALL>::zeros();
         let along = sway.axes_in_n().column(axis).into_owned();
         h.fixed_rows_mut::<3>(DR).copy_from(&along);
-        h[STATE_COUNT + 2 * axis] = 1.0;
+        for (place, (_, of)) in PLACES.into_iter().enumerate() {
+            h[STATE_COUNT + 2 * place] = along[of];
+        }
         h
     }
 
@@ -387,9 +401,9 @@ mod tests {
                 phi[(i, j)] = value;
             }
         }
-        for axis in 0..3 {
-            let (t, at) = (sway.axes[axis].transition(1.5), STATE_COUNT + 2 * axis);
-            let q = sway.axes[axis].noise(&t);
+        for (place, (mode, _)) in PLACES.into_iter().enumerate() {
+            let (t, at) = (sway.modes[mode].transition(1.5), STATE_COUNT + 2 * place);
+            let q = sway.modes[mode].noise(&t);
             for i in 0..2 {
                 for j in 0..2 {
                     phi[(at + i, at + j)] = t[i][j];
@@ -439,18 +453,16 @@ mod tests {
         }
     }
 
-    /// What the axes of n hold is the same in those of the ship.
+    /// The heading chooses along which axes the modes are learned, and no more.
     #[test]
-    fn turned_axes_mean_the_same() {
+    fn a_heading_changes_neither_expectation_nor_covariance() {
         let (mut sway, errors, _) = example();
-        sway.heading = (1.0, 0.0);
-        sway.axes = [Oscillator::unknown(); 3];
         let (expected, covariance) = (sway.expected_m(), sway.innovation_covariance(&errors));
         for _ in 0..HEADING_COUNT {
             sway.learn(0.7, &Vector3::zeros());
         }
         assert!((sway.heading.0 - libm::cos(0.7)).abs() < 1e-12);
-        assert!((sway.expected_m() - expected).amax() < 1e-12);
-        assert!((sway.innovation_covariance(&errors) - covariance).amax() < 1e-12);
+        assert_eq!(sway.expected_m(), expected);
+        assert_eq!(sway.innovation_covariance(&errors), covariance);
     }
 }
