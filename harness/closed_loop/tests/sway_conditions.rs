@@ -284,9 +284,11 @@ fn limit(degrees: f64, z: f64) -> f64 {
     (1.0 - spread + z * spread.sqrt()).powi(3)
 }
 
-/// Every class of conditions by one property, with a name.
-fn classes() -> Vec<(&'static str, fn(&Condition) -> bool)> {
-    vec![
+/// Conditions with one property: its name, and whether a condition has it.
+type Class = (&'static str, fn(&Condition) -> bool);
+
+fn classes() -> [Class; 14] {
+    [
         ("all", |_| true),
         ("regular seas", |c| !c.irregular),
         ("irregular seas", |c| c.irregular),

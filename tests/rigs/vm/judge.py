@@ -97,7 +97,7 @@ check("frames of others were among them", foreign >= 4, f"{foreign} frames")
 # The instrument on the bus: what was recorded of it, and what the frames say that candump saw.
 told = next((line for line in said if line.startswith("instrument ")), "no word")
 samples = {}
-sample = {}
+sample, parts = {}, 0
 for line in lines:
     match = re.fullmatch(r"\(\S+\) vcan1 ([0-9A-F]+)#([0-9A-F]*)", line)
     frame = int(match[1], 16) if match else 0
@@ -105,9 +105,11 @@ for line in lines:
     if not name.startswith("HarnessSample_") or len(match[2]) != 2 * known[frame].length:
         continue
     if name == "HarnessSample_0":
-        sample = {}
+        sample, parts = {}, 0
+    parts += 1
     sample |= known[frame].decode(bytes.fromhex(match[2]), scaling=False)
-    if name == "HarnessSample_6":
+    # candump loses frames where the host is busy.
+    if name == "HarnessSample_6" and parts == 7:
         samples[sample["sequence"]] = [
             sample[f"{what}_{axis}"] for what in ("delta_theta", "delta_velocity") for axis in "xyz"
         ] + [sample["azimuth"], sample["roll"]]
