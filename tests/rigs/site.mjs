@@ -83,8 +83,12 @@ async function read(name, base, offline, photographed) {
   });
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("request", (request) => requests.push(request.url()));
-  page.on("requestfailed", (request) => answers.push(request.url()));
-  page.on("response", (response) => { if (response.status() >= 400) answers.push(response.url()); });
+  // Whoever leaves a page ends what it still asks for (its icon, its search): that says nothing of the site.
+  page.on("requestfailed", (request) => {
+    const why = request.failure()?.errorText ?? "no reason";
+    if (why !== "net::ERR_ABORTED") answers.push(`${request.url()}: ${why}`);
+  });
+  page.on("response", (response) => { if (response.status() >= 400) answers.push(`${response.url()}: ${response.status()}`); });
 
   const titles = [];
   const wide = [];
