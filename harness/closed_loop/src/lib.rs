@@ -17,3 +17,4 @@
 pub mod closed_loop;
 pub mod draws;
 pub mod instrument;
+pub mod squares;

@@ -6,6 +6,7 @@ use octant_calibration::config::*;
 use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::instrument::{InstrumentCase, base_of};
+use octant_closed_loop::squares::{AttitudeSquares, assert_consistent};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::config::Sinusoid;
@@ -64,15 +65,15 @@ fn configured(seed: u64, period_s: f64, sway: SwayNoise) -> (plant::PlantConfig,
     (plant, core)
 }
 
-/// Mean NIS, and the squared normalized error of each parameter.
-fn calibrated(seed: u64, period_s: f64) -> (f64, [f64; PARAMETER_COUNT]) {
+/// Mean NIS, and the squared normalized errors of attitude and parameters.
+fn calibrated(seed: u64, period_s: f64) -> (f64, AttitudeSquares, [f64; PARAMETER_COUNT]) {
     let (plant, core) = configured(seed, period_s, SwayNoise::Coloured);
     let mut run = ClosedLoop::new(&plant, &core);
     assert_eq!(run.calibrate(), Mode::Done, "seed {seed}, {period_s} s");
     let (truth, estimate) = (plant.imu.parameters.to_array(), run.core.parameters().to_array());
     let sigma = run.core.sigma();
     let squares = std::array::from_fn(|i| ((estimate[i] - truth[i]) / sigma[i]).powi(2));
-    (run.core.table().unwrap().quality.nis_mean, squares)
+    (run.core.table().unwrap().quality.nis_mean, AttitudeSquares::of(&run), squares)
 }
 
 /// A χ² of 30 over 50 seeds has a mean of 1 with σ = √(2/1500) = 0.037 where the errors of the
@@ -84,16 +85,18 @@ fn innovations_and_errors_are_as_large_as_they_should_be_over_iso_8728() {
     let runs = on_two_threads(&seeds, |seed| {
         calibrated(*seed, PERIODS_S[*seed as usize % PERIODS_S.len()])
     });
-    for (seed, (nis, _)) in seeds.iter().zip(&runs) {
+    for (seed, (nis, ..)) in seeds.iter().zip(&runs) {
         let period_s = PERIODS_S[*seed as usize % PERIODS_S.len()];
         assert!((nis - 3.0).abs() < 0.1, "seed {seed}, {period_s} s: NIS {nis}");
     }
-    let sum: f64 = runs.iter().flat_map(|(_, squares)| squares).sum();
+    let sum: f64 = runs.iter().flat_map(|(_, _, squares)| squares).sum();
     let mean = sum / (SEEDS as f64 * PARAMETER_COUNT as f64);
-    let ends =
-        runs.iter().fold((f64::MAX, 0.0f64), |ends, (nis, _)| (ends.0.min(*nis), ends.1.max(*nis)));
+    let ends = runs
+        .iter()
+        .fold((f64::MAX, 0.0f64), |ends, (nis, ..)| (ends.0.min(*nis), ends.1.max(*nis)));
     println!("{SEEDS} seeds: NIS from {:.3} to {:.3}, normalized errors {mean:.3}", ends.0, ends.1);
     assert!((0.9..1.1).contains(&mean), "{mean}");
+    assert_consistent("ISO 8728", runs.iter().map(|(_, attitude, _)| *attitude));
 }
 
 /// White noise of 0.15 m is no sway of 0.9 m, rms.

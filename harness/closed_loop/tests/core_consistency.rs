@@ -6,6 +6,7 @@ use octant_calibration::config::*;
 use octant_calibration::positions::{Degrees, EIGHT, SIX};
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::instrument::{InstrumentCase, dockside};
+use octant_closed_loop::squares::{AttitudeSquares, assert_consistent};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
@@ -103,23 +104,25 @@ fn a_moored_ship_is_calibrated_with_the_position_of_the_dock() {
         let truth = plant.imu.parameters;
         let mut run = ClosedLoop::new(&plant, &core);
         let mode = run.calibrate();
-        (mode, run.core.table().map(|table| table.quality.nis_mean), squares(&run, &truth))
+        let nis = run.core.table().map(|table| table.quality.nis_mean);
+        (mode, nis, squares(&run, &truth), AttitudeSquares::of(&run))
     });
     let n = all.len() as f64;
-    let nis = all.iter().map(|(_, nis, _)| nis.unwrap()).sum::<f64>() / n;
+    let nis = all.iter().map(|(_, nis, ..)| nis.unwrap()).sum::<f64>() / n;
     println!("dockside, {n} seeds: NIS {nis:.2}");
     assert!((2.0..3.0).contains(&nis), "{nis}");
     // Limits of the static ensemble, with 20 % for the sway.
     let limits = [8e-4, 2.0, 0.7, f64::INFINITY, 1.0, 2.0, 0.7].map(|limit| 1.2 * limit);
     for group in ParameterGroup::ALL {
         let mean = |pick: fn(&(f64, f64)) -> f64| {
-            all.iter().map(|(_, _, squares)| pick(&squares[group as usize])).sum::<f64>() / n
+            all.iter().map(|(_, _, squares, _)| pick(&squares[group as usize])).sum::<f64>() / n
         };
         let rms = mean(|s| s.1).sqrt() / group.si_per_unit();
         println!("{:20} NEES {:.2} rms {rms:.2e} {}", group.name(), mean(|s| s.0), group.unit());
         assert!(rms <= limits[group as usize], "{}: {rms}", group.name());
     }
     assert!(all.iter().all(|(mode, ..)| *mode == Mode::Done));
+    assert_consistent("dockside", all.iter().map(|(.., attitude)| *attitude));
 }
 
 #[test]
@@ -132,23 +135,26 @@ fn a_calibration_from_coarse_alignment_is_consistent() {
         core.alignment = Alignment::Coarse { duration_s: 60.0 };
         let mut run = ClosedLoop::new(&case.plant(), &core);
         let mode = run.calibrate();
-        (mode, run.core.table().map(|t| t.quality), squares(&run, &case.plant().imu.parameters))
+        let quality = run.core.table().map(|table| table.quality);
+        let squares = squares(&run, &case.plant().imu.parameters);
+        (mode, quality, squares, AttitudeSquares::of(&run))
     });
     let n = all.len() as f64;
-    let nis = all.iter().map(|(_, quality, _)| quality.unwrap().nis_mean).sum::<f64>() / n;
+    let nis = all.iter().map(|(_, quality, ..)| quality.unwrap().nis_mean).sum::<f64>() / n;
     println!("coarse alignment: NIS {nis:.3}");
     // The first measurements don't fit: bias and tilt come from the same samples.
     assert!((nis - 3.0).abs() < 0.1, "{nis}");
     for group in ParameterGroup::ALL {
-        let nees = all.iter().map(|(_, _, s)| s[group as usize].0).sum::<f64>() / n;
+        let nees = all.iter().map(|(_, _, s, _)| s[group as usize].0).sum::<f64>() / n;
         println!("{:20} NEES {nees:.2}", group.name());
         // 24 degrees of freedom: 99.9 % within 0.34 and 2.13.
         assert!((0.3..2.2).contains(&nees), "{}: {nees}", group.name());
     }
     assert!(
         all.iter()
-            .all(|(mode, quality, _)| { *mode == Mode::Done && quality.unwrap().recoveries == 0 })
+            .all(|(mode, quality, ..)| *mode == Mode::Done && quality.unwrap().recoveries == 0)
     );
+    assert_consistent("coarse alignment", all.iter().map(|(.., attitude)| *attitude));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
 use octant_closed_loop::instrument::InstrumentCase;
+use octant_closed_loop::squares::{AttitudeSquares, assert_consistent};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::draw::{Draw, ParameterDraws, parameters};
@@ -168,6 +169,7 @@ fn estimated(groups: &[FurtherGroup]) -> Further {
 /// Result of one calibration.
 struct Calibrated {
     nis: f64,
+    attitude: AttitudeSquares,
     /// Errors of the parameters, and their standard deviations.
     errors: [f64; PARAMETER_COUNT],
     sigma: [f64; PARAMETER_COUNT],
@@ -189,6 +191,7 @@ fn calibrate(seed: u64, groups: &[FurtherGroup], further: Further, screened: boo
     let sigmas = found.map_or([0.0; FURTHER_COUNT], |found| found.sigma);
     Calibrated {
         nis: run.core.table().unwrap().quality.nis_mean,
+        attitude: AttitudeSquares::of(&run),
         errors: std::array::from_fn(|i| estimate[i] - true_ones[i]),
         sigma: *run.core.sigma(),
         further: std::array::from_fn(|k| {
@@ -258,6 +261,7 @@ fn all_groups_at_once_are_consistent() {
         assert!((nees - 1.0).abs() < bound, "{name}: {nees}");
     }
     assert!((nis - 3.0).abs() < 0.05, "{nis}");
+    assert_consistent("all groups estimated", runs.iter().map(|run| run.attitude));
 }
 
 /// Each group alone: what its error costs if it is ignored, considered or estimated, in standard

@@ -6,6 +6,7 @@ use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
 use octant_closed_loop::instrument::InstrumentCase;
+use octant_closed_loop::squares::{AttitudeSquares, assert_consistent};
 use octant_earth::UnitQuaternion;
 use octant_earth::units::*;
 use octant_plant::config as plant;
@@ -113,6 +114,7 @@ fn configured(
 /// Result of one calibration.
 struct Calibrated {
     nis: f64,
+    attitude: AttitudeSquares,
     /// Mean NIS of the angles; NaN without them.
     angle_nis: f64,
     /// Errors of the parameters, and their standard deviations.
@@ -144,6 +146,7 @@ fn calibrate_configured(plant: &plant::PlantConfig, mut core: CoreConfig) -> Cal
     let truth = octant_plant::further::truth(extensions, &plant.site.gravity, &plant.turntable);
     Calibrated {
         nis,
+        attitude: AttitudeSquares::of(&run),
         angle_nis,
         errors: std::array::from_fn(|i| estimate[i] - true_ones[i]),
         sigma: *run.core.sigma(),
@@ -219,6 +222,7 @@ fn estimated_errors_of_the_gimbals_leave_what_angles_gain() {
                 continue;
             }
             assert!((0.8..1.2).contains(&pooled), "{name} {way:?}: {pooled}");
+            assert_consistent(&format!("{name} {way:?}"), runs.iter().map(|run| run.attitude));
             if way == Way::Estimated {
                 for group in groups {
                     let found = further_nees(&runs, *group);
@@ -285,6 +289,7 @@ fn a_curve_of_the_encoders_is_covered_by_its_sigma() {
     }
     assert!((0.8..1.2).contains(&pooled), "{pooled}");
     assert!(size(&with, &without) < 1.0);
+    assert_consistent("curve of 18″", with.iter().map(|run| run.attitude));
 }
 
 /// An encoder that slips by 0.05° at this stop and stays so; hardened or bare. The refusal, and the largest error of a

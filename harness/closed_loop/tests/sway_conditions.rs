@@ -4,13 +4,13 @@
 //! A NIS of 3 doesn't show whether a published σ is true: the size and damping of the modelled sway adapt to the
 //! innovations.
 
-use nalgebra::{Matrix2, Quaternion, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config::*;
 use octant_calibration::positions::EIGHT;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
 use octant_closed_loop::instrument::{InstrumentCase, base_of};
-use octant_earth::rotation::log;
+use octant_closed_loop::squares::{AttitudeSquares, chi_squared_limit};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::config::Sinusoid;
@@ -113,16 +113,44 @@ fn conditions(count: usize) -> Vec<Condition> {
         .collect()
 }
 
-/// Components of unit acceleration amplitude, as frequency, amplitude of the displacement and phase.
+/// Response of a moored ship of some 60 m to waves of a period, in units of the wave's amplitude or slope: horizontal
+/// motion, heave, and roll with its resonance at 9 s. It follows long waves, and hardly moves in those shorter than
+/// itself.
+const RESPONSE: [(f64, [f64; 3]); 8] = [
+    (3.0, [0.02, 0.01, 0.05]),
+    (5.0, [0.08, 0.10, 0.20]),
+    (6.5, [0.20, 0.30, 0.60]),
+    (8.0, [0.38, 0.60, 1.60]),
+    (9.0, [0.48, 0.80, 2.60]),
+    (10.5, [0.60, 0.95, 1.70]),
+    (13.0, [0.75, 1.00, 1.20]),
+    (25.0, [0.95, 1.00, 1.00]),
+];
+
+/// Response at a period, between the rows of the table; outside of it that of its end.
+fn response(period_s: f64, name: &str) -> f64 {
+    let column = match name {
+        "heave" => 1,
+        "roll" => 2,
+        _ => 0,
+    };
+    let after = RESPONSE.partition_point(|(at, _)| *at < period_s).clamp(1, RESPONSE.len() - 1);
+    let ((from, low), (to, high)) = (RESPONSE[after - 1], RESPONSE[after]);
+    let part = ((period_s - from) / (to - from)).clamp(0.0, 1.0);
+    low[column] + part * (high[column] - low[column])
+}
+
+/// Components of unit acceleration amplitude, as frequency, amplitude of the displacement and phase. In an irregular
+/// sea the height of the waves follows: it is that at which the ship's response has this acceleration.
 fn components(condition: &Condition, name: &str) -> Vec<(f64, f64, f64)> {
     let peak = 2.0 * PI / condition.period_s;
     if !condition.irregular {
         return vec![(peak, 1.0 / (peak * peak), phases(condition.seed, name, 1)[0])];
     }
-    // Pierson and Moskowitz' spectrum of the displacement, S ∝ ω⁻⁵ exp(−1.25 (ω_p/ω)⁴), in parts whose frequencies are
-    // drawn: no two components are in a whole ratio. Above twice the peak a ship hardly follows.
+    // Pierson and Moskowitz' spectrum of the waves, S ∝ ω⁻⁵ exp(−1.25 (ω_p/ω)⁴), times the square of the ship's
+    // response, in parts whose frequencies are drawn: no two components are in a whole ratio.
     const PARTS: usize = 30;
-    let (from, to) = (0.6 * peak, 2.0 * peak);
+    let (from, to) = (0.6 * peak, 2.5 * peak);
     let width = (to - from) / PARTS as f64;
     let (places, starts) = (
         phases(condition.seed, &format!("{name} frequency"), PARTS),
@@ -132,7 +160,8 @@ fn components(condition: &Condition, name: &str) -> Vec<(f64, f64, f64)> {
         .map(|i| {
             let omega = from + width * (i as f64 + places[i] / (2.0 * PI));
             let density = omega.powi(-5) * (-1.25 * (peak / omega).powi(4)).exp();
-            (omega, (2.0 * density * width).sqrt(), starts[i])
+            let amplitude = response(2.0 * PI / omega, name) * (2.0 * density * width).sqrt();
+            (omega, amplitude, starts[i])
         })
         .collect();
     let square: f64 = all.iter().map(|(omega, a, _)| (omega * omega * a).powi(2)).sum();
@@ -253,35 +282,22 @@ fn calibrated(condition: &Condition, azimuth_rad: Option<f64>) -> Result<Squares
     if run.calibrate() != Mode::Done {
         return Err(run.core.refusal().map(ToString::to_string).unwrap_or_default());
     }
-    let of = |[w, i, j, k]: [f64; 4]| UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
-    // computed = (I − [φ×]) true
-    let phi = -log(&(of(run.output.navigation.q_nb) * of(run.plant.truth().q_nb).inverse()));
-    let covariance = run.core.concluded().unwrap().phi;
-    let tilt = Matrix2::from_fn(|i, j| covariance[i][j]);
-    let level = Vector2::new(phi.x, phi.y);
+    let attitude = AttitudeSquares::of(&run);
     let (truth, estimate) = (plant.imu.parameters.to_array(), run.core.parameters().to_array());
     let sigma = run.core.sigma();
     let of_parameters = |from: usize, to: usize| -> f64 {
         (from..to).map(|i| ((estimate[i] - truth[i]) / sigma[i]).powi(2)).sum()
     };
     let mut groups = [0.0; GROUPS.len()];
-    groups[0] = phi.z * phi.z / covariance[2][2];
-    groups[1] = level.dot(&(tilt.try_inverse().unwrap() * level));
+    (groups[0], groups[1]) = (attitude.heading, attitude.tilt);
     for (group, ends) in groups[2..].iter_mut().zip(FIRST.windows(2)) {
         *group = of_parameters(ends[0], ends[1]);
     }
     Ok(Squares {
         nis: run.core.table().unwrap().quality.nis_mean,
-        heading_sigma_arcmin: covariance[2][2].sqrt() / ARCMIN,
+        heading_sigma_arcmin: attitude.heading_sigma_rad / ARCMIN,
         groups,
     })
-}
-
-/// Value that a χ² of so many degrees of freedom, divided by them, exceeds with the probability of a normal deviate
-/// `z` (Wilson and Hilferty, 1931).
-fn limit(degrees: f64, z: f64) -> f64 {
-    let spread = 2.0 / (9.0 * degrees);
-    (1.0 - spread + z * spread.sqrt()).powi(3)
 }
 
 /// Conditions with one property: its name, and whether a condition has it.
@@ -344,8 +360,8 @@ fn squares_of_heading_tilt_and_parameters_are_as_large_as_their_sigma_says() {
             let mean = inside.iter().map(|s| s.groups[group]).sum::<f64>() / all_degrees;
             line += &format!(" {mean:.2}");
             // Over all conditions σ mustn't be too large either.
-            let least = if *name == "all" { limit(all_degrees, -z) } else { 0.0 };
-            if !(least..=limit(all_degrees, z)).contains(&mean) {
+            let least = if *name == "all" { chi_squared_limit(all_degrees, -z) } else { 0.0 };
+            if !(least..=chi_squared_limit(all_degrees, z)).contains(&mean) {
                 wrong.push(format!("{name}, {what}: {mean}"));
             }
         }

@@ -75,7 +75,7 @@ impl Block {
         self.samples.len() as u32
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, frame: &EpochFrame<'_>, due: bool) {
         let position = self.position();
         if let Some(aiding) = frame.faulted.aiding {
@@ -145,20 +145,16 @@ impl EpochFrame<'_> {
     /// True if the core received another epoch than the source delivered.
     #[inline]
     pub(super) fn is_altered(&self) -> bool {
-        !same(self.clean, self.faulted)
+        !std::ptr::eq(self.clean, self.faulted) && !same(self.clean, self.faulted)
     }
 }
 
 /// True if both have the same bits: NaN equals itself, and zero differs from minus zero.
-#[inline]
 fn same(a: &Epoch, b: &Epoch) -> bool {
-    std::ptr::eq(a, b)
-        || (a.sample == b.sample
-            && match (&a.aiding, &b.aiding) {
-                (None, None) => true,
-                (Some(a), Some(b)) => {
-                    super::message::aiding_bits(a) == super::message::aiding_bits(b)
-                }
-                _ => false,
-            })
+    a.sample == b.sample
+        && match (&a.aiding, &b.aiding) {
+            (None, None) => true,
+            (Some(a), Some(b)) => super::message::aiding_bits(a) == super::message::aiding_bits(b),
+            _ => false,
+        }
 }

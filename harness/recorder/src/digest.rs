@@ -72,17 +72,35 @@ fn hash_block(hash: &mut StreamHash, block: &Block) {
     let mut aiding = block.aiding.iter().peekable();
     let mut parameters = block.parameters.iter().peekable();
     let mut lost = block.lost.iter().peekable();
-    for position in 0..=block.len() as u32 {
+    let end = block.len();
+    let mut index = 0;
+    while index <= end {
+        let position = index as u32;
         while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
             hash.parameters(estimate);
         }
-        if lost.next_if(|at| **at == position).is_some() {
-            continue;
-        }
-        let index = position as usize;
-        if let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index)) {
+        if lost.next_if(|at| **at == position).is_none()
+            && let (Some(sample), Some(output)) =
+                (block.samples.get(index), block.outputs.get(index))
+        {
             let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
             hash.epoch(sample, aiding, output);
+        }
+        index += 1;
+        // Up to the next frame with a part of its own, samples and outputs follow one another.
+        let next = [
+            aiding.peek().map(|(at, _)| *at),
+            parameters.peek().map(|(at, _)| *at),
+            lost.peek().map(|at| **at),
+        ];
+        let next = next.into_iter().flatten().min().map_or(end, |at| end.min(at as usize));
+        if index < next {
+            for (sample, output) in
+                block.samples[index..next].iter().zip(&block.outputs[index..next])
+            {
+                hash.plain(sample, output);
+            }
+            index = next;
         }
     }
 }

@@ -216,7 +216,7 @@ impl Recorder {
     /// # Errors
     /// If the recorder failed (with the error of its thread), or the parameters announced by the frame
     /// before are missing.
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, frame: EpochFrame<'_>) -> Result<(), RecorderError> {
         let Some(worker) = &self.worker else { return Ok(()) };
         if self.parameters_due {

@@ -5,7 +5,9 @@
 //! σ when the output's revision changed. It is computed at full rate, before any decimation, and
 //! contains no host time: recording policy, block size and realisation don't change it.
 
-use octant_sample::canonical::{self, AIDING_BYTES, OUTPUT_BYTES, PARAMETERS_BYTES, SAMPLE_BYTES};
+use octant_sample::canonical::{
+    self, AIDING_BYTES, OUTPUT_BYTES, PARAMETERS_BYTES, PLAIN_BYTES, SAMPLE_BYTES,
+};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 
@@ -14,14 +16,16 @@ use octant_sample::{Aiding, Output, Sample};
 /// of a sample. It is a power of two, and each piece has exactly this size: so a piece is a whole
 /// subtree of its own.
 const PIECE_BYTES: usize = 64 * 1024;
-/// Capacity for bytes that reach into the next piece.
+/// Room for bytes that reach into the next piece.
 const GATHER_BYTES: usize = PIECE_BYTES + 1024;
 
 /// Hash of a stream so far.
 #[derive(Clone, Debug)]
 pub struct StreamHash {
     hasher: blake3::Hasher,
+    /// [`GATHER_BYTES`], of which the first `filled` are to be hashed: bytes are written where they are hashed.
     gathered: Vec<u8>,
+    filled: usize,
 }
 
 impl Default for StreamHash {
@@ -34,14 +38,25 @@ impl StreamHash {
     /// Makes the hash of an empty stream.
     #[must_use]
     pub fn new() -> Self {
-        Self { hasher: blake3::Hasher::new(), gathered: Vec::with_capacity(GATHER_BYTES) }
+        Self { hasher: blake3::Hasher::new(), gathered: vec![0; GATHER_BYTES], filled: 0 }
     }
 
     /// Adds one epoch: the core's input and its output.
     #[inline]
     pub fn epoch(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &Output) {
-        self.input(sample, aiding);
-        self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
+        match aiding {
+            None => self.plain(sample, output),
+            Some(_) => {
+                self.input(sample, aiding);
+                self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
+            }
+        }
+    }
+
+    /// Adds one epoch without aiding.
+    #[inline]
+    pub(super) fn plain(&mut self, sample: &Sample, output: &Output) {
+        self.put::<PLAIN_BYTES>(|bytes| canonical::sample_and_output(sample, output, bytes));
     }
 
     /// Adds only a sample and its aiding.
@@ -63,18 +78,21 @@ impl StreamHash {
     /// Hash of everything added, 64 hexadecimal digits.
     #[must_use]
     pub fn hex(&mut self) -> String {
-        self.hasher.update(&self.gathered);
-        self.gathered.clear();
+        self.hasher.update(&self.gathered[..self.filled]);
+        self.filled = 0;
         self.hasher.finalize().to_hex().to_string()
     }
 
     #[inline]
     fn put<const N: usize>(&mut self, write: impl FnOnce(&mut [u8; N])) {
         const { assert!(N <= GATHER_BYTES - PIECE_BYTES) }
-        let mut bytes = [0; N];
-        write(&mut bytes);
-        self.gathered.extend_from_slice(&bytes);
-        if self.gathered.len() >= PIECE_BYTES {
+        // Always so: what is filled never exceeds a piece, and the room behind it is larger than N.
+        let rest = self.gathered.get_mut(self.filled..);
+        if let Some(bytes) = rest.and_then(<[u8]>::first_chunk_mut) {
+            write(bytes);
+            self.filled += N;
+        }
+        if self.filled >= PIECE_BYTES {
             self.hash_piece();
         }
     }
@@ -82,6 +100,7 @@ impl StreamHash {
     #[inline(never)]
     fn hash_piece(&mut self) {
         self.hasher.update(&self.gathered[..PIECE_BYTES]);
-        self.gathered.drain(..PIECE_BYTES);
+        self.gathered.copy_within(PIECE_BYTES..self.filled, 0);
+        self.filled -= PIECE_BYTES;
     }
 }

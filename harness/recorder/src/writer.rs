@@ -170,7 +170,8 @@ impl<W: Write> RecordingWriter<W> {
         let mut events = block.events.iter().peekable();
         let mut lost = block.lost.iter().peekable();
         let mut added = block.added.iter().peekable();
-        for position in 0..=block.len() as u32 {
+        let mut position = 0;
+        loop {
             // First the additions to the frame before, in the order of the topics.
             while let Some((_, innovation)) = innovations.next_if(|(at, _)| *at == position) {
                 if self.last_kept {
@@ -208,8 +209,41 @@ impl<W: Write> RecordingWriter<W> {
                 is_lost: lost.next_if(|at| **at == position).is_some(),
                 step_ns: added.next_if(|(at, _)| *at == position).map(|(_, step_ns)| *step_ns),
             })?;
+            position += 1;
+            if self.policy.samples == Samples::Full {
+                continue;
+            }
+            // Frames with nothing of their own leave nothing in the file: a change of mode is due.
+            let next = [
+                head(&mut aiding),
+                head(&mut altered),
+                due.peek().map(|at| **at),
+                head(&mut innovations),
+                head(&mut covariances),
+                head(&mut truth),
+                head(&mut parameters),
+                head(&mut events),
+                lost.peek().map(|at| **at),
+                head(&mut added),
+            ];
+            let next = next.into_iter().flatten().fold(block.len() as u32, u32::min);
+            if position < next {
+                self.end_epoch()?;
+                self.pass_over(block, next as usize - 1);
+                position = next;
+            }
         }
         Ok(())
+    }
+
+    /// Passes over frames up to this one of a block, of which the file keeps nothing.
+    fn pass_over(&mut self, block: &Block, last: usize) {
+        if let (Some(sample), Some(output)) = (block.samples.get(last), block.outputs.get(last)) {
+            self.last_time_ns = sample.device_time.ns;
+            self.last_sequence = sample.sequence;
+            self.last_kept = false;
+            self.revision = output.parameters_revision;
+        }
     }
 
     /// Writes the data of a frame that the policy keeps, without its additions.
@@ -386,6 +420,14 @@ impl<W: Write> RecordingWriter<W> {
         })?;
         Ok((counts, written.load(Ordering::Relaxed)))
     }
+}
+
+/// Position of the next entry of a list of parts.
+#[inline]
+fn head<'a, T: 'a>(
+    parts: &mut std::iter::Peekable<impl Iterator<Item = &'a (u32, T)>>,
+) -> Option<u32> {
+    parts.peek().map(|(at, _)| *at)
 }
 
 /// Metadata about the format of a recording.

@@ -4,6 +4,7 @@
 use super::drive::Ended;
 use super::method::{MethodRun, planned_of};
 use octant_base::number;
+use octant_calibration::config::{Estimator, SwayNoise};
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_requirements::Verdict;
@@ -116,6 +117,7 @@ fn of_unit(scenario: &Scenario, run: &MethodRun, method: Method, place: &str) ->
         Method::Baseline => scenario.baseline.as_ref(),
     };
     reasons.extend(plan.and_then(|plan| not_estimated(scenario, plan, run)));
+    reasons.extend(plan.and_then(|plan| not_white(plan, run)));
     let inconclusive = |reason| Finding::of_unit(Verdict::Inconclusive, format!("{reason}{place}"));
     findings.extend(reasons.into_iter().map(inconclusive));
     findings
@@ -166,6 +168,14 @@ fn not_estimated(scenario: &Scenario, plan: &CalibrationSpec, run: &MethodRun) -
         "the calibration doesn't follow the samples: not one parameter moved from where it began"
             .to_owned()
     })
+}
+
+/// Says that the sway of a ship isn't white, where an accepted calibration takes it for white noise.
+fn not_white(plan: &CalibrationSpec, run: &MethodRun) -> Option<String> {
+    let Estimator::Kalman(kalman) = &plan.estimator else { return None };
+    let calibration = run.calibration.as_ref().filter(|c| c.refused.is_none())?;
+    let white = kalman.sway == SwayNoise::White;
+    white.then(|| run.watcher.whiteness.doubt(calibration.nis_mean?)).flatten()
 }
 
 /// Lists the missing evidence of the run.

@@ -5,7 +5,7 @@
 //! proves nothing against a unit; it shows that the run is no evidence.
 
 use octant_endpoint::Tells;
-use octant_sample::{Mode, Output};
+use octant_sample::{Mode, Navigation, Output};
 
 /// Time for which a navigation solution may stay the same, ns: units that update once a second are
 /// common, once a minute none.
@@ -18,9 +18,10 @@ const NIS_LEAST: u64 = 8;
 /// Watches one run, without allocating memory.
 #[derive(Clone, Debug)]
 pub struct RunFollower {
-    /// Bits of the navigation solution at the last answer, by part, with the time since which each
-    /// stays the same.
-    parts: [Standing; 3],
+    /// Navigation solution at the last answer.
+    before: Navigation,
+    /// Time since which each part of it stays the same, ns.
+    since_ns: [u64; 3],
     /// Longest time for which a part stayed the same, ns, with its start.
     longest: [(u64, u64); 3],
     /// Hashes of solutions of the last minute.
@@ -36,13 +37,6 @@ pub struct RunFollower {
     told: [bool; 3],
 }
 
-/// Bits of a part of the solution, and the time since which they stay the same.
-#[derive(Clone, Copy, Debug, Default)]
-struct Standing {
-    bits: u64,
-    since_ns: u64,
-}
-
 /// Names of the parts.
 const PARTS: [&str; 3] = ["position", "velocity", "attitude"];
 
@@ -54,7 +48,8 @@ impl RunFollower {
             told: tells
                 .filter(|tells| tells.follows)
                 .map_or([false; 3], |tells| [tells.position, tells.velocity, tells.attitude]),
-            parts: [Standing::default(); 3],
+            before: Navigation::default(),
+            since_ns: [0; 3],
             longest: [(0, 0); 3],
             remembered: [0; REMEMBERED],
             seconds: 0,
@@ -80,24 +75,44 @@ impl RunFollower {
         }
         self.last_ns = now_ns;
         let n = &output.navigation;
-        let bits = [mix(&[n.latitude_rad, n.longitude_rad]), mix(&n.velocity_mps), mix(&n.q_nb)];
         if self.began_ns.is_none() {
             self.began_ns = Some(now_ns);
-            self.parts = bits.map(|bits| Standing { bits, since_ns: now_ns });
+            self.since_ns = [now_ns; 3];
             self.next_ns = now_ns;
+        } else {
+            // In a good run the first number of each part differs.
+            let before = &self.before;
+            let moves = n.latitude_rad != before.latitude_rad
+                && n.velocity_mps[0] != before.velocity_mps[0]
+                && n.q_nb[0] != before.q_nb[0];
+            if moves { self.since_ns = [now_ns; 3] } else { self.compare(now_ns, n) }
         }
-        for i in 0..PARTS.len() {
-            let part = &mut self.parts[i];
-            let standing_ns = now_ns.saturating_sub(part.since_ns);
-            if part.bits != bits[i] {
-                *part = Standing { bits: bits[i], since_ns: now_ns };
-            } else if standing_ns > self.longest[i].0 {
-                self.longest[i] = (standing_ns, part.since_ns);
-            }
-        }
+        self.before = *n;
         if now_ns >= self.next_ns {
             self.next_ns = now_ns + 1_000_000_000;
+            let bits =
+                [mix(&[n.latitude_rad, n.longitude_rad]), mix(&n.velocity_mps), mix(&n.q_nb)];
             self.second(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42));
+        }
+    }
+
+    /// Compares the solution with the one before, bit by bit, and notes how long a part has been the same.
+    #[inline(never)]
+    fn compare(&mut self, now_ns: u64, n: &Navigation) {
+        let before = &self.before;
+        let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        let stands = [
+            same(&[n.latitude_rad, n.longitude_rad], &[before.latitude_rad, before.longitude_rad]),
+            same(&n.velocity_mps, &before.velocity_mps),
+            same(&n.q_nb, &before.q_nb),
+        ];
+        for (part, stands) in stands.into_iter().enumerate() {
+            let standing_ns = now_ns.saturating_sub(self.since_ns[part]);
+            if !stands {
+                self.since_ns[part] = now_ns;
+            } else if standing_ns > self.longest[part].0 {
+                self.longest[part] = (standing_ns, self.since_ns[part]);
+            }
         }
     }
 

@@ -57,6 +57,7 @@ mod trunk;
 pub mod twin;
 pub mod unit;
 pub mod watch;
+pub mod whiteness;
 mod with_twin;
 
 pub use assemble::{Run, assemble};

@@ -10,6 +10,7 @@ use super::filtered::FilteredSeries;
 use super::follow::RunFollower;
 use super::solution::{attitude_error, errors, hours, velocity_error};
 use super::true_motion::TrueMotion;
+use super::whiteness::Whiteness;
 use octant_endpoint::Tells;
 use octant_endpoint::answer::{AnswerCheck, Misbehaviour};
 use octant_plant::Truth;
@@ -82,6 +83,8 @@ pub struct Watcher {
     pub at_rest: Option<Box<AtRest>>,
     /// Errors and σ of a filter that calibrates, where they are wanted.
     pub filtered: Option<FilteredSeries>,
+    /// Whether the innovations are white.
+    pub whiteness: Whiteness,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
     /// Time of the source at the next output, where faults may have altered its stamp.
@@ -157,6 +160,7 @@ impl Watcher {
             trace: None,
             at_rest: None,
             filtered: None,
+            whiteness: Whiteness::default(),
             health: HealthMonitor::new(),
             source_time: None,
             convergence: Vec::new(),
@@ -238,7 +242,7 @@ impl Watcher {
 
     /// Takes an output that answers no sample, or one that isn't known any more; returns true if
     /// truth at it is needed.
-    #[inline]
+    #[inline(always)]
     pub fn epoch(&mut self, output: &Output) -> bool {
         let now_ns = output.device_time.ns;
         self.last_ns = now_ns;
@@ -349,6 +353,7 @@ impl Watcher {
     /// Takes the innovation of the measurement in the last output.
     #[inline(never)]
     pub fn innovation(&mut self, output: &Output, innovation: &Innovation) {
+        self.whiteness.push(innovation);
         let at = hours(output);
         if let Some(point) = self.nis.last_mut().filter(|point| point.hours == at) {
             point.innovation = Some(*innovation);

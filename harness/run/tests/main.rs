@@ -9,3 +9,4 @@ mod moments;
 mod passes;
 mod rotation;
 mod unit;
+mod whiteness;

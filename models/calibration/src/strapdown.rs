@@ -98,7 +98,7 @@ impl Strapdown {
     }
 
     /// Integrates one interval: compensated increments of ω_ib and f in b over `interval_s`.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, dtheta: &Vector3<f64>, dv: &Vector3<f64>, interval_s: f64) {
         if self.until_earth_update == 0 {
             // For the middle of the intervals that use it: an Earth rate that lags the latitude
@@ -108,8 +108,12 @@ impl Strapdown {
         }
         self.until_earth_update -= 1;
 
-        let (dtheta0, dv0) = self.previous.unwrap_or((*dtheta, *dv));
-        self.previous = Some((*dtheta, *dv));
+        let (dtheta0, dv0) = match &mut self.previous {
+            Some((theta, velocity)) => {
+                (core::mem::replace(theta, *dtheta), core::mem::replace(velocity, *dv))
+            }
+            None => *self.previous.insert((*dtheta, *dv)),
+        };
 
         // The part that depends on the state alone comes first, so that it doesn't wait for the
         // sample: the transport rate is that of the velocity at the middle of the interval,

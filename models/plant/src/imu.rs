@@ -14,7 +14,9 @@ use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
 use octant_random::stream::{Ahead, Triad};
 use octant_sample::Status;
-use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::counts::{
+    Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, count_triad,
+};
 
 fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| m[row][column])
@@ -64,15 +66,12 @@ impl Triple {
             }
         }
         let mut saturated = false;
-        if self.quantum_counts > 0.0 || reading.iter().any(|x| x.abs() > self.limit_counts) {
+        // None is larger than the sum of all.
+        let sum = reading.x.abs() + reading.y.abs() + reading.z.abs();
+        if self.quantum_counts > 0.0 || !(sum <= self.limit_counts) {
             (reading, saturated) = self.limit_and_quantize(reading);
         }
-        for axis in 0..3 {
-            let count = self.accumulators[axis].count(reading[axis]);
-            counts[axis] = count.value;
-            saturated |= count.saturated;
-        }
-        saturated
+        saturated | count_triad(&mut self.accumulators, reading.into(), counts)
     }
 
     #[inline(never)]

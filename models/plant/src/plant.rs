@@ -211,7 +211,11 @@ impl Plant {
         }
         sample.status = status | self.flags;
         self.until_aiding -= 1;
-        *aiding = if self.until_aiding == 0 { self.aid(sample.device_time, number) } else { None };
+        if self.until_aiding == 0 {
+            *aiding = self.aid(sample.device_time, number);
+        } else {
+            *aiding = None;
+        }
     }
 
     #[inline(never)]

@@ -2,7 +2,7 @@
 //! floating-point form of Doornik (2005): exact in distribution, one multiplication and one
 //! comparison in 98.8 % of the cases, libm's logarithm and exponential in the rest.
 
-use crate::philox::{StreamKey, block};
+use crate::philox::{StreamKey, block, block_of, round_keys};
 use alloc::boxed::Box;
 use once_cell::race::OnceBox;
 
@@ -15,6 +15,8 @@ const TAIL: f64 = 3.654_152_885_361_008_8;
 pub struct Ziggurat {
     /// Width of layer i; the base layer's is its area over the density at the tail.
     x: [f64; LAYERS + 1],
+    /// Width of layer i for integers of 53 bits; the factor is a power of two, which changes no digit.
+    scaled: [f64; LAYERS],
     /// exp(−x²/2) at each edge.
     f: [f64; LAYERS + 1],
 }
@@ -57,13 +59,29 @@ impl Ziggurat {
         for i in 0..=LAYERS {
             f[i] = density(x[i]);
         }
-        Self { x, f }
+        let scaled = core::array::from_fn(|i| x[i] * (1.0 / (1u64 << 53) as f64));
+        Self { x, scaled, f }
     }
 
     /// Three independent standard normals of one counter.
     #[inline(always)]
     pub fn three(&self, key: StreamKey, counter: u64) -> [f64; 3] {
-        let words = words(key, counter);
+        self.three_of(key, counter, words(key, counter))
+    }
+
+    /// [`Self::three`] of many counters in a row, from `first` on; the last counter is followed by 0.
+    #[inline(always)]
+    pub fn threes(&self, key: StreamKey, first: u64, numbers: &mut [[f64; 3]]) {
+        let keys = round_keys(key);
+        let mut counter = first;
+        for numbers in numbers {
+            *numbers = self.three_of(key, counter, block_of(&keys, [counter, 0, 0, 0]));
+            counter = counter.wrapping_add(1);
+        }
+    }
+
+    #[inline(always)]
+    fn three_of(&self, key: StreamKey, counter: u64, words: [u64; 4]) -> [f64; 3] {
         [
             self.one(key, counter, 0, words[0]),
             self.one(key, counter, 1, words[1]),
@@ -76,21 +94,27 @@ impl Ziggurat {
     fn candidate(&self, word: u64) -> (f64, usize) {
         let layer = (word & 0xFF) as usize;
         // Bits 10 to 63, signed: disjoint from bits 0 to 7, which choose the layer.
-        let u = ((word as i64) >> 10) as f64 * (1.0 / (1u64 << 53) as f64);
-        (u * self.x[layer], layer)
+        (((word as i64) >> 10) as f64 * self.scaled[layer], layer)
     }
 
     #[inline(always)]
     fn one(&self, key: StreamKey, counter: u64, lane: u64, word: u64) -> f64 {
         let (x, layer) = self.candidate(word);
-        if x.abs() < self.x[layer + 1] { x } else { self.rejected(key, counter, lane, word) }
+        if x.abs() < self.x[layer + 1] {
+            x
+        } else {
+            // In registers: a key in memory would be written for every number, which is rarely used.
+            let [key0, key1] = key;
+            self.rejected(key0, key1, counter, lane, word)
+        }
     }
 
     /// Draws from the wedge or the tail. Further words come from a sub-counter of this sample and
     /// lane, so that no other number changes.
     #[cold]
     #[inline(never)]
-    fn rejected(&self, key: StreamKey, counter: u64, lane: u64, word: u64) -> f64 {
+    fn rejected(&self, key0: u64, key1: u64, counter: u64, lane: u64, word: u64) -> f64 {
+        let key = [key0, key1];
         let (mut x, mut layer) = self.candidate(word);
         let mut attempt = 0;
         loop {

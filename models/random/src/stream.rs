@@ -113,9 +113,7 @@ impl Ahead {
     #[inline(never)]
     fn fill(&mut self, first: u64) {
         self.first = first;
-        for (sample, numbers) in (first..).zip(&mut self.numbers) {
-            *numbers = self.triad.at(sample);
-        }
+        self.triad.ziggurat.threes(self.triad.current, first, &mut self.numbers);
     }
 }
 

@@ -11,6 +11,8 @@ pub const SAMPLE_BYTES: usize = 8 + 8 + 6 * 4 + 2 * 4 + 2;
 pub const AIDING_BYTES: usize = 8 + 1 + 3 * 8;
 /// Bytes of an output.
 pub const OUTPUT_BYTES: usize = 8 + 8 + 1 + 2 + 1 + 8 + 10 * 8 + 4 + 8 + 4;
+/// Bytes of a sample and an output, without aiding between them.
+pub const PLAIN_BYTES: usize = SAMPLE_BYTES + OUTPUT_BYTES;
 /// Bytes of the parameters with their σ.
 pub const PARAMETERS_BYTES: usize = 2 * PARAMETER_COUNT * 8;
 
@@ -37,10 +39,16 @@ impl Writer<'_> {
 /// azimuth i32, roll i32, status u16.
 #[inline]
 pub fn sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
-    let mut w = Writer { rest: bytes };
+    put_sample(sample, &mut Writer { rest: bytes });
+}
+
+#[inline(always)]
+fn put_sample(sample: &Sample, w: &mut Writer<'_>) {
     w.put(&sample.sequence.to_le_bytes());
     w.put(&sample.device_time.ns.to_le_bytes());
-    for count in sample.delta_theta.iter().chain(&sample.delta_velocity) {
+    // Each field by itself: through a chained iterator, every write would check the room that is left.
+    let [[x, y, z], [u, v, s]] = [sample.delta_theta, sample.delta_velocity];
+    for count in [x, y, z, u, v, s] {
         w.put(&count.to_le_bytes());
     }
     w.put(&sample.gimbal.azimuth.to_le_bytes());
@@ -71,7 +79,19 @@ pub fn aiding(aiding: &Aiding, bytes: &mut [u8; AIDING_BYTES]) {
 /// f64, parameters revision u32.
 #[inline]
 pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
+    put_output(output, &mut Writer { rest: bytes });
+}
+
+/// Writes a sample, then an output.
+#[inline]
+pub fn sample_and_output(sample: &Sample, output: &Output, bytes: &mut [u8; PLAIN_BYTES]) {
     let mut w = Writer { rest: bytes };
+    put_sample(sample, &mut w);
+    put_output(output, &mut w);
+}
+
+#[inline(always)]
+fn put_output(output: &Output, w: &mut Writer<'_>) {
     w.put(&output.sequence.to_le_bytes());
     w.put(&output.device_time.ns.to_le_bytes());
     w.put(&[output.mode as u8]);
@@ -83,8 +103,9 @@ pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
     w.f64(navigation.latitude_rad);
     w.f64(navigation.longitude_rad);
     w.f64(navigation.height_m);
-    for value in navigation.velocity_mps.iter().chain(&navigation.q_nb) {
-        w.f64(*value);
+    let ([north, east, down], [q0, q1, q2, q3]) = (navigation.velocity_mps, navigation.q_nb);
+    for value in [north, east, down, q0, q1, q2, q3] {
+        w.f64(value);
     }
     w.put(&output.health.bits().to_le_bytes());
     w.f64(output.nis);

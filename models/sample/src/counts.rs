@@ -15,6 +15,9 @@ pub const GIMBAL_LSB_RAD: f64 = 1.0 / (1u64 << 27) as f64;
 /// to even, without a call to a library.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
+/// Magnitude from which on a count doesn't fit into an i32.
+const COUNT_LIMIT: f64 = 2_147_483_647.0;
+
 /// One axis of an integrating sensor: turns increments into counts and carries the remainder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -40,7 +43,7 @@ impl Accumulator {
     #[inline]
     pub fn count(&mut self, increment_counts: f64) -> Count {
         let total = self.remainder + increment_counts;
-        if total.abs() < 2_147_483_647.0 {
+        if total.abs() < COUNT_LIMIT {
             let shifted = total + ROUND;
             self.remainder = total - (shifted - ROUND);
             // The integer is in the lowest bits of the mantissa, in two's complement.
@@ -49,6 +52,43 @@ impl Accumulator {
             Count { value: total as i32, saturated: true }
         }
     }
+}
+
+/// Counts the increments of three axes, as [`Accumulator::count`] does one after the other; returns true if one of
+/// them saturated.
+#[inline(always)]
+pub fn count_triad(
+    accumulators: &mut [Accumulator; 3],
+    increments_counts: [f64; 3],
+    counts: &mut [i32; 3],
+) -> bool {
+    let totals = [0, 1, 2].map(|axis| accumulators[axis].remainder + increments_counts[axis]);
+    // One comparison for three axes: none is larger than the sum, and what is no number fails.
+    if !(totals[0].abs() + totals[1].abs() + totals[2].abs() < COUNT_LIMIT) {
+        return count_one_by_one(accumulators, increments_counts, counts);
+    }
+    let shifted = totals.map(|total| total + ROUND);
+    for axis in 0..3 {
+        accumulators[axis].remainder = totals[axis] - (shifted[axis] - ROUND);
+        counts[axis] = shifted[axis].to_bits() as i32;
+    }
+    false
+}
+
+#[cold]
+#[inline(never)]
+fn count_one_by_one(
+    accumulators: &mut [Accumulator; 3],
+    increments_counts: [f64; 3],
+    counts: &mut [i32; 3],
+) -> bool {
+    let mut saturated = false;
+    for axis in 0..3 {
+        let count = accumulators[axis].count(increments_counts[axis]);
+        counts[axis] = count.value;
+        saturated |= count.saturated;
+    }
+    saturated
 }
 
 #[cfg(test)]
@@ -84,5 +124,24 @@ mod tests {
         assert_eq!(accumulator.count(-3e9), Count { value: i32::MIN, saturated: true });
         assert_eq!(accumulator.count(f64::NAN), Count { value: 0, saturated: true });
         assert_eq!(accumulator.count(2.0), Count { value: 2, saturated: false });
+    }
+
+    #[test]
+    fn three_axes_count_as_one_after_the_other() {
+        let values =
+            [0.0, -0.4, 0.5, 1.5, -7.25e8, 7.2e8, 2.147_483_646e9, -3e9, f64::INFINITY, f64::NAN];
+        let (mut triad, mut single) = ([Accumulator::default(); 3], [Accumulator::default(); 3]);
+        for step in 0..1000usize {
+            let increments = [1, 3, 7].map(|stride| values[step * stride / 7 % values.len()]);
+            let mut counts = [0; 3];
+            let saturated = count_triad(&mut triad, increments, &mut counts);
+            let alone = [0, 1, 2].map(|axis| single[axis].count(increments[axis]));
+            assert_eq!(counts, alone.map(|count| count.value), "{increments:?}");
+            assert_eq!(saturated, alone.iter().any(|count| count.saturated), "{increments:?}");
+            assert_eq!(
+                triad.map(|axis| axis.remainder.to_bits()),
+                single.map(|axis| axis.remainder.to_bits())
+            );
+        }
     }
 }

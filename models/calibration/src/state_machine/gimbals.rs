@@ -20,10 +20,15 @@ fn q_cb(gimbal: GimbalAngles) -> UnitQuaternion<f64> {
 
 impl Core {
     #[inline]
-    pub(super) fn compare_gimbals(&mut self, sample: &Sample, health: &mut Health) {
+    pub(super) fn compare_gimbals(
+        &mut self,
+        sample: &Sample,
+        phase_tick: u64,
+        health: &mut Health,
+    ) {
         let Some(cursor) = &self.cursor else { return };
         if sample.status.contains(Status::GIMBAL_INVALID)
-            || self.phase_tick() < cursor.arrival_tick() + self.settle_ticks
+            || phase_tick < cursor.arrival_tick() + self.settle_ticks
             || self.mode == Mode::Refused
         {
             return;

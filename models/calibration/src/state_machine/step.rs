@@ -58,7 +58,7 @@ impl Core {
         if let Some(cursor) = &mut self.cursor {
             cursor.advance(phase_tick);
         }
-        self.compare_gimbals(sample, &mut health);
+        self.compare_gimbals(sample, phase_tick, &mut health);
         if !self.strapdown.is_sound() && self.mode != Mode::Refused {
             // The number that isn't finite was kept out of the solution: the last good one remains.
             health |= Health::NUMERIC;
@@ -135,7 +135,7 @@ impl Core {
     }
 
     /// Navigates over one interval by its raw increments, rad and m/s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn navigate(
         &mut self,
         theta: &Vector3<f64>,
