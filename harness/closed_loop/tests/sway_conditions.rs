@@ -368,8 +368,48 @@ fn squares_of_heading_tilt_and_parameters_are_as_large_as_their_sigma_says() {
         println!("{line}");
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    // One is refused of 300 and one of 60: it is not known whether calm water would refuse it too.
-    assert!(all.len() - good.len() <= 1, "refused");
+    // The same instruments, times and places in calm water.
+    let calm: Vec<Condition> = all
+        .iter()
+        .map(|condition| Condition {
+            acceleration_mps2: 0.0,
+            rotation_rad: 0.0,
+            yaw_rad: 0.0,
+            ..condition.clone()
+        })
+        .collect();
+    let calm = on_two_threads(&calm, |condition| calibrated(condition, None).err());
+    let (refused, in_calm_water) = (all.len() - good.len(), calm.iter().flatten().count());
+    for reason in calm.iter().flatten() {
+        println!("refused in calm water: {reason}");
+    }
+    println!("{refused} refused, {in_calm_water} in calm water");
+    assert!(refused <= in_calm_water + 1, "{refused} {in_calm_water}");
+}
+
+/// First azimuths that are off by three standard deviations of the prior, either way, over the first conditions of
+/// the hypercube: what is learned from them doesn't stay.
+#[test]
+#[ignore = "minutes: run by tests/run"]
+fn large_errors_of_the_first_azimuth_do_not_stay() {
+    let all = conditions(draws(100, 20));
+    let signed: Vec<(usize, Condition)> = all.into_iter().enumerate().collect();
+    let runs = on_two_threads(&signed, |(i, condition)| {
+        let azimuth_rad = if i % 2 == 0 { 18.0 * ARCMIN } else { -18.0 * ARCMIN };
+        calibrated(condition, Some(azimuth_rad))
+    });
+    let good: Vec<&Squares> = runs.iter().filter_map(|run| run.as_ref().ok()).collect();
+    for reason in runs.iter().filter_map(|run| run.as_ref().err()) {
+        println!("refused: {reason}");
+    }
+    for (group, (what, degrees)) in GROUPS.iter().enumerate() {
+        let all_degrees = (good.len() * degrees) as f64;
+        let mean = good.iter().map(|s| s.groups[group]).sum::<f64>() / all_degrees;
+        println!("±18′, {} published, {what}: {mean:.2}", good.len());
+        // Of nine groups one exceeds it with 0.5 %.
+        assert!(mean <= chi_squared_limit(all_degrees, 3.29), "{what}: {mean}");
+    }
+    assert!(runs.len() - good.len() <= 1, "refused");
 }
 
 /// Swell along one axis, for two hours: what the first azimuth was doesn't matter in the end. Axes that are held as
