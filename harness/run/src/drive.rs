@@ -15,7 +15,7 @@ use super::watch::Watcher;
 use octant_endpoint::{Endpoint, Sent};
 use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
-use octant_faults::station::{Delivered, Occurrence};
+use octant_faults::station::{Delivered, Occurrence, Passed};
 use octant_realtime::clock::MonotonicTime;
 use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
@@ -156,12 +156,14 @@ impl Steps {
                 keeper.unit(&event, *number);
             }
         }
-        let these = match faults.after(epoch, output) {
+        let passed = faults.after(epoch, output, (source, endpoint));
+        let these = match passed.delivered {
             _ if !*powered => &[],
             Delivered::Untouched => std::slice::from_ref(epoch),
             Delivered::These(these) => these,
         };
-        let delivered = deliver(source, (epoch, these), endpoint, output, keeper);
+        let clean = Clean { source: epoch, undisturbed: passed.undisturbed.unwrap_or(epoch) };
+        let delivered = deliver(source, (clean, these), endpoint, output, keeper);
         faults.exchanged(endpoint);
         let ended = delivered?;
         faults.tell(|occurrence| keeper.occurrence(occurrence));
@@ -174,7 +176,7 @@ impl Steps {
 #[inline(always)]
 fn deliver<S, E, K>(
     source: &S,
-    (clean, these): (&Epoch, &[Epoch]),
+    (clean, these): (Clean<'_>, &[Epoch]),
     endpoint: &mut E,
     output: &mut Output,
     keeper: &mut K,
@@ -184,7 +186,7 @@ where
     E: Endpoint + ?Sized,
     K: Keeps<S, E>,
 {
-    let step_ns = clean.sample.device_time.ns;
+    let step_ns = clean.source.sample.device_time.ns;
     let (mut told, mut ended) = (false, None);
     for sent in these {
         if keeper.send(endpoint, step_ns, sent, output)? == Sent::Answered {
@@ -232,9 +234,9 @@ pub(super) trait Injects<S: ?Sized, E: ?Sized> {
         Ok(&[])
     }
 
-    /// Acts on the epoch on its way to the core.
-    fn after(&mut self, _epoch: &Epoch, _output: &Output) -> Delivered<'_> {
-        Delivered::Untouched
+    /// Acts on the epoch of the source on its way to the core.
+    fn after(&mut self, _epoch: &Epoch, _output: &Output, _on: (&mut S, &mut E)) -> Passed<'_> {
+        Passed { delivered: Delivered::Untouched, undisturbed: None }
     }
 
     /// Takes up what happened on the wire to the endpoint, on the way there and back.
@@ -270,8 +272,13 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Faulted {
         Ok(self.station.unit_events())
     }
 
-    fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
-        self.station.after(epoch, output)
+    fn after(
+        &mut self,
+        epoch: &Epoch,
+        output: &Output,
+        (source, endpoint): (&mut S, &mut E),
+    ) -> Passed<'_> {
+        self.station.after(epoch, output, &mut Behind(source, endpoint, &mut self.host))
     }
 
     fn exchanged(&mut self, endpoint: &mut E) {
@@ -290,11 +297,20 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Faulted {
     }
 }
 
+/// Epoch of one step before faults altered it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clean<'a> {
+    /// Epoch that the source delivered.
+    pub(super) source: &'a Epoch,
+    /// Epoch that it would have delivered without the faults inside its plant.
+    pub(super) undisturbed: &'a Epoch,
+}
+
 /// Place of an answered epoch among those that one step of the source delivers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum InStep<'a> {
     /// The first one of the step with this clean epoch.
-    First(&'a Epoch),
+    First(Clean<'a>),
     /// A further one of the step with this stamp, or one of an earlier step.
     Further {
         /// Stamp of the source's epoch, ns.
@@ -350,7 +366,7 @@ pub(super) trait Keeps<S: ?Sized, E: Endpoint + ?Sized> {
     ) -> Result<Option<Ended>, RunError>;
 
     /// Takes an epoch of the source that reached no core in its step, or isn't answered yet.
-    fn lost(&mut self, _source: &S, _clean: &Epoch) -> Result<(), RunError> {
+    fn lost(&mut self, _source: &S, _clean: Clean<'_>) -> Result<(), RunError> {
         Ok(())
     }
 
@@ -407,8 +423,8 @@ impl<'a> Books<'a> {
         let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
         match step {
             InStep::First(clean) => {
-                watcher.source(clean);
-                recorder.push(EpochFrame { clean, faulted: sent, output })?;
+                watcher.source(clean.source);
+                recorder.push(EpochFrame { clean: clean.undisturbed, faulted: sent, output })?;
             }
             InStep::Further { step_ns } => {
                 watcher.source_time = Some(DeviceTime { ns: step_ns });
@@ -444,11 +460,11 @@ impl<'a> Books<'a> {
     /// Takes an epoch of the source that reached no core in its step, or isn't answered yet.
     pub(super) fn lost(
         &mut self,
-        clean: &Epoch,
+        clean: Clean<'_>,
         truth: impl FnOnce() -> Option<Truth>,
     ) -> Result<(), RecorderError> {
-        self.watcher.source(clean);
-        self.recorder.lost(clean)?;
+        self.watcher.source(clean.source);
+        self.recorder.lost(clean.undisturbed)?;
         if self.recorder.truth_due()
             && let Some(truth) = truth()
         {

@@ -1,7 +1,7 @@
 //! Runs in simulated time: they wait for nothing, and keep every result at once.
 
 use super::attended::Attended;
-use super::drive::{Books, InStep, Keeps, Line, NoFaults, drive};
+use super::drive::{Books, Clean, InStep, Keeps, Line, NoFaults, drive};
 use super::ended::{Ended, RunError, over};
 use super::measured::Measured;
 use super::watch::Watcher;
@@ -60,7 +60,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
         self.revision = output.parameters_revision;
         let estimate = is_new.then(|| endpoint.parameters());
         let measured = Measured::of(endpoint, output);
-        let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
+        let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean.source, sent));
         let answered = (step, sent, !untouched);
         let additions = (&measured, estimate.as_ref());
         self.books.answered(answered, output, additions, || source.truth())?;
@@ -68,7 +68,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
         Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
     }
 
-    fn lost(&mut self, source: &S, clean: &Epoch) -> Result<(), RunError> {
+    fn lost(&mut self, source: &S, clean: Clean<'_>) -> Result<(), RunError> {
         Ok(self.books.lost(clean, || source.truth())?)
     }
 

@@ -6,9 +6,9 @@ use super::faulted::Faulted;
 use octant_endpoint::Endpoint;
 use octant_faults::Receipt;
 use octant_faults::rule::UnitEvent;
-use octant_faults::station::{Delivered, Occurrence};
+use octant_faults::station::{Delivered, Occurrence, Passed};
 use octant_sample::canonical::{self, AIDING_BYTES, SAMPLE_BYTES};
-use octant_sample::{Epoch, GimbalCommand, Output};
+use octant_sample::{Epoch, GimbalCommand, LargestChange, Output};
 use octant_source::Source;
 
 /// Kind of such faults in receipts.
@@ -47,6 +47,7 @@ struct Altered {
     steps: u64,
     clean: crc32fast::Hasher,
     faulted: crc32fast::Hasher,
+    largest: Option<LargestChange>,
 }
 
 impl Functions {
@@ -71,6 +72,7 @@ impl Functions {
             samples_altered: altered.steps,
             clean_crc32: altered.clean.clone().finalize(),
             faulted_crc32: altered.faulted.clone().finalize(),
+            largest_change: altered.largest,
         };
         self.all.iter().map(receipt).collect()
     }
@@ -90,6 +92,9 @@ impl Functions {
                 altered.first.get_or_insert(number);
                 altered.last = Some(number);
                 altered.steps += 1;
+                if let ([one], [other]) = (before.as_slice(), delivered.as_slice()) {
+                    altered.largest.get_or_insert_default().take(one, other);
+                }
                 before.iter().for_each(|epoch| digest(&mut altered.clean, epoch));
                 delivered.iter().for_each(|epoch| digest(&mut altered.faulted, epoch));
             }
@@ -132,14 +137,15 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Interfered<'_> 
         }
     }
 
-    fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
-        let delivered = match &mut self.faulted {
-            Some(faulted) => Injects::<S, E>::after(&mut **faulted, epoch, output),
-            None => Delivered::Untouched,
+    fn after(&mut self, epoch: &Epoch, output: &Output, on: (&mut S, &mut E)) -> Passed<'_> {
+        let passed = match &mut self.faulted {
+            Some(faulted) => faulted.after(epoch, output, on),
+            None => Passed { delivered: Delivered::Untouched, undisturbed: None },
         };
         if self.functions.is_empty() {
-            return delivered;
+            return passed;
         }
+        let Passed { delivered, undisturbed } = passed;
         let functions = &mut *self.functions;
         functions.delivered.clear();
         let untouched = match delivered {
@@ -153,10 +159,12 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Interfered<'_> 
             }
         };
         let touched = functions.pass(functions.number, output);
-        if untouched && !touched {
-            return Delivered::Untouched;
-        }
-        Delivered::These(&functions.delivered)
+        let delivered = if untouched && !touched {
+            Delivered::Untouched
+        } else {
+            Delivered::These(&functions.delivered)
+        };
+        Passed { delivered, undisturbed }
     }
 
     fn exchanged(&mut self, endpoint: &mut E) {

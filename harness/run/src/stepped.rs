@@ -235,7 +235,11 @@ impl SteppedRun {
             if !source.next(&command, &mut epoch).map_err(RunError::from)? {
                 break;
             }
-            match station.as_mut().map(|station| station.after(&epoch, &output)) {
+            let delivered = station.as_mut().map(|station| {
+                let mut world = Behind(&mut *source, &mut nobody, &mut host);
+                station.after(&epoch, &output, &mut world).delivered
+            });
+            match delivered {
                 None | Some(Delivered::Untouched) => epochs.push(epoch),
                 // The place of a lost or repeated sample shifts all later ones.
                 Some(Delivered::These([one])) => epochs.push(*one),

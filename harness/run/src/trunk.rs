@@ -12,7 +12,7 @@ use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_base::pool::Waiting;
 use octant_endpoint::{Endpoint, InProcess, Tells};
-use octant_faults::station::{Delivered, World};
+use octant_faults::station::{Delivered, Passed, World};
 use octant_recorder::{Recorder, RecorderTrouble};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output, Truth};
@@ -296,11 +296,16 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Waits {
         }
     }
 
-    fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+    fn after(
+        &mut self,
+        epoch: &Epoch,
+        output: &Output,
+        (source, _): (&mut S, &mut E),
+    ) -> Passed<'_> {
         for faulted in self.stations() {
-            faulted.station.after(epoch, output);
+            faulted.station.after(epoch, output, &mut Onlooker(&*source));
         }
-        Delivered::Untouched
+        Passed { delivered: Delivered::Untouched, undisturbed: None }
     }
 }
 

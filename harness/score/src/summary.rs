@@ -193,7 +193,7 @@ pub enum SummaryError {
 #[must_use]
 pub fn results(receipts: &[octant_faults::Receipt]) -> Vec<FaultResult> {
     let one = |receipt: &octant_faults::Receipt| {
-        // A fault that touches no sample (of the plant, of the unit) leaves both checksums empty.
+        // A fault that touches no sample (of the unit) leaves both checksums empty.
         let sums = receipt.fired() && receipt.clean_crc32 != receipt.faulted_crc32;
         let hex = |sum: u32| sums.then(|| format!("{sum:08x}"));
         FaultResult {
@@ -207,6 +207,7 @@ pub fn results(receipts: &[octant_faults::Receipt]) -> Vec<FaultResult> {
             firings: receipt.firings,
             clean_crc32: hex(receipt.clean_crc32),
             faulted_crc32: hex(receipt.faulted_crc32),
+            largest_change: receipt.largest_change,
         }
     };
     receipts.iter().map(one).collect()

@@ -2,14 +2,14 @@
 
 use super::{Epoch, Source, SourceError};
 use octant_plant::config::PlantConfig;
-use octant_plant::{Plant, PlantConfigError, Truth};
+use octant_plant::{ComparedPlant, Plant, PlantConfigError, Truth};
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
 
 /// The simulated instrument, for a fixed number of samples.
 #[derive(Clone, Debug)]
 pub struct PlantSource {
-    plant: Plant,
+    plant: ComparedPlant,
     total: u64,
     left: u64,
 }
@@ -20,7 +20,7 @@ impl PlantSource {
     /// # Errors
     /// If a field of the configuration is out of its range.
     pub fn new(config: &PlantConfig, samples: u64) -> Result<Self, PlantConfigError> {
-        Ok(Self { plant: Plant::new(config)?, total: samples, left: samples })
+        Ok(Self { plant: ComparedPlant::new(config)?, total: samples, left: samples })
     }
 
     /// Sets the number of samples in all; those that it has delivered count.
@@ -33,7 +33,7 @@ impl PlantSource {
     /// Returns the plant.
     #[must_use]
     pub fn plant(&self) -> &Plant {
-        &self.plant
+        self.plant.plant()
     }
 }
 
@@ -50,11 +50,11 @@ impl Source for PlantSource {
 
     /// Returns truth at the stamp of the last epoch; before the first epoch, at time 0.
     fn truth(&self) -> Option<Truth> {
-        Some(self.plant.truth())
+        Some(self.plant().truth())
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
-        Ok(Some(self.plant.temperature_c()))
+        Ok(Some(self.plant().temperature_c()))
     }
 
     fn samples_total(&self) -> Option<u64> {

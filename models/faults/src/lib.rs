@@ -26,6 +26,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod catalogue;
+mod changes;
 pub mod connection;
 mod dimension;
 pub mod host;

@@ -1,13 +1,14 @@
 //! Receipts: the effect of a fault, found by comparison and not reported by the fault.
 
+use crate::changes::CountSums;
 use crate::wire::Altered;
 use alloc::string::String;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
-use octant_sample::{Epoch, GimbalCommand};
+use octant_sample::{Epoch, GimbalCommand, LargestChange};
 use octant_state::{State, StateError, StateReader, Writer};
 
 /// The receipt of one fault.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Receipt {
     /// Id of the fault in the scenario.
     pub id: String,
@@ -21,14 +22,17 @@ pub struct Receipt {
     pub first_sample: Option<u64>,
     /// Last epoch of the source that the fault altered.
     pub last_sample: Option<u64>,
-    /// Epochs that the fault altered. For a fault inside the plant: epochs in which it was active;
-    /// its effect shows in the difference from the run without it. For a fault of the wire: epochs
+    /// Epochs that the fault altered. For a fault inside the plant: those that differ from the epoch of the plant
+    /// without it by more than the remainder that counters carry. For a fault of the wire: epochs
     /// in whose exchange it altered a frame. For a fault of the host: epochs at which it set in.
     pub samples_altered: u64,
     /// CRC-32 of the input of the fault, over the epochs that it altered.
     pub clean_crc32: u32,
     /// CRC-32 of the output of the fault, over the same epochs.
     pub faulted_crc32: u32,
+    /// Largest change of each channel, where the fault alters samples or set points in place: inside the plant, on
+    /// samples and aiding, on set points.
+    pub largest_change: Option<LargestChange>,
 }
 
 impl Receipt {
@@ -47,17 +51,22 @@ pub(crate) struct Ledger {
     altered: u64,
     clean: crc32fast::Hasher,
     faulted: crc32fast::Hasher,
+    largest: Option<LargestChange>,
+    /// Of a fault inside the plant.
+    sums: CountSums,
 }
 
 impl State for Ledger {
     /// The state of a checksum is saved, so that it continues after loading.
     fn save(&self, to: &mut Writer) {
-        let Self { first, last, altered, clean, faulted } = self;
+        let Self { first, last, altered, clean, faulted, largest, sums } = self;
         to.value("first", first);
         to.value("last", last);
         to.value("altered", altered);
         to.value("clean", &clean.clone().finalize());
         to.value("faulted", &faulted.clone().finalize());
+        to.value("largest", largest);
+        to.value("sums", sums);
     }
 
     fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
@@ -67,6 +76,8 @@ impl State for Ledger {
         octant_state::check_count("altered", self.altered)?;
         self.clean = crc32fast::Hasher::new_with_initial(from.value("clean")?);
         self.faulted = crc32fast::Hasher::new_with_initial(from.value("faulted")?);
+        self.largest = from.value("largest")?;
+        self.sums = from.value("sums")?;
         Ok(())
     }
 }
@@ -82,11 +93,24 @@ impl Ledger {
         self.last = Some(epoch);
     }
 
-    /// Counts every epoch after the last one counted, up to this one.
-    pub(crate) fn touched_to(&mut self, epoch: u64) {
-        if let Some(last) = self.last.filter(|last| *last < epoch) {
-            self.altered += epoch - last;
-            self.last = Some(epoch);
+    /// Counts an epoch that the fault altered in place.
+    pub(crate) fn altered_in_place(&mut self, number: u64, clean: &Epoch, faulted: &Epoch) {
+        self.touched(number);
+        self.clean(clean);
+        self.faulted(faulted);
+        self.largest.get_or_insert_default().take(clean, faulted);
+    }
+
+    /// Compares an epoch of the plant without a fault inside it and with it. `remainder` are the counts that the
+    /// remainders of counters make, of a gyro and of an accelerometer.
+    pub(crate) fn compare(
+        &mut self,
+        number: u64,
+        (without, with): (&Epoch, &Epoch),
+        remainder: [i64; 2],
+    ) {
+        if self.sums.is_altered((without, with), remainder) {
+            self.altered_in_place(number, without, with);
         }
     }
 
@@ -123,6 +147,7 @@ impl Ledger {
             into.update(&command.target.azimuth.to_le_bytes());
             into.update(&command.target.roll.to_le_bytes());
         }
+        self.largest.get_or_insert_default().take_command(clean, faulted);
     }
 
     pub(crate) fn receipt(&self, id: &str, kind: &'static str, firings: u32) -> Receipt {
@@ -136,6 +161,7 @@ impl Ledger {
             samples_altered: self.altered,
             clean_crc32: self.clean.clone().finalize(),
             faulted_crc32: self.faulted.clone().finalize(),
+            largest_change: self.largest,
         }
     }
 }

@@ -3,7 +3,8 @@
 //! An epoch passes the station in two steps. [`Station::before`] is called before the source makes
 //! the epoch: triggers are evaluated, and faults of plant and set point act. [`Station::after`] is
 //! called with the epoch that the source has made: faults of samples and delivery act on it, in the
-//! order of the scenario. The effect of an active fault is found by comparing before and after.
+//! order of the scenario. The effect of an active fault is found by comparing before and after; that of a fault inside
+//! the plant by comparing with a plant without it.
 
 mod onsets;
 mod passage;
@@ -66,6 +67,16 @@ pub enum Delivered<'a> {
     These(&'a [Epoch]),
 }
 
+/// Result of the pipeline for an epoch, with what it would have been.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passed<'a> {
+    /// What is delivered.
+    pub delivered: Delivered<'a>,
+    /// The epoch as the plant would have delivered it without faults inside it, to the same set points; `None` if no
+    /// fault inside it has an effect.
+    pub undisturbed: Option<&'a Epoch>,
+}
+
 /// Onset or end of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Occurrence {
@@ -80,7 +91,7 @@ pub struct Occurrence {
 /// Progress of a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// True while the fault lasts or fades.
+    /// True while the fault lasts or fades, and, inside the plant, until its effect is over.
     pub active: bool,
     /// Number of onsets.
     pub firings: u32,
@@ -110,6 +121,8 @@ pub struct Station {
     scene: Option<Scene>,
     /// True if a stage is engaged, or has a condition to be evaluated in every epoch.
     busy: bool,
+    /// True if a fault has disturbed the plant, so that epochs are compared.
+    compares: bool,
     conditions: bool,
     truth: bool,
     /// First epoch from which epochs are remembered.
@@ -118,6 +131,8 @@ pub struct Station {
     commands: bool,
     set_points: SetPoints,
     last: Epoch,
+    /// The present epoch as the plant would have delivered it without faults inside it, if there are any.
+    undisturbed: Epoch,
     flight: Vec<Epoch>,
     landed: Vec<Epoch>,
     /// Capacity of both buffers, epochs.
@@ -172,12 +187,14 @@ impl Station {
             seen: 0,
             scene: None,
             busy: false,
+            compares: false,
             conditions: false,
             truth: false,
             remember: u64::MAX,
             commands: false,
             set_points: SetPoints::default(),
             last: Epoch::default(),
+            undisturbed: Epoch::default(),
             flight: Vec::with_capacity(burst),
             landed: Vec::with_capacity(burst),
             burst,
@@ -248,6 +265,8 @@ impl Station {
             clock,
             ledger: Ledger::default(),
             fresh: false,
+            compares: false,
+            goes_on: false,
         })
     }
 
@@ -256,6 +275,7 @@ impl Station {
         self.wake = self.stages.iter().map(|stage| stage.clock.wake()).min().unwrap_or(u64::MAX);
         self.remember = self.stages.iter().map(Stage::looks_back_from).min().unwrap_or(u64::MAX);
         self.busy = self.conditions || self.stages.iter().any(Stage::engaged);
+        self.compares = self.stages.iter().any(|stage| stage.compares);
     }
 
     /// Prepares the source's next epoch: `command` is the set point from the core for the source,
@@ -309,19 +329,24 @@ impl Station {
     #[inline]
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        !self.busy && self.epoch < self.remember
+        !self.busy && !self.compares && self.epoch < self.remember
     }
 
-    /// Lets faults act on the epoch that the source has made, on its way to the core.
+    /// Compares the epoch that the source has made with those of plants without faults, and lets faults act on it on
+    /// its way to the core.
     #[inline]
-    pub fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+    pub fn after(&mut self, epoch: &Epoch, output: &Output, world: &mut dyn World) -> Passed<'_> {
+        let compared = self.compares && self.compare(epoch, world);
+        let mut touched = false;
         if self.busy {
-            return self.pass(epoch, output);
-        }
-        if self.epoch >= self.remember {
+            touched = self.pass(epoch, output);
+        } else if self.epoch >= self.remember {
             self.last = *epoch;
         }
-        Delivered::Untouched
+        Passed {
+            delivered: if touched { Delivered::These(&self.flight) } else { Delivered::Untouched },
+            undisturbed: compared.then_some(&self.undisturbed),
+        }
     }
 
     fn shared(&self) -> Shared {
@@ -397,9 +422,9 @@ impl Station {
     #[must_use]
     pub fn progress(&self, fault: usize) -> Option<Progress> {
         self.stages.get(fault).map(|stage| Progress {
-            active: stage.acting(),
+            active: stage.acting() || stage.goes_on,
             firings: stage.clock.firings,
-            samples_altered: stage.ledger_at(self.epoch).altered(),
+            samples_altered: stage.ledger.altered(),
         })
     }
 
@@ -432,7 +457,7 @@ impl Station {
             .iter()
             .map(|stage| {
                 let firings = stage.clock.firings;
-                stage.ledger_at(self.epoch).receipt(&stage.id, stage.kind.name, firings)
+                stage.ledger.receipt(&stage.id, stage.kind.name, firings)
             })
             .collect()
     }

@@ -464,6 +464,12 @@ impl Gimbal {
         self.drive.end_s - self.drive.seconds(now_ns)
     }
 
+    /// Returns whether the drive moves, or rests, as that of another gimbal: at a time, and to the same end.
+    pub(crate) fn drives_as(&self, other: &Self, now_ns: u64) -> bool {
+        let at = |drive: &Profile| drive.at(drive.seconds(now_ns));
+        at(&self.drive) == at(&other.drive) && self.drive.end_angle == other.drive.end_angle
+    }
+
     /// Returns whether drive and body rest from a time on.
     #[inline]
     pub(crate) fn rests(&self, from_ns: u64) -> bool {

@@ -98,6 +98,15 @@ impl Triple {
         }
     }
 
+    /// A remainder is within half a count on either side; that of a coarser quantum comes on top.
+    fn remainder_counts(&self) -> i64 {
+        if self.quantum_counts > 0.0 {
+            (libm::ceil(self.quantum_counts) as i64).saturating_add(1)
+        } else {
+            1
+        }
+    }
+
     /// Takes over the noise and the range of another triad. What carries over from sample to sample stays.
     fn tune(&mut self, other: &Self) {
         self.sigma_counts = other.sigma_counts;
@@ -323,6 +332,25 @@ impl Sensors {
     /// Change of the temperature since the start, mean over the sample that began then, K: all changes together.
     pub(crate) fn warmth_k(&self, start_ns: u64) -> f64 {
         self.temperatures.iter().map(|warmth| warmth.mean_change_k(start_ns, self.dt)).sum()
+    }
+
+    /// Returns whether the temperature change of a fault has not returned.
+    pub(crate) fn goes_on(&self, handle: u32, now_ns: u64) -> bool {
+        let mut of_fault = self.temperatures.iter().filter(|it| it.handle == Some(handle));
+        of_fault.any(|warmth| !warmth.is_over(now_ns))
+    }
+
+    /// Returns whether the counters carry the same remainders as those of other sensors.
+    pub(crate) fn counts_as(&self, other: &Self) -> bool {
+        let same = |a: &Triple, b: &Triple| {
+            a.accumulators == b.accumulators && a.quantizers == b.quantizers
+        };
+        same(&self.gyro, &other.gyro) && same(&self.accelerometer, &other.accelerometer)
+    }
+
+    /// Counts by which the remainders of two counters make sums of counts differ, of a gyro and of an accelerometer.
+    pub(crate) fn remainder_counts(&self) -> [i64; 2] {
+        [&self.gyro, &self.accelerometer].map(Triple::remainder_counts)
     }
 
     /// Begins a temperature change by a fault.

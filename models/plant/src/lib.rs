@@ -17,6 +17,7 @@
 //! drawn before a run ([`draw`]). No stream affects another.
 
 mod case;
+mod compared;
 pub mod config;
 pub mod course;
 mod disturbed;
@@ -43,6 +44,7 @@ mod validate;
 mod vibration;
 mod window;
 
+pub use compared::{ComparedPlant, STATE_FORMAT as COMPARED_STATE_FORMAT};
 pub use octant_sample::Truth;
 pub use plant::{Plant, PlantStep, STATE_FORMAT};
 pub use validate::PlantConfigError;

@@ -14,7 +14,7 @@ use crate::validate::{PlantConfigError, validate};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_random::stream::Triad;
-use octant_sample::disturbance::{Disturbance, Disturbed, Motor};
+use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
 
@@ -346,12 +346,15 @@ impl Plant {
     }
 }
 
-impl Disturbed for Plant {
-    fn motor(&self) -> Motor {
+impl Plant {
+    /// State of the turntable.
+    #[must_use]
+    pub fn motor(&self) -> Motor {
         self.body.motor(self.time_ns)
     }
 
-    fn begin(&mut self, handle: u32, disturbance: &Disturbance) {
+    /// Begins a disturbance at the start of the next interval. `handle` identifies it until its end.
+    pub fn begin(&mut self, handle: u32, disturbance: &Disturbance) {
         if let Disturbance::Temperature {
             ramp_kps,
             plateau_k,
@@ -375,14 +378,43 @@ impl Disturbed for Plant {
         self.look_again();
     }
 
-    fn end(&mut self, handle: u32) {
+    /// Ends a disturbance at the start of the next interval.
+    pub fn end(&mut self, handle: u32) {
         self.sensors.cool(handle, self.time_ns);
         self.body.calm(handle, self.time_ns);
         self.look_again();
     }
-}
 
-impl Plant {
+    /// Returns whether a disturbance lasts, or what it has set in motion: not the return of a drive to its set point.
+    pub(crate) fn goes_on(&self, handle: u32) -> bool {
+        self.sensors.goes_on(handle, self.time_ns) || self.body.goes_on(handle, self.time_ns)
+    }
+
+    /// Returns whether both drives move, or rest, as those of another plant at the same time.
+    pub(crate) fn drives_as(&self, other: &Self) -> bool {
+        self.body.drives_as(&other.body, self.time_ns)
+    }
+
+    /// Returns whether every later sample is that of another plant with the same configuration, for the same set points.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let saved = |plant: &Self| {
+            let mut bytes = Vec::new();
+            plant.save(&mut bytes);
+            bytes
+        };
+        self.sensors.counts_as(&other.sensors) && saved(self) == saved(other)
+    }
+
+    /// Number of samples so far.
+    pub(crate) fn samples(&self) -> u64 {
+        self.sequence
+    }
+
+    /// Counts by which the remainders of two counters make sums of counts differ, of a gyro and of an accelerometer.
+    pub(crate) fn remainder_counts(&self) -> [i64; 2] {
+        self.sensors.remainder_counts()
+    }
+
     /// Forgets that the plant is still and that drives rest, and sets the encoder flags anew.
     fn look_again(&mut self) {
         self.is_still = false;

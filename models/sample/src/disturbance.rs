@@ -1,6 +1,7 @@
 //! Disturbances of the physical world by faults. The plant realises them before its sensors
 //! integrate, so that gyros, accelerometers and encoders agree.
 
+use crate::Epoch;
 use alloc::vec::Vec;
 
 /// State of the turntable when a fault sets in.
@@ -180,13 +181,22 @@ pub enum GimbalAction {
     },
 }
 
-/// A plant that can be disturbed.
+/// A plant that can be disturbed. Beside it run the plants without the disturbances, with the same set points and
+/// the same random numbers, from the first onset on, so that effects are found by comparing.
 pub trait Disturbed {
     /// State of the turntable.
     fn motor(&self) -> Motor;
     /// Begins a disturbance at the start of the next interval. `handle` identifies it until its
-    /// end.
+    /// end. Disturbances act in the order of their handles, whatever the order of their onsets.
     fn begin(&mut self, handle: u32, disturbance: &Disturbance);
     /// Ends a disturbance at the start of the next interval.
     fn end(&mut self, handle: u32);
+    /// Returns whether a disturbance, or what it has set in motion, goes on in the next interval: edges, recoil, return.
+    fn goes_on(&self, handle: u32) -> bool;
+    /// Returns the last epoch as the plant would have delivered it with the disturbances of smaller handles alone;
+    /// `None` if this handle has disturbed nothing, or nothing of it is left in the plant.
+    fn without(&self, handle: u32) -> Option<&Epoch>;
+    /// Counts by which a gyro's and an accelerometer's sum of counts can differ between two plants of which the sensors
+    /// felt the same, because their counters carry different remainders.
+    fn remainder_counts(&self) -> [i64; 2];
 }

@@ -19,6 +19,7 @@ use crate::table::Model;
 use crate::values::CellValues;
 use octant_faults::station::{Delivered, World};
 use octant_faults::{FaultSpec, Station};
+use octant_plant::ComparedPlant;
 use octant_plant::config::PlantConfig;
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output, Truth};
@@ -59,7 +60,7 @@ pub fn put(
 /// The plant with its faults.
 #[derive(Clone, Debug)]
 pub struct PlantFmu {
-    plant: octant_plant::Plant,
+    plant: ComparedPlant,
     period_ns: u64,
     with_truth: bool,
     faults: Option<Faults>,
@@ -80,7 +81,7 @@ struct Faults {
 }
 
 /// The plant as the station's world.
-struct Behind<'a>(&'a mut octant_plant::Plant);
+struct Behind<'a>(&'a mut ComparedPlant);
 
 impl World for Behind<'_> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
@@ -88,7 +89,7 @@ impl World for Behind<'_> {
     }
 
     fn truth(&self) -> Option<Truth> {
-        Some(self.0.truth())
+        Some(self.0.plant().truth())
     }
 }
 
@@ -150,7 +151,7 @@ impl PlantFmu {
     /// the next one begins.
     #[inline(never)]
     fn step_faulted(
-        plant: &mut octant_plant::Plant,
+        plant: &mut ComparedPlant,
         faults: &mut Faults,
         command: &mut GimbalCommand,
         epoch: &mut Epoch,
@@ -166,7 +167,7 @@ impl PlantFmu {
         faults.station.begin(NO_OUTPUT, &mut Behind(plant));
         faults.begun = true;
         plant.sample_into(&mut epoch.sample, &mut epoch.aiding);
-        match faults.station.after(epoch, NO_OUTPUT) {
+        match faults.station.after(epoch, NO_OUTPUT, &mut Behind(plant)).delivered {
             Delivered::Untouched => outputs::put(epoch, values),
             // At most one: initialization has checked that.
             Delivered::These([one, ..]) => outputs::put(one, values),
@@ -176,7 +177,7 @@ impl PlantFmu {
     }
 
     fn put_truth(&self, values: &mut CellValues) {
-        outputs::put_truth(&self.plant.truth(), values);
+        outputs::put_truth(&self.plant.plant().truth(), values);
     }
 }
 
@@ -187,7 +188,7 @@ impl ModelComponent for PlantFmu {
 
     fn initialize(values: &mut CellValues) -> Result<Self, PlantFailure> {
         let config = config(values)?;
-        let plant = octant_plant::Plant::new(&config)?;
+        let plant = ComparedPlant::new(&config)?;
         let this = Self {
             plant,
             period_ns: config.sample_period_ns,
@@ -220,7 +221,7 @@ impl ModelComponent for PlantFmu {
         let config = config(values)?;
         // Kinds of faults that are multiples of the noise are those of the new noise.
         let station = match &self.faults {
-            Some(faults) if setup(&config) != setup(self.plant.config()) => {
+            Some(faults) if setup(&config) != setup(self.plant.plant().config()) => {
                 let mut bytes = Vec::new();
                 faults.station.save(&mut bytes);
                 let specs: Vec<FaultSpec> =
@@ -306,11 +307,11 @@ impl PlantFmu {
         let begun = from.value("begun")?;
         let hands = from.value("hands")?;
         from.end()?;
-        let plant = octant_plant::Plant::load(&plant)?;
+        let plant = ComparedPlant::load(&plant)?;
         let wrong = |problem: String| StateError::value("values", problem);
         let unfit = |error: FaultError| wrong(error.to_string());
         let config = config(values).map_err(|error| wrong(error.to_string()))?;
-        if config != *plant.config() {
+        if config != *plant.plant().config() {
             return Err(wrong("the parameters are not those that the plant was made from".into()));
         }
         let mut faults = Faults::of(values, &config).map_err(unfit)?;

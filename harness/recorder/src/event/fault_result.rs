@@ -1,5 +1,6 @@
 //! Result of a fault, as recordings and summaries have it.
 
+use octant_sample::LargestChange;
 use serde::{Deserialize, Serialize};
 
 /// Result of one fault.
@@ -28,6 +29,9 @@ pub struct FaultResult {
     /// CRC-32 of the samples after the alteration.
     #[serde(default)]
     pub faulted_crc32: Option<String>,
+    /// Largest change of each channel, where the fault altered samples or set points in place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_change: Option<LargestChange>,
 }
 
 impl FaultResult {

@@ -12,10 +12,11 @@ use octant_source::Epoch;
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Entry {
-    /// Epoch that the source delivered, with the epoch that reached the core and its answer.
-    Frame { clean: Epoch, faulted: Epoch, answer: Answer },
+    /// Epoch that the source delivered, that which it would have delivered without the faults inside its plant, and
+    /// the epoch that reached the core, with its answer.
+    Frame { source: Epoch, undisturbed: Epoch, faulted: Epoch, answer: Answer },
     /// Epoch that reached no core, or whose answer hasn't come yet.
-    Lost { clean: Epoch, truth: Option<Truth> },
+    Lost { source: Epoch, undisturbed: Epoch, truth: Option<Truth> },
     /// Answer to an additional epoch in a step of the source, or to one of an earlier step.
     Added { step_ns: u64, faulted: Epoch, answer: Answer },
     /// Event of the unit before the epoch of this number.

@@ -2,7 +2,7 @@
 
 use super::entry::{Answer, Broke, Entry};
 use crate::attended::Attended;
-use crate::drive::{InStep, Keeps, Owed};
+use crate::drive::{Clean, InStep, Keeps, Owed};
 use crate::ended::{Ended, RunError, over};
 use crate::measured::Measured;
 use octant_base::control::Control;
@@ -160,7 +160,12 @@ impl<'a> Frames<'a> {
         let measured = Measured::of(endpoint, output);
         let answer = Answer { output: *output, measured, estimate, truth };
         let is_in = self.lay(match step {
-            InStep::First(clean) => Entry::Frame { clean: *clean, faulted: *sent, answer },
+            InStep::First(clean) => Entry::Frame {
+                source: *clean.source,
+                undisturbed: *clean.undisturbed,
+                faulted: *sent,
+                answer,
+            },
             InStep::Further { step_ns } => Entry::Added { step_ns, faulted: *sent, answer },
         });
         if is_in {
@@ -266,9 +271,13 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for Frames<'_> {
         Ok(over(output))
     }
 
-    fn lost(&mut self, source: &S, clean: &Epoch) -> Result<(), RunError> {
-        self.step_ns = clean.sample.device_time.ns;
-        self.lay(Entry::Lost { clean: *clean, truth: source.truth() });
+    fn lost(&mut self, source: &S, clean: Clean<'_>) -> Result<(), RunError> {
+        self.step_ns = clean.source.sample.device_time.ns;
+        self.lay(Entry::Lost {
+            source: *clean.source,
+            undisturbed: *clean.undisturbed,
+            truth: source.truth(),
+        });
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::entry::Entry;
 use super::kept::TimeKeeping;
-use crate::drive::{Books, InStep};
+use crate::drive::{Books, Clean, InStep};
 use octant_recorder::event::Pace;
 use octant_recorder::{Event, RecorderError};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,8 +43,9 @@ pub(super) fn keep(
 
 fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
     match entry {
-        Entry::Frame { clean, faulted, answer } => {
-            let sent = (InStep::First(&clean), &faulted, clean != faulted);
+        Entry::Frame { source, undisturbed, faulted, answer } => {
+            let clean = Clean { source: &source, undisturbed: &undisturbed };
+            let sent = (InStep::First(clean), &faulted, source != faulted);
             books.answered(sent, &answer.output, answer.additions(), || answer.truth)?;
         }
         Entry::Added { step_ns, faulted, answer } => {
@@ -52,7 +53,9 @@ fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
             let sent = (InStep::Further { step_ns }, &faulted, true);
             books.answered(sent, &answer.output, answer.additions(), || answer.truth)?;
         }
-        Entry::Lost { clean, truth } => books.lost(&clean, || truth)?,
+        Entry::Lost { source, undisturbed, truth } => {
+            books.lost(Clean { source: &source, undisturbed: &undisturbed }, || truth)?;
+        }
         Entry::Unit { event, epoch } => books.unit(&event, epoch),
         Entry::Occurrence(occurrence) => books.occurrence(&occurrence),
         Entry::Broke { step_ns, broke } => books.watcher.bench_broke(step_ns, broke.to_string()),

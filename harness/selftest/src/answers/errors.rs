@@ -76,7 +76,9 @@ fn losses(all: &mut Found) -> Result<(), String> {
         let sample = Sample { sequence: n, ..Sample::default() };
         let output = Output::default();
         station.before(&mut GimbalCommand::default(), &output, &mut Nowhere);
-        if let Delivered::These([]) = station.after(&Epoch { sample, aiding: None }, &output) {
+        if let Delivered::These([]) =
+            station.after(&Epoch { sample, aiding: None }, &output, &mut Nowhere).delivered
+        {
             (lost, sum) = (lost + 1, sum + n);
         }
         station.told();
@@ -127,7 +129,9 @@ fn pass(
             station.before(&mut GimbalCommand::default(), &output, &mut Nowhere);
             let sample = Sample { sequence: n, device_time, ..Sample::default() };
             let aiding = reference.map(|reference| Aiding { device_time, reference });
-            if let Delivered::These(epochs) = station.after(&Epoch { sample, aiding }, &output) {
+            if let Delivered::These(epochs) =
+                station.after(&Epoch { sample, aiding }, &output, &mut Nowhere).delivered
+            {
                 for epoch in epochs {
                     for axis in 0..3 {
                         added[axis] += f64::from(epoch.sample.delta_theta[axis]);

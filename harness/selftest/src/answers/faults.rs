@@ -8,7 +8,7 @@ use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{FaultSpec, Setup, Station, Value, Values, kinds};
 use octant_plant::config::{CaseAttitude, Motion, PlantConfig};
-use octant_plant::{Plant, Truth};
+use octant_plant::{ComparedPlant, Truth};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output};
 use std::f64::consts::PI;
@@ -20,14 +20,14 @@ const TRUTH_MARKS: [u64; 4] = [110, 118, 130, 161];
 const FIRST: u64 = 101;
 const SAMPLES: u64 = 400;
 
-struct Behind<'a>(&'a mut Plant);
+struct Behind<'a>(&'a mut ComparedPlant);
 
 impl World for Behind<'_> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         Some(self.0)
     }
     fn truth(&self) -> Option<Truth> {
-        Some(self.0.truth())
+        Some(self.0.plant().truth())
     }
 }
 
@@ -179,7 +179,7 @@ fn suffer(
     let wrong = |what: String| format!("set up the fault {name}: {what}");
     let mut station =
         Station::new(&[spec], &setup(config)).map_err(|(_, error)| wrong(error.to_string()))?;
-    let mut plant = Plant::new(config).map_err(|error| wrong(error.to_string()))?;
+    let mut plant = ComparedPlant::new(config).map_err(|error| wrong(error.to_string()))?;
     let output = Output::default();
     let (mut gyro, mut accelerometer) = ([0i64; 3], [0i64; 3]);
     for n in 1..=MARKS[MARKS.len() - 1] {
@@ -188,7 +188,8 @@ fn suffer(
         station.before(&mut command, &output, &mut Behind(&mut plant));
         let step = plant.step(&command);
         let epoch = Epoch { sample: step.sample, aiding: step.aiding };
-        if station.after(&epoch, &output) != Delivered::Untouched {
+        let passed = station.after(&epoch, &output, &mut Behind(&mut plant));
+        if passed.delivered != Delivered::Untouched {
             return Err(wrong("it altered a sample on its way".to_owned()));
         }
         station.told();
@@ -197,7 +198,7 @@ fn suffer(
             accelerometer[axis] += i64::from(step.sample.delta_velocity[axis]);
         }
         if name == "shock" && TRUTH_MARKS.contains(&n) {
-            let truth = plant.truth();
+            let truth = plant.plant().truth();
             for (axis, label) in ["north", "east", "down"].into_iter().enumerate() {
                 found.insert(format!("{name}, velocity {label}, {n}"), truth.velocity_mps[axis]);
             }

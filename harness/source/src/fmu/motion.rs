@@ -13,7 +13,7 @@ use octant_mapping::find::ValueWay;
 use octant_mapping::stepper::Stepper;
 use octant_plant::config::{CaseAttitude, Dockside, Motion, PlantConfig, PlantSite};
 use octant_plant::course::{Course, CoursePoint};
-use octant_plant::{Plant, PlantConfigError, Truth};
+use octant_plant::{ComparedPlant, PlantConfigError, Truth};
 use octant_recorder::event::BenchRecord;
 use octant_sample::GimbalCommand;
 use octant_sample::disturbance::Disturbed;
@@ -247,7 +247,7 @@ pub(super) fn on_a_course(config: &PlantConfig) -> PlantConfig {
 
 /// The plant on a case that an FMU moves.
 pub(crate) struct MovedPlant {
-    plant: Plant,
+    plant: ComparedPlant,
     moving: Moving,
     course: Course,
     /// Number of samples in a piece; `left_in_piece` counts those left of the present one.
@@ -266,7 +266,8 @@ impl MovedPlant {
         samples: u64,
         samples_a_piece: u64,
     ) -> Result<Self, SourceError> {
-        let plant = Plant::new(&on_a_course(config)).map_err(|error| refused(&moving, &error))?;
+        let plant =
+            ComparedPlant::new(&on_a_course(config)).map_err(|error| refused(&moving, &error))?;
         let Some(course) = moving.piece(0)? else {
             return Err(moving.gone("it ended within the first steps".to_owned()));
         };
@@ -315,11 +316,11 @@ impl Source for MovedPlant {
     }
 
     fn truth(&self) -> Option<Truth> {
-        Some(self.plant.truth())
+        Some(self.plant.plant().truth())
     }
 
     fn temperature_c(&mut self) -> Result<Option<f64>, SourceError> {
-        Ok(Some(self.plant.temperature_c()))
+        Ok(Some(self.plant.plant().temperature_c()))
     }
 
     fn samples_total(&self) -> Option<u64> {

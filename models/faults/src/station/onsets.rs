@@ -21,12 +21,11 @@ impl Station {
         let events = self.events.len();
         for index in 0..self.stages.len() {
             let stage = &mut self.stages[index];
-            if stage.acts_unseen() {
-                stage.ledger.touched_to(self.epoch - 1);
-            }
             let ticked = stage.clock.tick(self.epoch);
             if ticked.ended {
                 end(stage, index as u32, world);
+            }
+            if stage.is_over(index as u32, ticked.ended, world) {
                 self.tell(index, false);
                 self.tell_others(index);
             }
@@ -118,8 +117,8 @@ impl Station {
                 }
                 self.events.extend(event);
             }
-            FaultRule::Plant(_) => stage.ledger.touched(shared.epoch),
-            FaultRule::Command(_)
+            FaultRule::Plant(_)
+            | FaultRule::Command(_)
             | FaultRule::Samples(_)
             | FaultRule::Delivery(_)
             | FaultRule::Wire(_)
@@ -128,10 +127,25 @@ impl Station {
     }
 }
 
+impl Stage {
+    /// Returns whether the fault is over at this epoch, once: with its `end`, or, inside the plant, as soon after it as
+    /// nothing that it set in motion goes on.
+    fn is_over(&mut self, handle: u32, end: bool, world: &mut dyn World) -> bool {
+        if !matches!(self.rule, FaultRule::Plant(_)) {
+            return end;
+        }
+        let went_on = self.goes_on || end;
+        let mut moves = || world.disturbed().is_some_and(|plant| plant.goes_on(handle));
+        self.goes_on = self.goes_on && (self.acting() || moves());
+        went_on && !self.goes_on && !self.acting()
+    }
+}
+
 fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn World) {
     if let (FaultRule::Plant(rule), Some(plant)) = (&mut stage.rule, world.disturbed()) {
         let disturbance = rule.begin(now, &plant.motor());
         plant.begin(handle, &disturbance);
+        (stage.compares, stage.goes_on) = (true, true);
     }
     if let (FaultRule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
         wire.begin(handle, &rule.begin(now));

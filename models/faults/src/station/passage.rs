@@ -1,13 +1,39 @@
 //! Passage of an epoch through the faults of samples and delivery.
 
-use super::{Delivered, Station};
+use super::{Station, World};
 use crate::catalogue::Lasts;
 use crate::rule::{Context, FaultRule};
 use octant_sample::{Epoch, Output};
 
 impl Station {
+    /// Compares the plant's epoch, fault by fault from the last one on, with those of the plants without them. Returns
+    /// whether there is one.
     #[inline(never)]
-    pub(super) fn pass(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+    pub(super) fn compare(&mut self, epoch: &Epoch, world: &mut dyn World) -> bool {
+        let (number, mut with) = (self.epoch, *epoch);
+        self.compares = false;
+        let mut plant = world.disturbed();
+        for (handle, stage) in self.stages.iter_mut().enumerate().rev() {
+            if !stage.compares {
+                continue;
+            }
+            let found = plant.as_deref_mut().and_then(|plant| {
+                plant.without(handle as u32).map(|without| (*without, plant.remainder_counts()))
+            });
+            stage.compares = found.is_some();
+            if let Some((without, remainder)) = found {
+                stage.ledger.compare(number, (&without, &with), remainder);
+                with = without;
+                self.compares = true;
+            }
+        }
+        self.undisturbed = with;
+        self.compares
+    }
+
+    /// Lets faults act on the epoch. Returns whether one did: what is delivered is then in flight.
+    #[inline(never)]
+    pub(super) fn pass(&mut self, epoch: &Epoch, output: &Output) -> bool {
         let shared = self.shared();
         self.flight.clear();
         self.flight.push(*epoch);
@@ -35,9 +61,7 @@ impl Station {
                             rule.afterwards(epoch, &now);
                         }
                         if !epoch.same_bits(&clean) {
-                            stage.ledger.touched(shared.epoch);
-                            stage.ledger.clean(&clean);
-                            stage.ledger.faulted(epoch);
+                            stage.ledger.altered_in_place(shared.epoch, &clean, epoch);
                         }
                     }
                 }
@@ -62,7 +86,7 @@ impl Station {
         }
         self.last = *epoch;
         self.plan();
-        if engaged { Delivered::These(&self.flight) } else { Delivered::Untouched }
+        engaged
     }
 }
 

@@ -17,6 +17,10 @@ pub(super) struct Stage {
     pub(super) ledger: Ledger,
     /// True if the fault has set in and its rule hasn't seen an epoch since.
     pub(super) fresh: bool,
+    /// True if the fault has disturbed the plant and a plant without it is beside it.
+    pub(super) compares: bool,
+    /// True from the onset of a fault inside the plant until its effect is over.
+    pub(super) goes_on: bool,
 }
 
 impl Stage {
@@ -31,25 +35,11 @@ impl Stage {
             FaultRule::Delivery(rule) => self.acting() || rule.holds() > 0,
             FaultRule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
             FaultRule::Command(_) | FaultRule::Unit(_) | FaultRule::Wire(_) => self.acting(),
-            // Between onset and end the plant or the host realises the fault alone.
-            FaultRule::Plant(_) | FaultRule::Host(_) => false,
+            // Between onset and end the plant realises the fault alone, then its effect may go on.
+            FaultRule::Plant(_) => self.goes_on && !self.acting(),
+            // The host realises the fault alone.
+            FaultRule::Host(_) => false,
         }
-    }
-
-    /// Returns the ledger with the epochs up to this one in which the fault acted in the plant,
-    /// uncounted so far.
-    pub(super) fn ledger_at(&self, epoch: u64) -> Ledger {
-        let mut ledger = self.ledger.clone();
-        if self.acts_unseen() {
-            ledger.touched_to(epoch);
-        }
-        ledger
-    }
-
-    /// Returns whether the fault acts in the plant, which needs no call between its onset and its
-    /// end.
-    pub(super) fn acts_unseen(&self) -> bool {
-        matches!(self.rule, FaultRule::Plant(_)) && self.acting()
     }
 
     /// Returns whether the fault's instant passed while faults before it held every epoch back: the

@@ -14,7 +14,7 @@ use octant_state::{State, StateError, StateFormat, StateReader, Writer, check_be
 /// Format of the state of a station. Raise the version when the layout changes; a test compares the
 /// layout with the stored one.
 pub const FORMAT: StateFormat =
-    StateFormat { magic: "OCTANTST", version: 1, what: "the state of a station of faults" };
+    StateFormat { magic: "OCTANTST", version: 2, what: "the state of a station of faults" };
 
 impl Station {
     /// Appends everything that the station needs to continue bit for bit after this epoch: the same
@@ -57,6 +57,7 @@ impl State for Station {
             // Follows from the other fields.
             wake: _,
             busy: _,
+            compares: _,
             remember: _,
             seen,
             scene,
@@ -66,6 +67,7 @@ impl State for Station {
             set_points,
             last,
             // Filled and emptied within an epoch.
+            undisturbed: _,
             flight: _,
             landed: _,
             burst: _,
@@ -83,10 +85,11 @@ impl State for Station {
         to.value("without_power", without_power);
         for stage in stages {
             to.value("fault", &stage.name());
-            let Stage { id: _, kind: _, rule, clock, ledger: _, fresh } = stage;
+            let Stage { id: _, kind: _, rule, clock, ledger, fresh, compares, goes_on } = stage;
             to.value("fresh", fresh);
+            to.value("plant", &(compares, goes_on));
             to.part("clock", clock);
-            to.part("ledger", &stage.ledger_at(*epoch));
+            to.part("ledger", ledger);
             to.part("rule", rule);
         }
     }
@@ -113,6 +116,7 @@ impl State for Station {
                 return Err(StateError::value("fault", problem.to_string()));
             }
             stage.fresh = from.value("fresh")?;
+            (stage.compares, stage.goes_on) = from.value("plant")?;
             from.part("clock", &mut stage.clock)?;
             stage.clock.check(self.epoch)?;
             from.part("ledger", &mut stage.ledger)?;

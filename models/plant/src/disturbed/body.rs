@@ -88,13 +88,26 @@ impl Body {
         self.look_again();
         match self.registry.leave(handle) {
             Some(Lasting::LeverArm(_)) => self.set_lever_arms(now_ns),
-            Some(Lasting::Gimbal(gimbal, action)) => self.calm_gimbal(gimbal, action, now_ns),
+            Some(Lasting::Gimbal(gimbal, action)) => {
+                self.calm_gimbal(handle, gimbal, action, now_ns);
+            }
             None => {}
         }
         if let Some(active) = &mut self.active {
             active.end(handle, now_ns);
         }
         self.plan();
+    }
+
+    /// Returns whether the disturbance of a handle lasts, or a motion that it began is under way.
+    pub(crate) fn goes_on(&self, handle: u32, now_ns: u64) -> bool {
+        self.registry.holds(handle)
+            || self.active.as_ref().is_some_and(|active| active.goes_on(handle, now_ns))
+    }
+
+    /// Returns whether both drives move, or rest, as those of another body.
+    pub(crate) fn drives_as(&self, other: &Self, now_ns: u64) -> bool {
+        self.azimuth.drives_as(&other.azimuth, now_ns) && self.roll.drives_as(&other.roll, now_ns)
     }
 
     fn active(&mut self) -> &mut Active {
@@ -164,6 +177,7 @@ impl Body {
         match action {
             GimbalAction::Slip { angle_rad, within_s, seen } => {
                 self.active().slips.push(Slip {
+                    handle,
                     gimbal,
                     from_ns: now_ns,
                     angle_rad: finite(angle_rad),
@@ -185,7 +199,7 @@ impl Body {
         self.set_harm(gimbal);
     }
 
-    fn calm_gimbal(&mut self, gimbal: usize, action: GimbalAction, now_ns: u64) {
+    fn calm_gimbal(&mut self, handle: u32, gimbal: usize, action: GimbalAction, now_ns: u64) {
         self.set_harm(gimbal);
         match action {
             GimbalAction::Stall | GimbalAction::Runaway { .. } => self.hold(gimbal, now_ns),
@@ -194,6 +208,7 @@ impl Body {
                 let out = self.gimbal_mut(gimbal).change_play(half, now_ns);
                 if out != 0.0 {
                     self.active().slips.push(Slip {
+                        handle,
                         gimbal,
                         from_ns: now_ns,
                         angle_rad: -out,
@@ -276,9 +291,10 @@ impl Body {
         }
         let rings: Vec<Ring> = self
             .registry
-            .of(gimbal)
-            .filter_map(|action| match action {
+            .with_handles(gimbal)
+            .filter_map(|(handle, action)| match action {
                 GimbalAction::Ringing { amplitude_rad, frequency_hz, decay_s } => Some(Ring {
+                    handle,
                     gimbal,
                     from_ns: now_ns,
                     delay_s,

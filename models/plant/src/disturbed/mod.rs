@@ -69,6 +69,19 @@ impl Active {
         shakes.for_each(|shake| shake.span.end(handle, now_ns));
     }
 
+    /// Returns whether a motion of a handle is under way.
+    fn goes_on(&self, handle: u32, now_ns: u64) -> bool {
+        let shakes = self.vibrations.iter().chain(&self.sways);
+        shakes.filter(|shake| shake.span.handle == handle).any(|shake| !shake.is_over(now_ns))
+            || self.shocks.iter().any(|shock| shock.span.handle == handle && !shock.is_over(now_ns))
+            || self
+                .excursions
+                .iter()
+                .any(|excursion| excursion.span.handle == handle && !excursion.is_over(now_ns))
+            || self.slips.iter().any(|slip| slip.handle == handle && !slip.is_over(now_ns))
+            || self.rings.iter().any(|ring| ring.handle == handle && !ring.is_over(now_ns))
+    }
+
     /// Removes the motions that are over.
     fn settle(&mut self, now_ns: u64) {
         self.vibrations.retain(|vibration| !vibration.is_over(now_ns));

@@ -39,10 +39,23 @@ impl Registry {
 
     /// Actions of faults on a gimbal.
     pub(super) fn of(&self, gimbal: usize) -> impl Iterator<Item = GimbalAction> + '_ {
-        self.all.iter().filter_map(move |(_, lasting)| match lasting {
-            Lasting::Gimbal(known, action) if *known == gimbal => Some(*action),
+        self.with_handles(gimbal).map(|(_, action)| action)
+    }
+
+    /// Actions of faults on a gimbal, with their handles.
+    pub(super) fn with_handles(
+        &self,
+        gimbal: usize,
+    ) -> impl Iterator<Item = (u32, GimbalAction)> + '_ {
+        self.all.iter().filter_map(move |(handle, lasting)| match lasting {
+            Lasting::Gimbal(known, action) if *known == gimbal => Some((*handle, *action)),
             _ => None,
         })
+    }
+
+    /// Returns whether the disturbance of a handle has not ended.
+    pub(super) fn holds(&self, handle: u32) -> bool {
+        self.all.iter().any(|(known, _)| *known == handle)
     }
 
     /// Returns whether an encoder flags its angle as invalid.

@@ -11,6 +11,7 @@ fn axis([angle, rate, acceleration]: [f64; 3]) -> AxisState {
 /// Slip: the body turns against its drive and stays there.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Slip {
+    pub(super) handle: u32,
     pub(super) gimbal: usize,
     pub(super) from_ns: u64,
     pub(super) angle_rad: f64,
@@ -44,6 +45,7 @@ const DECAYS: f64 = 30.0;
 /// Ringing of the body about the target after a move.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Ring {
+    pub(super) handle: u32,
     pub(super) gimbal: usize,
     /// Start of the move, and its duration.
     pub(super) from_ns: u64,
