@@ -99,7 +99,7 @@ fn cost(criterion: &mut Criterion) {
                     let mut command = output.gimbal_command;
                     station.before(&mut command, output, &mut Recorded);
                     black_box(&mut command);
-                    match station.after(epoch, output) {
+                    match station.after(epoch, output, &mut Recorded).delivered {
                         Delivered::Untouched => take(epoch),
                         Delivered::These(epochs) => epochs.iter().for_each(take),
                     }

@@ -29,7 +29,7 @@ fn run_on(specs: &[FaultSpec], epochs: u64, source: impl Fn(u64) -> Epoch) -> Ou
         let output = Output::default();
         station.before(&mut GimbalCommand::default(), &output, &mut world);
         let epoch = source(k);
-        match station.after(&epoch, &output) {
+        match station.after(&epoch, &output, &mut world).delivered {
             Delivered::Untouched => outcome.delivered.push((k, epoch)),
             Delivered::These(epochs) => outcome.delivered.extend(epochs.iter().map(|e| (k, *e))),
         }

@@ -398,7 +398,7 @@ fn components_of_a_position_are_latitude_longitude_and_height() {
                 let reference = Reference::Position { latitude_rad, longitude_rad, height_m };
                 right.aiding = right.aiding.map(|aiding| Aiding { reference, ..aiding });
             }
-            match station.after(&epoch, &output) {
+            match station.after(&epoch, &output, &mut common::Log::default()).delivered {
                 Delivered::Untouched => assert_ne!(k, 2),
                 Delivered::These(out) => assert_eq!((k, out), (2, &[right][..])),
             }

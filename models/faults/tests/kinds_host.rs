@@ -84,7 +84,8 @@ fn each_onset_is_raised_once_and_no_sample_altered() {
                 host.epoch = k;
                 let mut command = GimbalCommand::default();
                 station.before(&mut command, &Output::default(), &mut host);
-                let delivered = station.after(&Epoch::default(), &Output::default());
+                let delivered =
+                    station.after(&Epoch::default(), &Output::default(), &mut host).delivered;
                 assert_eq!(delivered, Delivered::Untouched);
                 station.told();
             }

@@ -1,6 +1,6 @@
 //! The pipeline: order, receipts, triggers.
 
-use crate::common::{self, clean, fault, run, run_with, setup};
+use crate::common::{self, EACH, TAIL, clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
 use octant_faults::trigger::{Repeat, Schedule, Signal, ThresholdSide, Trigger};
@@ -160,7 +160,7 @@ fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
         }
         station.begin(&output, &mut world);
         station.command(&mut GimbalCommand::default(), &output);
-        if station.after(&clean(k), &output) != Delivered::Untouched {
+        if station.after(&clean(k), &output, &mut world).delivered != Delivered::Untouched {
             altered.push(k);
         }
         if station.progress(0).unwrap().active {
@@ -174,31 +174,49 @@ fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
     assert_eq!(station.progress(1), None);
 }
 
-/// A fault inside the plant isn't called while it lasts: its receipt counts every epoch all the
-/// same, at any time, across saving and loading, and in a second firing.
+/// A fault inside the plant isn't called while it lasts; its effect is compared in every epoch, and goes on after its
+/// end. It is over when its effect is, and then the faults that wait for it set in; across saving and loading, and in a
+/// second firing.
 #[test]
-fn a_fault_inside_the_plant_counts_its_epochs_unseen() {
+fn a_fault_inside_the_plant_is_over_when_its_effect_is() {
     let mut slip = fault(
         "encoder-slip",
-        &[("gimbal", Value::Choice("azimuth")), ("angle", Value::Quantity(0.01, Dimension::Angle))],
+        &[
+            ("gimbal", Value::Choice("azimuth")),
+            ("angle", Value::Quantity(0.01, Dimension::Angle)),
+            ("flagged", Value::Flag(false)),
+        ],
         11,
         100,
     );
     slip.schedule.repeat = Repeat::Times { times: 2, every: 200 };
-    let spike = FaultSpec { id: "spike".into(), ..spike(100.0, 50, 3) };
-    let specs = [slip, spike];
+    let mut after = triggered(Trigger::After { fault: slip.id.clone(), delay: 0 }, 1);
+    after.id = "after".into();
+    after.schedule.repeat = Repeat::EveryTime;
+    let specs = [slip, FaultSpec { id: "spike".into(), ..spike(100.0, 50, 3) }, after];
     let mut station = Station::new(&specs, &setup()).unwrap();
     let (mut world, output) = (common::Log::default(), Output::default());
-    let (mut expected, mut looked) = (0, 0);
+    let (mut expected, mut looked) = (0, Vec::new());
+    let mut occurrences = Vec::new();
+    let lasts = |k: u64| (11..111 + TAIL).contains(&k) || (211..311 + TAIL).contains(&k);
     for k in 1..=400u64 {
         station.begin(&output, &mut world);
-        let active = (11..111).contains(&k) || (211..311).contains(&k);
-        expected += u64::from(active);
+        let epoch = clean(k);
+        world.deliver(&epoch);
+        let passed = station.after(&epoch, &output, &mut world);
+        let spiked = [50, 51, 52, 111 + TAIL, 311 + TAIL].contains(&k);
+        assert_eq!(passed.delivered != Delivered::Untouched, spiked, "epoch {k}");
+        let mut without = epoch;
+        without.sample.delta_theta[0] -= EACH;
+        assert_eq!(passed.undisturbed, lasts(k).then_some(&without), "epoch {k}");
+        expected += u64::from(lasts(k));
         let progress = station.progress(0).unwrap();
-        assert_eq!((progress.active, progress.samples_altered), (active, expected), "epoch {k}");
-        looked += u64::from(!station.is_idle());
-        let spiked = station.after(&clean(k), &output) != Delivered::Untouched;
-        assert_eq!(spiked, (50..53).contains(&k), "epoch {k}");
+        assert_eq!((progress.active, progress.samples_altered), (lasts(k), expected), "epoch {k}");
+        if !station.is_idle() {
+            looked.push(k);
+        }
+        occurrences.extend(station.occurrences().iter().map(|it| (it.fault, it.begins, it.epoch)));
+        station.told();
         if k % 7 == 0 {
             let mut bytes = Vec::new();
             station.save(&mut bytes);
@@ -206,8 +224,16 @@ fn a_fault_inside_the_plant_counts_its_epochs_unseen() {
         }
     }
     let receipt = &station.receipts()[0];
-    assert_eq!((receipt.first_sample, receipt.last_sample), (Some(11), Some(310)));
-    assert_eq!((receipt.firings, receipt.samples_altered), (2, 200));
+    assert_eq!((receipt.first_sample, receipt.last_sample), (Some(11), Some(310 + TAIL)));
+    assert_eq!((receipt.firings, receipt.samples_altered), (2, 200 + 2 * TAIL));
+    let largest = receipt.largest_change.unwrap();
+    assert_eq!(largest.delta_theta, [EACH as u32, 0, 0]);
     assert_eq!(world.ended, [0, 0]);
-    assert_eq!(looked, 3, "only what acts on samples makes work");
+    let of_slip: Vec<_> = occurrences.into_iter().filter(|it| it.0 == 0).collect();
+    let (one, other) = (111 + TAIL, 311 + TAIL);
+    assert_eq!(of_slip, [(0, true, 11), (0, false, one), (0, true, 211), (0, false, other)]);
+    assert!(
+        looked.iter().all(|k| lasts(*k) || (50..54).contains(k) || lasts(*k - 1)),
+        "{looked:?}"
+    );
 }

@@ -3,6 +3,7 @@
 //! the delivered stream. A kind is covered as soon as it is in the catalogue.
 
 mod draw;
+mod fading;
 mod plain;
 mod state;
 
@@ -65,6 +66,8 @@ fn answer(k: u64) -> Output {
 /// Record of a run.
 #[derive(Debug, PartialEq)]
 struct Told {
+    /// Epochs of the source without the disturbances of the first fault and of those after it.
+    without: Vec<Epoch>,
     /// Epochs delivered for each epoch of the source.
     delivered: Vec<Vec<Epoch>>,
     commands: Vec<GimbalCommand>,
@@ -81,6 +84,7 @@ fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
     let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
     let (mut delivered, mut commands) = (Vec::new(), Vec::new());
     let (mut occurrences, mut events) = (Vec::new(), Vec::new());
+    let mut without = Vec::new();
     for k in 1..=EPOCHS {
         if k == 20 {
             specs.iter().for_each(|spec| {
@@ -93,7 +97,9 @@ fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
         station.before(&mut command, &output, &mut log);
         commands.push(command);
         let epoch = source(k);
-        delivered.push(match station.after(&epoch, &output) {
+        log.deliver(&epoch);
+        without.push(log.delivered_without(0, epoch));
+        delivered.push(match station.after(&epoch, &output, &mut log).delivered {
             Delivered::Untouched => vec![epoch],
             Delivered::These(epochs) => epochs.to_vec(),
         });
@@ -103,6 +109,7 @@ fn run(specs: &[FaultSpec]) -> Result<Told, (String, FaultBuildError)> {
     }
     let (begun, ended) = (log.begun.len(), log.ended.len());
     Ok(Told {
+        without,
         delivered,
         commands,
         occurrences,
@@ -163,7 +170,7 @@ fn receipt_is_sound(told: &Told, index: usize) {
     }
 }
 
-/// Epochs in which the fault was active, fading included.
+/// Epochs in which the fault was active, fading included, and inside the plant until its effect was over.
 fn active(told: &Told) -> Vec<u64> {
     let is = |k: u64| {
         let mut until = told.occurrences.iter().filter(|it| it.epoch <= k);
@@ -208,7 +215,16 @@ fn one_fault_adds_up(spec: &FaultSpec, told: &Told) {
         Acts::Plant => {
             assert_eq!(told.begun, receipt.firings as usize);
             assert!(told.ended == told.begun || told.ended + 1 == told.begun);
-            active(told)
+            let epochs: Vec<Epoch> = (1..=EPOCHS).map(source).collect();
+            let differ: Vec<usize> =
+                (0..epochs.len()).filter(|k| epochs[*k] != told.without[*k]).collect();
+            let of =
+                |all: &[Epoch]| crc32(&bytes(&differ.iter().map(|k| all[*k]).collect::<Vec<_>>()));
+            assert_eq!(receipt.clean_crc32, of(&told.without));
+            assert_eq!(receipt.faulted_crc32, of(&epochs));
+            let numbers: Vec<u64> = differ.iter().map(|k| *k as u64 + 1).collect();
+            assert_eq!(numbers, active(told), "the end is told when the effect is over");
+            numbers
         }
         // Effects on the unit are reported as events, not epoch by epoch.
         _ => return,

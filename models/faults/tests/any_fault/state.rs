@@ -28,25 +28,29 @@ struct Step {
     receipts: Vec<Receipt>,
 }
 
-fn step(station: &mut Station, specs: &[FaultSpec], k: u64) -> Step {
+fn step((station, log): (&mut Station, &mut Log), specs: &[FaultSpec], k: u64) -> Step {
     if k == 20 {
         for spec in specs {
             station.fire(&spec.id);
         }
     }
-    let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
+    log.truth = Some(Truth::default());
+    log.begun.clear();
+    log.ended.clear();
     let output = answer(k - 1);
     let mut command = output.gimbal_command;
-    station.before(&mut command, &output, &mut log);
+    station.before(&mut command, &output, log);
     let epoch = source(k);
-    let delivered = match station.after(&epoch, &output) {
+    log.deliver(&epoch);
+    let delivered = match station.after(&epoch, &output, log).delivered {
         Delivered::Untouched => bytes(&[epoch]),
         Delivered::These(epochs) => bytes(epochs),
     };
     let (events, occurrences) = (station.unit_events().to_vec(), station.occurrences().to_vec());
     station.told();
     let receipts = station.receipts();
-    Step { delivered, command, events, occurrences, begun: log.begun, ended: log.ended, receipts }
+    let (begun, ended) = (log.begun.clone(), log.ended.clone());
+    Step { delivered, command, events, occurrences, begun, ended, receipts }
 }
 
 fn saved(station: &Station) -> Vec<u8> {
@@ -61,12 +65,12 @@ fn load(specs: &[FaultSpec], bytes: &[u8]) -> Result<Station, StateError> {
 
 /// Runs a station, and beside it copies made at some epochs by saving and loading, and by cloning.
 fn goes_on(specs: &[FaultSpec], points: &[u64]) {
-    let mut station = Station::new(specs, &setup()).unwrap();
-    let mut copies = Vec::new();
+    let (mut station, mut log) = (Station::new(specs, &setup()).unwrap(), Log::default());
+    let mut copies: Vec<(Station, Log)> = Vec::new();
     for k in 1..=EPOCHS {
-        let expected = step(&mut station, specs, k);
-        for copy in &mut copies {
-            let found = step(copy, specs, k);
+        let expected = step((&mut station, &mut log), specs, k);
+        for (copy, log) in &mut copies {
+            let found = step((copy, log), specs, k);
             assert_eq!(
                 format!("{found:?}"),
                 format!("{expected:?}"),
@@ -75,12 +79,12 @@ fn goes_on(specs: &[FaultSpec], points: &[u64]) {
             );
         }
         if points.contains(&k) {
-            copies.push(load(specs, &saved(&station)).unwrap());
-            copies.push(station.clone());
+            copies.push((load(specs, &saved(&station)).unwrap(), log.clone()));
+            copies.push((station.clone(), log.clone()));
         }
     }
     let bytes = saved(&station);
-    assert!(copies.iter().all(|copy| saved(copy) == bytes), "{}", specs[0].kind.name);
+    assert!(copies.iter().all(|(copy, _)| saved(copy) == bytes), "{}", specs[0].kind.name);
 }
 
 /// A fault that lasts from epoch 15 to 300, then fades if it can; twice.
@@ -121,7 +125,7 @@ fn a_station_of_other_faults_does_not_take_it() {
     let (one, other) =
         (long(kinds::named("spike").unwrap(), "a"), long(kinds::named("spike").unwrap(), "b"));
     let mut station = Station::new(std::slice::from_ref(&one), &setup()).unwrap();
-    step(&mut station, &[], 1);
+    step((&mut station, &mut Log::default()), &[], 1);
     let bytes = saved(&station);
     assert!(load(std::slice::from_ref(&one), &bytes).is_ok());
     let said = |specs: &[FaultSpec]| load(specs, &bytes).unwrap_err().to_string();
@@ -140,8 +144,9 @@ fn the_layout_is_the_stored_one() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
     let specs = all_at_once();
     let mut station = Station::new(&specs, &setup()).unwrap();
+    let mut log = Log::default();
     for k in 1..=60 {
-        step(&mut station, &specs, k);
+        step((&mut station, &mut log), &specs, k);
     }
     let outlines = [("every kind", Writer::outline(&station))];
     assert_layout(&format!("{folder}/station.txt"), STATE_FORMAT.version, &outlines);
@@ -153,6 +158,22 @@ fn the_layout_is_the_stored_one() {
     }
     let stored = std::fs::read(&path).unwrap();
     assert_eq!(saved(&load(&specs, &stored).unwrap()), stored);
+}
+
+/// What an earlier version lacked can't be made up.
+#[test]
+fn a_state_of_an_earlier_version_is_refused_in_words() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
+    let specs = all_at_once();
+    for version in 1..STATE_FORMAT.version {
+        let stored = std::fs::read(format!("{folder}/station-{version}.bin")).unwrap();
+        assert_eq!(
+            load(&specs, &stored).unwrap_err().to_string(),
+            format!(
+                "the state of a station of faults has version {version}, this program reads version 2"
+            )
+        );
+    }
 }
 
 /// Makes a frame with another payload and the right checksum.
@@ -172,8 +193,9 @@ static SAVED: LazyLock<Vec<(FaultSpec, Vec<u8>)>> = LazyLock::new(|| {
     for kind in kinds::all() {
         let spec = long(kind, "f0");
         let mut station = Station::new(std::slice::from_ref(&spec), &setup()).unwrap();
+        let mut log = Log::default();
         for k in 1..=180 {
-            step(&mut station, &[], k);
+            step((&mut station, &mut log), &[], k);
             if k == 77 || k == 180 {
                 all.push((spec.clone(), saved(&station)));
             }
@@ -236,8 +258,9 @@ proptest! {
             altered[at..end].fill(*value);
         }
         if let Ok(mut station) = load(std::slice::from_ref(spec), &reframed(&altered)) {
+            let mut log = Log::default();
             for k in 100..300 {
-                step(&mut station, &[], k);
+                step((&mut station, &mut log), &[], k);
             }
             let _ = saved(&station);
         }
@@ -249,8 +272,9 @@ proptest! {
 fn figures() {
     let specs = all_at_once();
     let mut station = Station::new(&specs, &setup()).unwrap();
+    let mut log = Log::default();
     for k in 1..=60 {
-        step(&mut station, &specs, k);
+        step((&mut station, &mut log), &specs, k);
     }
     const TIMES: u32 = 100;
     let start = Instant::now();

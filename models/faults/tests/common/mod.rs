@@ -71,13 +71,51 @@ pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u
     }
 }
 
-/// Calls that a plant received.
-#[derive(Debug, Default)]
+/// Epochs for which a disturbance of [`Log`] goes on after its end.
+pub const TAIL: u64 = 2;
+/// Counts that each disturbance adds to the x gyro.
+pub const EACH: i32 = 100;
+
+/// Calls that a plant received. Each disturbance adds to the x gyro as long as it has an effect.
+#[derive(Clone, Debug, Default)]
 pub struct Log {
     pub begun: Vec<(u32, Disturbance)>,
     pub ended: Vec<u32>,
     pub motor: Motor,
     pub truth: Option<Truth>,
+    /// Number of epochs so far.
+    pub epochs: u64,
+    /// Handles with the first epoch without an effect.
+    pub until: Vec<(u32, u64)>,
+    pub copies: Vec<(u32, Epoch)>,
+}
+
+impl Log {
+    fn acts(&self, handle: u32, epoch: u64) -> bool {
+        self.until.iter().any(|(of, until)| *of == handle && epoch < *until)
+    }
+
+    /// The epoch without a disturbance and those of larger handles.
+    pub fn delivered_without(&self, handle: u32, mut epoch: Epoch) -> Epoch {
+        let acting = self.until.iter().filter(|(of, until)| *of >= handle && self.epochs < *until);
+        let x = &mut epoch.sample.delta_theta[0];
+        acting.for_each(|_| *x = x.wrapping_sub(EACH));
+        epoch
+    }
+
+    /// Takes note of the epoch that the plant delivers next.
+    pub fn deliver(&mut self, epoch: &Epoch) {
+        self.epochs += 1;
+        let handles: Vec<u32> = self.until.iter().map(|(handle, _)| *handle).collect();
+        let acting = handles.into_iter().filter(|handle| self.acts(*handle, self.epochs));
+        self.copies =
+            acting.map(|handle| (handle, self.delivered_without(handle, *epoch))).collect();
+    }
+
+    fn set(&mut self, handle: u32, until: u64) {
+        self.until.retain(|(of, _)| *of != handle);
+        self.until.push((handle, until));
+    }
 }
 
 impl Disturbed for Log {
@@ -86,9 +124,20 @@ impl Disturbed for Log {
     }
     fn begin(&mut self, handle: u32, disturbance: &Disturbance) {
         self.begun.push((handle, disturbance.clone()));
+        self.set(handle, u64::MAX);
     }
     fn end(&mut self, handle: u32) {
         self.ended.push(handle);
+        self.set(handle, self.epochs + 1 + TAIL);
+    }
+    fn goes_on(&self, handle: u32) -> bool {
+        self.acts(handle, self.epochs + 1)
+    }
+    fn without(&self, handle: u32) -> Option<&Epoch> {
+        self.copies.iter().find(|(of, _)| *of == handle).map(|(_, epoch)| epoch)
+    }
+    fn remainder_counts(&self) -> [i64; 2] {
+        [1, 1]
     }
 }
 
@@ -132,7 +181,8 @@ pub fn run_with(specs: &[FaultSpec], epochs: u64, answer: impl Fn(u64) -> Output
         station.before(&mut command, &output, &mut outcome.log);
         outcome.commands.push(command);
         let epoch = clean(k);
-        match station.after(&epoch, &output) {
+        outcome.log.deliver(&epoch);
+        match station.after(&epoch, &output, &mut outcome.log).delivered {
             Delivered::Untouched => outcome.delivered.push((k, epoch)),
             Delivered::These(epochs) => {
                 outcome.delivered.extend(epochs.iter().map(|epoch| (k, *epoch)));
