@@ -83,13 +83,13 @@ fn disturbance() -> impl Strategy<Value = Disturbance> {
 
 /// One event: a disturbance begins or ends, or the turntable gets a set point.
 #[derive(Clone, Debug)]
-enum Event {
+pub(super) enum Event {
     Begin(u32, Disturbance),
     End(u32),
     Command(f64, f64),
 }
 
-fn event() -> impl Strategy<Value = Event> {
+pub(super) fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
         3 => (0..4u32, disturbance()).prop_map(|(handle, it)| Event::Begin(handle, it)),
         2 => (0..5u32).prop_map(Event::End),
@@ -121,7 +121,7 @@ proptest! {
                 Event::End(handle) => plant.end(*handle),
                 Event::Command(azimuth, roll) => target = command(*azimuth, *roll),
             }
-            plant.motor();
+            let _ = plant.motor();
             let mut clone = plant.clone();
             let mut bytes = Vec::new();
             plant.save(&mut bytes);

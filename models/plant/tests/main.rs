@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+mod compared;
 mod disturbed_arbitrary;
 mod disturbed_strapdown;
 mod kinds_physics;

@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 /// Configuration with every imperfection of sensors and turntable.
-fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
+pub(super) fn everything(motion: Motion, time_skew_s: f64) -> PlantConfig {
     let mut config = noisy();
     config.calibration_samples = 900;
     config.motion = motion;
@@ -68,7 +68,7 @@ fn ship() -> Motion {
     Motion::Dockside(motion::dockside_default(2))
 }
 
-fn ground() -> Motion {
+pub(super) fn ground() -> Motion {
     Motion::Static(CaseAttitude { heading_rad: 0.4, pitch_rad: 0.02, roll_rad: -0.01 })
 }
 
@@ -83,7 +83,7 @@ fn line(frequency_hz: f64) -> SpectralLine {
 }
 
 /// One disturbance of each kind.
-fn disturbances() -> Vec<Disturbance> {
+pub(super) fn disturbances() -> Vec<Disturbance> {
     let gimbal = |gimbal, action| Disturbance::Gimbal { gimbal, action };
     let (azimuth, roll) = (Gimbal::Azimuth, Gimbal::Roll);
     vec![
@@ -124,7 +124,7 @@ fn saved(plant: &Plant) -> Vec<u8> {
 }
 
 /// A set point that changes every two seconds.
-fn target(k: u64) -> GimbalCommand {
+pub(super) fn target(k: u64) -> GimbalCommand {
     let turn = (k / 400) as f64;
     command(10.0 * turn, if k < 700 { 0.0 } else { -6.0 * turn })
 }
@@ -298,7 +298,7 @@ fn a_state_of_an_earlier_version_is_refused_in_words() {
         let stored = std::fs::read(format!("{folder}/plant-{version}.bin")).unwrap();
         assert_eq!(
             Plant::load(&stored).unwrap_err().to_string(),
-            format!("the state of a plant has version {version}, this program reads version 4")
+            format!("the state of a plant has version {version}, this program reads version 5")
         );
     }
 }

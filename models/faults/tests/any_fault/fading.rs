@@ -3,9 +3,9 @@
 use super::plain::plain;
 use crate::common::counts::{all_counts, strength};
 use crate::common::{Outcome, clean, run};
-use octant_faults::catalogue::{Acts, FaultKind, Lasts};
+use octant_faults::catalogue::{Acts, Dimension, FaultKind, Lasts};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{FaultSpec, kinds};
+use octant_faults::{FaultSpec, Value, kinds};
 use octant_sample::{Epoch, Reference};
 
 const FIRST: u64 = 50;
@@ -22,7 +22,15 @@ fn outcome(kind: &'static FaultKind, duration: u64, recovery: u64) -> Outcome {
         recovery,
         repeat: Repeat::Once,
     };
-    run(&[FaultSpec { id: "f".into(), kind, values: plain(kind), schedule }], EPOCHS)
+    let mut values = plain(kind);
+    if kind.name == "dead-zone" {
+        // The plain threshold is below every count.
+        values.set("threshold", Value::Quantity(1e-2, Dimension::GyroBias));
+    }
+    if kind.parameter("clock").is_some() {
+        values.set("clock", Value::Choice("both"));
+    }
+    run(&[FaultSpec { id: "f".into(), kind, values, schedule }], EPOCHS)
 }
 
 fn one(outcome: &Outcome, k: u64) -> Epoch {

@@ -5,7 +5,7 @@ use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{FaultSpec, Setup, Station, Value, Values, kinds};
 use octant_plant::config::PlantConfig;
-use octant_plant::{Plant, PlantStep, Truth};
+use octant_plant::{ComparedPlant, Plant, PlantStep, Truth};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output};
@@ -73,14 +73,14 @@ impl Pair {
     }
 }
 
-struct Behind<'a>(&'a mut Plant);
+struct Behind<'a>(&'a mut ComparedPlant);
 
 impl World for Behind<'_> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         Some(self.0)
     }
     fn truth(&self) -> Option<Truth> {
-        Some(self.0.truth())
+        Some(self.0.plant().truth())
     }
 }
 
@@ -92,17 +92,18 @@ pub(crate) fn run_pair(
     target: impl Fn(u64) -> GimbalCommand,
 ) -> Vec<Pair> {
     let mut station = Station::new(specs, &setup(config)).unwrap();
-    let (mut plant, mut twin) = (Plant::new(config).unwrap(), Plant::new(config).unwrap());
+    let (mut plant, mut twin) = (ComparedPlant::new(config).unwrap(), Plant::new(config).unwrap());
     let output = Output::default();
     let pairs = (1..=samples).map(|k| {
         let mut command = target(k);
         station.before(&mut command, &output, &mut Behind(&mut plant));
         let step = plant.step(&command);
         let epoch = octant_sample::Epoch { sample: step.sample, aiding: step.aiding };
-        assert_eq!(station.after(&epoch, &output), Delivered::Untouched);
+        let passed = station.after(&epoch, &output, &mut Behind(&mut plant));
+        assert_eq!(passed.delivered, Delivered::Untouched);
         station.told();
         let twin_step = twin.step(&target(k));
-        Pair { step, truth: plant.truth(), twin: twin_step, twin_truth: twin.truth() }
+        Pair { step, truth: plant.plant().truth(), twin: twin_step, twin_truth: twin.truth() }
     });
     let pairs = pairs.collect();
     assert!(station.receipts().iter().all(|receipt| receipt.fired()));
