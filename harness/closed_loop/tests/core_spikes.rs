@@ -15,7 +15,7 @@ use octant_random::normal::{uniform, words};
 use octant_random::stream::{Phase, key};
 use octant_sample::Mode;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
-use octant_sample::disturbance::{Disturbance, Disturbed, Gimbal, GimbalAction};
+use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction};
 use octant_sample::parameters::NAMES;
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use octant_fmu::component::ModelComponent;
 use octant_fmu::plant;
 use octant_fmu::table::{DeclaredCausality, Model};
 use octant_fmu::values::CellValues;
-use octant_plant::Plant;
+use octant_plant::ComparedPlant;
 use octant_plant::config as plant_config;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::disturbance::Disturbed;
@@ -222,20 +222,20 @@ impl Pair {
     }
 }
 
-struct Behind<'a>(&'a mut Plant);
+struct Behind<'a>(&'a mut ComparedPlant);
 
 impl World for Behind<'_> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         Some(self.0)
     }
     fn truth(&self) -> Option<Truth> {
-        Some(self.0.truth())
+        Some(self.0.plant().truth())
     }
 }
 
 /// Loop of the harness: source, station, endpoint.
 struct Loop {
-    plant: Plant,
+    plant: ComparedPlant,
     station: Station,
     endpoint: InProcess,
     output: Output,
@@ -249,7 +249,7 @@ impl Loop {
         core: &core::CoreConfig,
     ) -> Self {
         Self {
-            plant: Plant::new(plant).unwrap(),
+            plant: ComparedPlant::new(plant).unwrap(),
             station: Station::new(faults, &plant::setup(plant)).unwrap(),
             endpoint: InProcess::new(core).unwrap(),
             output: Output::default(),
@@ -264,7 +264,8 @@ impl Loop {
         self.station.before(&mut command, &self.output, &mut Behind(&mut self.plant));
         let step = self.plant.step(&command);
         let clean = Epoch { sample: step.sample, aiding: step.aiding };
-        let delivered = match self.station.after(&clean, &self.output) {
+        let passed = self.station.after(&clean, &self.output, &mut Behind(&mut self.plant));
+        let delivered = match passed.delivered {
             Delivered::Untouched => Some(clean),
             Delivered::These(these) => {
                 assert!(these.len() <= 1);
@@ -309,7 +310,7 @@ fn same(
         if let (Some(found), Some(delivered)) = (&found, &delivered) {
             assert!(found.same_bits(delivered), "{}: {k}: {found:?} {delivered:?}", what());
         }
-        let truth = Truth { time: Default::default(), ..expected.plant.truth() };
+        let truth = Truth { time: Default::default(), ..expected.plant.plant().truth() };
         assert_eq!(format!("{:?}", pair.truth()), format!("{truth:?}"), "{}: {k}", what());
         before = Some((delivered, expected.output));
         if saves.contains(&k) {

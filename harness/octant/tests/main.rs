@@ -44,6 +44,7 @@ mod equipment;
 mod export;
 mod extending;
 mod faults_any;
+mod faults_compared;
 mod faults_host;
 mod faults_run;
 mod faults_scenario;

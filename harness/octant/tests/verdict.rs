@@ -350,6 +350,7 @@ fn silent() -> FaultResult {
         firings: 0,
         clean_crc32: None,
         faulted_crc32: None,
+        largest_change: None,
     }
 }
 

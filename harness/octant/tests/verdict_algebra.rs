@@ -132,6 +132,7 @@ impl Parts {
             firings: 0,
             clean_crc32: None,
             faulted_crc32: None,
+            largest_change: None,
         };
         let calibration = |refused: bool| CalibrationScore {
             reference: None,

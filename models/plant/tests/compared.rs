@@ -134,7 +134,8 @@ fn a_disturbance_goes_on_until_its_edge_recoil_or_return_is_over() {
         ),
         (gimbal(slip), 500),
         (gimbal(GimbalAction::EncoderSlip { angle_rad: 0.1, flagged: false }), 400),
-        (gimbal(GimbalAction::Backlash { play_rad: 1e-4 }), 400),
+        // The play closes in 0.1 s.
+        (gimbal(GimbalAction::Backlash { play_rad: 1e-4 }), 420),
     ];
     for (disturbance, expected) in cases {
         assert_eq!(going_on(&config, &disturbance), expected, "{disturbance:?}");

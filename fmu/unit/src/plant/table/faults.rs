@@ -31,8 +31,7 @@ macro_rules! outputs {
             output(concat!("fault[", $fault, "].fired"), Boolean):
                 "It has altered something so far.";
             output(concat!("fault[", $fault, "].samples_altered"), Count):
-                "Samples, or set points, that it has altered so far, found by comparison; of a \
-                 fault inside the plant, samples during which it was active.";
+                "Samples, or set points, that it has altered so far, found by comparison.";
         }),*])
     };
 }
