@@ -2,7 +2,7 @@
 
 use crate::candidate::FaultCandidate;
 use octant_faults::Receipt;
-use octant_faults::catalogue::Family;
+use octant_faults::catalogue::{Acts, Family};
 use octant_faults::kinds;
 use octant_run::method::MethodRun;
 use octant_run::twin::between;
@@ -125,7 +125,15 @@ fn stays(receipt: &Receipt, scenario: &Scenario) -> bool {
     });
     let end = scenario.calibration_samples();
     let last_second = 1_000_000_000 / scenario.sample_period_ns.max(1);
-    changes && receipt.last_sample.is_some_and(|last| last + last_second >= end)
+    let is_late = |last: u64| last.saturating_add(last_second) >= end;
+    // A change that shows in motion alone, as that of a lever arm, alters no sample at rest: its duration tells how long
+    // it lasts.
+    let spec = scenario.faults.iter().map(|fault| &fault.spec).find(|spec| spec.id == receipt.id);
+    let inside = spec.filter(|spec| spec.kind.acts == Acts::Plant).zip(receipt.first_sample);
+    let lasts = inside.is_some_and(|(spec, first)| {
+        spec.schedule.duration.is_none_or(|epochs| is_late(first.saturating_add(epochs)))
+    });
+    changes && (lasts || receipt.last_sample.is_some_and(is_late))
 }
 
 /// The number, or the largest one: an effect that isn't a number is more than any.
