@@ -4,7 +4,10 @@ use crate::failure::Failure;
 use crate::fault_picture::{Window, picture as draw};
 use crate::fault_words::{acts, lasts};
 use octant_faults::catalogue::{Acts, FaultKind};
-use octant_run::side_by_side::side_by_side;
+use octant_faults::station::World;
+use octant_run::side_by_side::{SideBySide, side_by_side};
+use octant_sample::disturbance::Disturbed;
+use octant_sample::{Output, Truth};
 use octant_scenario::{Scenario, fault_example, fault_parameters};
 use std::path::Path;
 
@@ -71,6 +74,35 @@ pub(super) fn has_picture(kind: &FaultKind) -> bool {
     !matches!(kind.acts, Acts::Wire | Acts::Host | Acts::Power)
 }
 
+/// Returns the step in which the first fault of a scenario sets in.
+fn onset(scenario: &Scenario, runs: &SideBySide) -> Option<u64> {
+    let mut station = scenario.station(SEED).ok()??;
+    let mut output = Output::default();
+    for step in &runs.faulted {
+        station.before(&mut step.command.clone(), &output, &mut Nothing);
+        let first = station.occurrences().iter().find(|it| it.begins && it.fault == 0);
+        if let Some(first) = first {
+            return Some(first.epoch);
+        }
+        station.told();
+        output = step.output.unwrap_or(output);
+    }
+    None
+}
+
+/// A world in which nothing can be done.
+struct Nothing;
+
+impl World for Nothing {
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        None
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        None
+    }
+}
+
 /// Draws the picture of a kind: its example, simulated.
 pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
     if !has_picture(kind) {
@@ -90,8 +122,11 @@ pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
         let period_s = scenario.sample_period_ns as f64 * 1e-9;
         let steps = (STAGE_S / period_s).round() as u64;
         let runs = side_by_side(&scenario, SEED, steps)?;
-        let onset = runs.receipts.first().and_then(|receipt| receipt.first_sample);
-        let Some(onset) = onset else { continue };
+        let first_sample = runs.receipts.first().and_then(|receipt| receipt.first_sample);
+        let Some(first_sample) = first_sample else { continue };
+        // Inside the plant the effect may show later, in the next move.
+        let inside = kind.acts == Acts::Plant;
+        let onset = if inside { onset(&scenario, &runs) } else { None }.unwrap_or(first_sample);
         let duration = scenario.faults.first().and_then(|fault| fault.spec.schedule.duration);
         let lasts_s = duration.map_or_else(|| kind.example.shown_s, |n| n as f64 * period_s);
         let shown_s = (1.4 * lasts_s).clamp(10.0 * period_s, SHOWN_MAX_S);
