@@ -27,7 +27,7 @@ fn without(plant: &ComparedPlant, handle: u32, epoch: &Epoch) -> Epoch {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(8))]
 
     #[test]
     fn each_copy_is_the_plant_without_the_disturbances(
