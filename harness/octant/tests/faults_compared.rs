@@ -250,9 +250,9 @@ fn the_receipt_of_each_kind_is_what_two_recordings_show() {
                 trigger: Trigger::Epoch(match (kind.acts, turn % 2) {
                     (Acts::Delivery, _) => 2000,
                     (_, 0) => 300,
-                    _ => 1190,
+                    _ => 600,
                 }),
-                duration: Some(300),
+                duration: Some(400),
                 recovery: 0,
                 repeat: Repeat::Times { times: 2, every: 450 },
             };
