@@ -262,7 +262,8 @@ fn the_receipt_of_each_kind_is_what_two_recordings_show() {
                 break;
             }
         }
-        assert!(fired, "{}", kind.name);
+        // The reference here is a velocity, and a jump of the position alters nothing.
+        assert_eq!(fired, kind.name != "position-jump", "{}", kind.name);
         inside += u32::from(kind.acts == Acts::Plant);
     }
     assert_eq!(inside, 15, "kinds inside the plant");
