@@ -16,6 +16,7 @@ mod ensemble_prediction;
 mod ensembles;
 mod further_states;
 mod gimbal_angles;
+mod presets;
 mod smoothing;
 mod state_core;
 mod sway_conditions;

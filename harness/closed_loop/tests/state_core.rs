@@ -80,6 +80,15 @@ fn methods(seed: u64) -> Vec<(&'static str, plant::PlantConfig, CoreConfig)> {
     .into_iter()
     .map(|(name, core)| (name, ground.clone(), core))
     .collect();
+    // Noise from which on the filter takes the known motion at rest.
+    for (name, mut plant, mut core) in
+        [("noisy", ground, case.core()), ("noisy, ship", ship.clone(), afloat.clone())]
+    {
+        plant.imu.angle_random_walk *= 100.0;
+        core.noise.angle_random_walk *= 100.0;
+        let told = kalman(&core);
+        all.push((name, plant, with_estimator(core, Estimator::Kalman(told))));
+    }
     let white = kalman(&afloat);
     let coloured = Kalman {
         sway: SwayNoise::Coloured,

@@ -6,6 +6,7 @@
 
 mod checkpoint;
 mod further;
+mod known_motion;
 mod measurement;
 mod noise;
 mod oscillator;
@@ -35,6 +36,7 @@ use crate::screen::ACCELEROMETERS;
 use crate::strapdown::Strapdown;
 use checkpoint::Checkpoint;
 use further::FurtherStates;
+use known_motion::KnownMotion;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
@@ -83,6 +85,9 @@ pub struct CalibrationFilter {
     sub_step: SubStep,
     /// No part of a stored state: a smoother follows a filter from its start.
     passage: Passage,
+    /// Known motion at rest, for noisy sensors. No part of the filter's stored state but one beside it, as
+    /// [`Self::further_part`].
+    known_motion: Option<KnownMotion>,
     /// Time and velocity change by specific force in n since the last propagation.
     elapsed_s: f64,
     force_sum: Vector3<f64>,
@@ -109,7 +114,7 @@ octant_state::state! {
         values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, keeps_attitude, tally;
         parts: covariance, transition, sub_step, drift, sway, checkpoints;
         kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s,
-            walk_variance_per_s, further, passage;
+            walk_variance_per_s, further, passage, known_motion;
         check: Self::check_counts
     }
 }
@@ -181,6 +186,7 @@ impl CalibrationFilter {
             covariance,
             transition: Transition::identity(),
             passage: Passage::new(),
+            known_motion: KnownMotion::new(kalman, noise, screening),
             sub_step: SubStep::new(sub_step_samples(sample_period_ns, kalman.aiding_period_ns)),
             elapsed_s: 0.0,
             force_sum: Vector3::zeros(),
@@ -215,6 +221,14 @@ impl CalibrationFilter {
     pub fn feel(&mut self, warmth_k: f64) {
         if let Some(further) = &mut self.further {
             further.feel(warmth_k);
+        }
+    }
+
+    /// Tells whether the gimbals rest, as far as the core knows: it holds until the next call.
+    #[inline]
+    pub fn rest(&mut self, gimbals_rest: bool) {
+        if let Some(known) = &mut self.known_motion {
+            known.gimbals_rest = gimbals_rest;
         }
     }
 
@@ -277,7 +291,7 @@ impl CalibrationFilter {
         } else {
             step.c_middle
         };
-        let interval = MotionInterval {
+        let mut interval = MotionInterval {
             interval_s: step.elapsed_s,
             c_nb,
             delta_theta: step.delta_theta,
@@ -289,6 +303,9 @@ impl CalibrationFilter {
         let gyros_used = [used(0), used(1), used(2)];
         let accelerometers_used = step.bridged & ACCELEROMETERS == 0;
         let earth = strapdown.earth();
+        if let Some(known) = &mut self.known_motion {
+            known.replace_measured(&mut interval, earth);
+        }
         if step.bridged == 0 {
             self.transition.advance(self.model, &interval, earth);
         } else {
@@ -386,6 +403,18 @@ impl CalibrationFilter {
     #[cfg(feature = "state")]
     pub(crate) fn further_part_mut(&mut self) -> Option<&mut impl octant_state::State> {
         self.further.as_mut()
+    }
+
+    /// The known motion as a part of a stored state, beside the filter: [`Self::further_part`].
+    #[cfg(feature = "state")]
+    pub(crate) fn known_motion_part(&self) -> Option<&impl octant_state::State> {
+        self.known_motion.as_ref()
+    }
+
+    /// [`Self::known_motion_part`], to be changed.
+    #[cfg(feature = "state")]
+    pub(crate) fn known_motion_part_mut(&mut self) -> Option<&mut impl octant_state::State> {
+        self.known_motion.as_mut()
     }
 
     /// Returns whether every number of the covariance and the further states is finite.

@@ -281,6 +281,7 @@ impl Core {
             );
             self.start_edges();
         }
+        self.tell_rest();
         Ok(())
     }
 
@@ -324,6 +325,17 @@ impl Core {
         self.cursor
             .as_ref()
             .is_some_and(|cursor| self.phase_tick() < cursor.arrival_tick() + self.settle_ticks)
+    }
+
+    /// Tells the filter whether the gimbals rest at the next sample. Called whenever that has changed.
+    #[inline]
+    fn tell_rest(&mut self) {
+        if let Estimation::Kalman(_) = &self.estimation {
+            let rest = !self.gimbals_may_move();
+            if let Some(filter) = self.filter_mut() {
+                filter.rest(rest);
+            }
+        }
     }
 
     #[cold]

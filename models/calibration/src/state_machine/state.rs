@@ -43,6 +43,7 @@ impl Core {
             Self::new(&config).map_err(|error| StateError::value("config", error.to_string()))?;
         from.part("core", &mut core)?;
         from.end()?;
+        core.tell_rest();
         Ok(core)
     }
 
@@ -283,6 +284,9 @@ impl State for Estimation {
                 if let Some(further) = filter.further_part() {
                     to.part("further states", further);
                 }
+                if let Some(known) = filter.known_motion_part() {
+                    to.part("known motion", known);
+                }
             }
             Self::LeastSquares(estimator) => to.part("least squares", estimator),
             Self::ExternalTurntable(estimator) => to.part("external turntable", estimator),
@@ -294,8 +298,11 @@ impl State for Estimation {
             Self::Idle => Ok(()),
             Self::Kalman(filter) => {
                 from.part("filter", filter)?;
-                match filter.further_part_mut() {
-                    Some(further) => from.part("further states", further),
+                if let Some(further) = filter.further_part_mut() {
+                    from.part("further states", further)?;
+                }
+                match filter.known_motion_part_mut() {
+                    Some(known) => from.part("known motion", known),
                     None => Ok(()),
                 }
             }

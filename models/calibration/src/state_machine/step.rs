@@ -58,6 +58,7 @@ impl Core {
         if let Some(cursor) = &mut self.cursor {
             cursor.advance(phase_tick);
         }
+        self.tell_rest();
         self.compare_gimbals(sample, phase_tick, &mut health);
         if !self.strapdown.is_sound() && self.mode != Mode::Refused {
             // The number that isn't finite was kept out of the solution: the last good one remains.
