@@ -46,6 +46,7 @@ fn estimators(n: &mut Numbers) -> Vec<Estimator> {
             sway: if i == 0 { SwayNoise::White } else { SwayNoise::Coloured },
             refuse_above_mean_nis: n.next(),
             further: Default::default(),
+            sigma_limits: Default::default(),
         }));
     }
     for (gravity_mps2, gyro, intervals) in [

@@ -126,6 +126,7 @@ impl InstrumentCase {
                     sway: SwayNoise::White,
                     refuse_above_mean_nis: 9.0,
                     further: Default::default(),
+                    sigma_limits: Default::default(),
                 }),
             }),
             navigation: (self.navigation_h > 0.0).then(|| NavigationPlan {

@@ -17,6 +17,7 @@ mod ensembles;
 mod further_states;
 mod gimbal_angles;
 mod presets;
+mod sigma_limits;
 mod smoothing;
 mod state_core;
 mod sway_conditions;

@@ -230,7 +230,14 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(String, &'static 
     if !estimator("kalman") {
         add(
             calibration,
-            &["error_model", "g_states", "not_estimated", "refuse_above_mean_nis", "prior"],
+            &[
+                "error_model",
+                "g_states",
+                "not_estimated",
+                "refuse_above_mean_nis",
+                "refuse_above_sigma",
+                "prior",
+            ],
             "without effect: no method of this scenario uses estimator = \"kalman\"",
         );
     }

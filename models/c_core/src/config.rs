@@ -140,6 +140,7 @@ fn kalman(c: &CConfig) -> Result<Kalman, i32> {
         },
         refuse_above_mean_nis: c.refuse_above_mean_nis,
         further: Further::default(),
+        sigma_limits: Default::default(),
     })
 }
 
@@ -212,8 +213,14 @@ pub fn in_c(config: &CoreConfig) -> Option<CConfig> {
             sway: SwayNoise::White,
             refuse_above_mean_nis: 0.0,
             further: Further::default(),
+            sigma_limits: Default::default(),
         },
-        Some(Estimator::Kalman(kalman)) if kalman.further == Further::default() => *kalman,
+        Some(Estimator::Kalman(kalman))
+            if kalman.further == Further::default()
+                && kalman.sigma_limits == Default::default() =>
+        {
+            *kalman
+        }
         Some(_) => return None,
     };
     let (aiding, aiding_sigma) = match kalman.aiding {

@@ -70,6 +70,7 @@ fn config(calibration: bool, further: Further) -> CoreConfig {
                 aiding_period_ns: 1_000_000_000,
                 sway: SwayNoise::White,
                 refuse_above_mean_nis: 9.0,
+                sigma_limits: Default::default(),
                 further,
             }),
         }),

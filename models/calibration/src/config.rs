@@ -1,11 +1,13 @@
 //! Configuration of the core, given before the first sample. All angles in rad, all quantities SI.
 
 mod further;
+mod sigma_limits;
 #[cfg(feature = "state")]
 mod stored;
 
 pub use further::{AngleMeasurements, Further, FurtherUse, TemperatureErrors};
 pub use octant_positions::rates::TurntableRates;
+pub use sigma_limits::{SigmaLimits, UncertainQuantity};
 
 use crate::sequence::Sequence;
 use octant_earth::{UnitQuaternion, Vector3};
@@ -141,6 +143,10 @@ pub struct Kalman {
     /// them: see `stored`.
     #[cfg_attr(feature = "state", serde(skip))]
     pub further: Further,
+    /// Largest standard deviations of a calibration that is published. An estimator is stored with them: see
+    /// `stored`.
+    #[cfg_attr(feature = "state", serde(skip))]
+    pub sigma_limits: SigmaLimits,
 }
 
 /// What the sway of the base is to a filter whose reference is fixed to the dock.

@@ -44,6 +44,7 @@ pub(super) fn kalman() -> Estimator {
         sway: SwayNoise::White,
         refuse_above_mean_nis: 1e9,
         further: Default::default(),
+        sigma_limits: Default::default(),
     })
 }
 

@@ -165,6 +165,7 @@ fn put_kalman(kalman: &Kalman, values: &mut CellValues) {
         sway,
         refuse_above_mean_nis,
         further: _,
+        sigma_limits: _,
     } = kalman;
     let choice = match error_model {
         ErrorModel::Phi => 0,
@@ -225,6 +226,7 @@ fn kalman(values: &CellValues) -> Result<Kalman, CalibratorValueError> {
         },
         refuse_above_mean_nis: values.real(slot::REFUSE_ABOVE),
         further: Default::default(),
+        sigma_limits: Default::default(),
     })
 }
 

@@ -27,7 +27,7 @@ const NAVIGATION: &str = r#"schema = 1
 title = "navigation"
 seed = 1
 [imu]
-rate = "1 Hz"
+rate = "8 Hz"
 [record]
 rate = "1 Hz"
 [procedure.navigation]

@@ -1712,10 +1712,35 @@ class ProcedureCalibrationPrior(Section):
     velocity: str
     """Velocity, each axis. Takes a velocity such as "1 mm/s". Default: "0.02 m/s"."""
 
+class ProcedureCalibrationRefuseAboveSigma(Section):
+    """Largest standard deviations at the end of a calibration that is published. Takes a table with heading,
+    tilt, gyro_bias, gyro_scale, gyro_misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment."""
+
+    accel_bias: str
+    """Each accelerometer bias. Takes an acceleration such as "100 ug". Left out: no limit."""
+    accel_misalignment: str
+    """Each accelerometer misalignment. Takes an angle such as "40 arcsec". Left out: no limit."""
+    accel_scale: str
+    """Each accelerometer scale factor. Takes a ratio such as "30 ppm". Left out: no limit."""
+    g_dependent: str
+    """Each g-dependent gyro bias. Takes a g-dependent gyro bias such as "0.0005 deg/h/g". Left out: no limit."""
+    gyro_bias: str
+    """Each gyro bias. Takes an angular rate such as "0.005 deg/h". Left out: no limit."""
+    gyro_misalignment: str
+    """Each gyro misalignment. Takes an angle such as "40 arcsec". Left out: no limit."""
+    gyro_scale: str
+    """Each gyro scale factor. Takes a ratio such as "30 ppm". Left out: no limit."""
+    heading: str
+    """Heading. Takes an angle such as "30.5 deg". Left out: twice the azimuth of prior.attitude, or ten times
+    what angle_random_walk leaves of the heading by Earth rate over the duration: the larger one."""
+    tilt: str
+    """Tilt, the larger one of north and east. Takes an angle such as "30.5 deg". Left out: twice the tilt of
+    prior.attitude, or twice prior.accel_bias over gravity: the larger one."""
+
 class ProcedureCalibration(Section):
     """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops, name,
-    passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis, further, prior,
-    aiding, least_squares. Left out: no calibration: navigate at once."""
+    passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis,
+    refuse_above_sigma, further, prior, aiding, least_squares. Left out: no calibration: navigate at once."""
 
     @property
     def aiding(self) -> ProcedureCalibrationAiding:
@@ -1767,6 +1792,13 @@ class ProcedureCalibration(Section):
     refuse_above_mean_nis: float
     """Mean normalized innovation squared (three axes) above which the calibration is refused. Takes a number
     above 0. Default: 9.0."""
+    @property
+    def refuse_above_sigma(self) -> ProcedureCalibrationRefuseAboveSigma:
+        """Largest standard deviations at the end of a calibration that is published. Takes a table with heading,
+        tilt, gyro_bias, gyro_scale, gyro_misalignment, g_dependent, accel_bias, accel_scale,
+        accel_misalignment."""
+    @refuse_above_sigma.setter
+    def refuse_above_sigma(self, value: ProcedureCalibrationRefuseAboveSigma | Mapping[str, Any]) -> None: ...
     stops: Sequence[Mapping[str, Any]]
     """A sequence of one's own. Takes an array of tables with azimuth, roll, weight. Left out: positions are
     used."""
@@ -1820,7 +1852,7 @@ class Procedure(Section):
     def calibration(self) -> ProcedureCalibration:
         """Turning through positions and estimating the sensors' errors. Takes a table with positions, stops,
         name, passes, duration, estimator, error_model, g_states, not_estimated, refuse_above_mean_nis,
-        further, prior, aiding, least_squares. Left out: no calibration: navigate at once."""
+        refuse_above_sigma, further, prior, aiding, least_squares. Left out: no calibration: navigate at once."""
     @calibration.setter
     def calibration(self, value: ProcedureCalibration | Mapping[str, Any]) -> None: ...
     @property

@@ -184,12 +184,40 @@ keys! {
             "Further parameter groups that the filter does not estimate.";
         refuse_above_mean_nis: f64 = number(Bounds::Positive), "9.0",
             "Mean normalized innovation squared (three axes) above which the calibration is refused.";
+        refuse_above_sigma: SigmaLimitKeys = table(), section,
+            "Largest standard deviations at the end of a calibration that is published.";
         further: At<Option<FurtherKeys>> = table::<FurtherKeys>(), absent("none"),
             "Errors beside the thirty parameters that the filter considers or estimates.";
         prior: PriorKeys = table(), section, "Standard deviations that the filter starts from.";
         aiding: AidingKeys = table(), section, "The reference that the filter measures against.";
         least_squares: LeastSquaresKeys = table(), section,
             "Settings of the least-squares estimator.";
+    }
+}
+
+keys! {
+    /// `[procedure.calibration.refuse_above_sigma]`.
+    pub(crate) struct SigmaLimitKeys {
+        heading: Option<f64> = si(&[UnitDimension::ANGLE], Bounds::Positive),
+            absent("twice the azimuth of prior.attitude, or ten times what angle_random_walk leaves of the heading by Earth rate over the duration: the larger one"),
+            "Heading.";
+        tilt: Option<f64> = si(&[UnitDimension::ANGLE], Bounds::Positive),
+            absent("twice the tilt of prior.attitude, or twice prior.accel_bias over gravity: the larger one"),
+            "Tilt, the larger one of north and east.";
+        gyro_bias: Option<f64> = si(&[UnitDimension::GYRO_BIAS], Bounds::Positive), absent("no limit"),
+            "Each gyro bias.";
+        gyro_scale: Option<f64> = si(&[UnitDimension::RATIO], Bounds::Positive), absent("no limit"),
+            "Each gyro scale factor.";
+        gyro_misalignment: Option<f64> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("no limit"),
+            "Each gyro misalignment.";
+        g_dependent: Option<f64> = si(&[UnitDimension::G_DEPENDENT], Bounds::Positive), absent("no limit"),
+            "Each g-dependent gyro bias.";
+        accel_bias: Option<f64> = si(&[UnitDimension::ACCEL_BIAS], Bounds::Positive), absent("no limit"),
+            "Each accelerometer bias.";
+        accel_scale: Option<f64> = si(&[UnitDimension::RATIO], Bounds::Positive), absent("no limit"),
+            "Each accelerometer scale factor.";
+        accel_misalignment: Option<f64> = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), absent("no limit"),
+            "Each accelerometer misalignment.";
     }
 }
 

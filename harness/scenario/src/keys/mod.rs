@@ -28,7 +28,8 @@ mod trajectory;
 
 pub(crate) use calibration::{
     AidingKeys, AlignmentKeys, AlignmentMethod, CalibrationKeys, EstimatorName, InitialKeys,
-    Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation, StopKeys,
+    Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
+    SigmaLimitKeys, StopKeys,
 };
 pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,

@@ -7,7 +7,7 @@ use crate::keys::{
     DrawnRatios, DrawnScalesPerKelvin, EstimatorName, FurtherKeys, GimbalAnglesKeys,
     GyroPerKelvinUse, GyroUse, LeverUse, QuadraticUse, RatioUse, ScalePerKelvinUse, ScenarioKeys,
 };
-use crate::model::{Method, MotionSpec, ParameterDistribution, Scenario};
+use crate::model::{CalibrationSpec, Method, MotionSpec, ParameterDistribution, Scenario};
 use octant_calibration::config as core;
 use octant_calibration::further::FurtherGroup;
 use octant_plant::config as plant;
@@ -202,6 +202,24 @@ pub(super) fn check_endpoint(uri: &At<String>, scenario: &Scenario) -> Result<()
     Err(uri.problem(format!(
         "found {:?} with procedure.calibration.further, expected \"in-process\": neither a wire nor an FMU has a \
          place for these states",
+        uri.text
+    )))
+}
+
+/// Refuses limits of standard deviations for a core that isn't called directly.
+pub(super) fn check_limits(uri: &At<String>, scenario: &Scenario) -> Result<(), Problem> {
+    let has_limits = |calibration: &Option<CalibrationSpec>| {
+        let estimator = calibration.as_ref().map(|calibration| &calibration.estimator);
+        matches!(estimator, Some(core::Estimator::Kalman(of)) if of.sigma_limits != core::SigmaLimits::default())
+    };
+    if scenario.endpoint.is_in_process()
+        || !(has_limits(&scenario.calibration) || has_limits(&scenario.baseline))
+    {
+        return Ok(());
+    }
+    Err(uri.problem(format!(
+        "found {:?} with procedure.calibration.refuse_above_sigma, expected \"in-process\": neither a wire nor an FMU has \
+         a place for these limits, and its core has those of the instrument's grade",
         uri.text
     )))
 }

@@ -1,6 +1,7 @@
 //! Conversion of a checked and completed document to a [`Scenario`]: quantities become SI, values that
 //! depend on several keys are decided, and contradictions are reported.
 
+mod count_range;
 mod drive;
 pub mod faults;
 mod fmu;
@@ -100,7 +101,9 @@ pub fn scenario(document: DocumentTable, folder: &Path) -> Result<Scenario, Prob
     let power = power::read(&keys, &scenario)?;
     let scenario = Scenario { reference, power, ..scenario };
     check_once(&keys, &scenario)?;
+    count_range::check(&keys.imu.rate, &scenario)?;
     further::check_endpoint(&keys.endpoint.uri, &scenario)?;
+    further::check_limits(&keys.endpoint.uri, &scenario)?;
     further::check_reference(&keys.procedure.calibration, &scenario)?;
     trajectory::check(&keys, &scenario)?;
     if let Some(keys) = &keys.turntable.drive {

@@ -8,7 +8,7 @@ use crate::error::Problem;
 use crate::keys::{
     AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, FromTable,
     GateKeys, InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw,
-    Reference, Rotation, ScreeningKeys,
+    Reference, Rotation, ScreeningKeys, SigmaLimitKeys,
 };
 use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
 use crate::quantity::{self, UnitDimension};
@@ -348,7 +348,24 @@ fn kalman(
         sway: aiding.sway,
         refuse_above_mean_nis: keys.refuse_above_mean_nis,
         further,
+        sigma_limits: sigma_limits(&keys.refuse_above_sigma),
     })
+}
+
+fn sigma_limits(keys: &SigmaLimitKeys) -> core::SigmaLimits {
+    core::SigmaLimits {
+        heading_rad: keys.heading,
+        tilt_rad: keys.tilt,
+        parameters: [
+            keys.gyro_bias,
+            keys.gyro_scale,
+            keys.gyro_misalignment,
+            keys.g_dependent,
+            keys.accel_bias,
+            keys.accel_scale,
+            keys.accel_misalignment,
+        ],
+    }
 }
 
 fn least_squares(keys: &LeastSquaresKeys) -> core::LeastSquares {

@@ -102,6 +102,7 @@ fn breaks(all: &mut Found) -> Result<(), String> {
         sway: SwayNoise::White,
         refuse_above_mean_nis: 6.0,
         further: Default::default(),
+        sigma_limits: Default::default(),
     };
     let noise = Noise { angle_random_walk: 3e-7, velocity_random_walk: 6e-4 };
     let turntable = TurntableRates { rate_radps: 0.2, acceleration_radps2: 0.3 };

@@ -90,6 +90,7 @@ impl Bench {
             sway: SwayNoise::White,
             refuse_above_mean_nis: 9.0,
             further: Default::default(),
+            sigma_limits: Default::default(),
         };
         let gate = Gate { nis: 36.0, rejections: REJECTIONS, recovery: Recovery::Widening };
         let screening = Screening {

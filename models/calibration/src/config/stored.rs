@@ -2,7 +2,8 @@
 //! were any, so that the bytes of earlier programs remain readable and the same.
 
 use super::{
-    AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares, TemperatureErrors,
+    AngleMeasurements, ExternalTurntable, Further, Kalman, LeastSquares, SigmaLimits,
+    TemperatureErrors,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -16,11 +17,23 @@ enum Estimator {
     KalmanFurther(Kalman, Further),
     KalmanAngles(Kalman, Further, AngleMeasurements),
     KalmanTemperature(Kalman, Further, TemperatureErrors, Option<AngleMeasurements>),
+    KalmanLimited(
+        Kalman,
+        SigmaLimits,
+        Further,
+        Option<TemperatureErrors>,
+        Option<AngleMeasurements>,
+    ),
 }
 
 impl Serialize for super::Estimator {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let stored = match *self {
+            Self::Kalman(kalman) if kalman.sigma_limits != SigmaLimits::default() => {
+                let (limits, further) = (kalman.sigma_limits, kalman.further);
+                let (temperature, angles) = (further.temperature, further.angles);
+                Estimator::KalmanLimited(kalman, limits, further, temperature, angles)
+            }
             Self::Kalman(kalman) if kalman.further == Further::default() => {
                 Estimator::Kalman(kalman)
             }
@@ -53,6 +66,10 @@ impl<'de> Deserialize<'de> for super::Estimator {
             Estimator::KalmanTemperature(kalman, further, temperature, angles) => {
                 let further = Further { temperature: Some(temperature), angles, ..further };
                 Self::Kalman(Kalman { further, ..kalman })
+            }
+            Estimator::KalmanLimited(kalman, sigma_limits, further, temperature, angles) => {
+                let further = Further { temperature, angles, ..further };
+                Self::Kalman(Kalman { further, sigma_limits, ..kalman })
             }
             Estimator::LeastSquares(settings) => Self::LeastSquares(settings),
             Estimator::ExternalTurntable(settings) => Self::ExternalTurntable(settings),

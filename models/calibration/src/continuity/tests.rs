@@ -27,6 +27,7 @@ fn continuity(base: Base, sample_s: f64) -> Continuity {
         sway: SwayNoise::White,
         refuse_above_mean_nis: 9.0,
         further: Default::default(),
+        sigma_limits: Default::default(),
     };
     let noise = Noise { angle_random_walk: WALK, velocity_random_walk: 4.9e-4 };
     let table = TurntableRates { rate_radps: 0.1745, acceleration_radps2: 0.1745 };

@@ -80,6 +80,7 @@ mod tests {
             sway: SwayNoise::White,
             refuse_above_mean_nis: 9.0,
             further: Default::default(),
+            sigma_limits: Default::default(),
         };
         let site = Site { latitude_rad: LATITUDE_RAD, longitude_rad: 0.0, height_m: 0.0 };
         let noise = Noise { angle_random_walk: 0.0, velocity_random_walk: 0.0 };

@@ -1,7 +1,7 @@
 //! End of a calibration: judgement, parameters and attitude, and the table.
 
 use super::estimation::Estimation;
-use super::judgement::judge;
+use super::judgement::{judge, judge_sigmas};
 use super::{CalibrationRefusal, Core, kalman_of, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
@@ -56,6 +56,8 @@ impl Core {
             if self.unrepaired != 0 {
                 return Err(CalibrationRefusal::Disturbed { disturbances: self.unrepaired });
             }
+            let duration_s = ticks as f64 * self.sample_s;
+            judge_sigmas(filter, &self.config, kalman, duration_s)?;
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
         let Some(adjusted) = self.estimation.adjust() else {

@@ -1,6 +1,8 @@
 //! Judgement of a calibration: accepted, or refused with a reason.
 
-use crate::config::Kalman;
+use super::aligning::prior_after_alignment;
+use crate::config::{CoreConfig, Kalman, SigmaLimits, UncertainQuantity};
+use crate::covariance::PHI;
 use crate::drift::Largest;
 use crate::filter::{AngleTally, CalibrationFilter};
 use crate::table::Quality;
@@ -119,6 +121,19 @@ pub enum CalibrationRefusal {
         /// Start and end, s since the calibration began to measure.
         between_s: (f64, f64),
     },
+    /// A standard deviation is larger than what may be published.
+    #[error(
+        "{} is known to {:.3} {} (1 sigma) at the end, and at most {:.3} {} is published",
+        of.name(), sigma / of.si_per_unit(), of.unit(), limit / of.si_per_unit(), of.unit()
+    )]
+    Uncertain {
+        /// Its quantity.
+        of: UncertainQuantity,
+        /// Standard deviation, SI.
+        sigma: f64,
+        /// Limit, SI.
+        limit: f64,
+    },
     /// The least-squares adjustment gave no result.
     #[error("{0}")]
     Adjustment(#[from] crate::least_squares::AdjustmentRefusal),
@@ -201,6 +216,23 @@ pub(super) fn judge(
         judge_angles(tally, gimbal_slips, kalman.refuse_above_mean_nis)?;
     }
     Ok(quality)
+}
+
+/// Judges the standard deviations that would be published.
+pub(super) fn judge_sigmas(
+    filter: &CalibrationFilter,
+    config: &CoreConfig,
+    kalman: &Kalman,
+    duration_s: f64,
+) -> Result<(), CalibrationRefusal> {
+    let prior = prior_after_alignment(config, kalman);
+    let of_grade = SigmaLimits::attitude_of_grade(config, &prior, duration_s);
+    let [north, east, down] = [0, 1, 2].map(|axis| filter.covariance().sigma(PHI + axis));
+    let parameters = filter.parameter_sigmas();
+    match kalman.sigma_limits.exceeded(of_grade, (down, north.max(east)), &parameters) {
+        Some((of, sigma, limit)) => Err(CalibrationRefusal::Uncertain { of, sigma, limit }),
+        None => Ok(()),
+    }
 }
 
 /// Judges gimbal angles that were measurements: one slip, of which it can't be told what was learned from it, is too

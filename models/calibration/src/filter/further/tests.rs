@@ -94,6 +94,7 @@ pub(super) fn kalman(further: Further) -> Kalman {
         aiding_period_ns: 1_000_000_000,
         sway: SwayNoise::White,
         refuse_above_mean_nis: 9.0,
+        sigma_limits: Default::default(),
         further,
     }
 }
