@@ -42,7 +42,7 @@ fn config(positions: &[(f64, f64, f64)], hours: f64, g_dph_per_g: f64) -> CoreCo
                 sway: SwayNoise::White,
                 refuse_above_mean_nis: 9.0,
                 further: Default::default(),
-            sigma_limits: Default::default(),
+                sigma_limits: Default::default(),
             }),
         }),
         navigation: None,

@@ -42,8 +42,11 @@ pub(super) fn counterfactual(data: &ReportData) -> Markup {
 pub fn in_words(c: &Counterfactual) -> String {
     let mut text = match (&c.worst_parameter, c.worst_shift_sigma) {
         (Some(name), Some(sigma)) if sigma > 0.0 => {
+            let published = c.worst_shift_published_sigma.map_or_else(String::new, |sigma| {
+                format!("; in published σ the largest shift is {}", number::significant(sigma, 3))
+            });
             format!(
-                "The parameter that moved most is {name}, by {} σ. ",
+                "The parameter that moved most is {name}, by {} σ of the twin{published}. ",
                 number::significant(sigma, 3)
             )
         }

@@ -28,6 +28,7 @@ fn measures_have_the_units_of_their_names() {
         ("calibration.health.drifting", ""),
         ("calibration.worst_normalized_error", "σ"),
         ("counterfactual.worst_shift_sigma", "σ"),
+        ("counterfactual.worst_shift_published_sigma", "σ"),
         ("counterfactual.parameters.g_zz.shift", "deg/h/g"),
         ("counterfactual.parameters.g_zz.sigma", "σ"),
         ("counterfactual.detection_delay_max_s", "s"),

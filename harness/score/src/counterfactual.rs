@@ -4,7 +4,7 @@
 //! Every difference between the two is caused by the faults, because nothing else differs. Reports of
 //! the core in the faulted run that its twin doesn't have show that the core noticed the faults.
 
-use super::calibration::CalibrationScore;
+use super::calibration::{CalibrationScore, ParameterScore};
 use super::health::{Episode, name};
 use super::navigation::NavigationScore;
 use super::trace::RunTrace;
@@ -35,6 +35,11 @@ pub struct Counterfactual {
     pub worst_parameter: Option<String>,
     /// Magnitude of its shift, in σ of the twin.
     pub worst_shift_sigma: Option<f64>,
+    /// Largest magnitude of a shift in the σ that the run with the faults published, of whichever parameter: what a user
+    /// of the calibration is told. Null for a refused calibration, which published none, and in summaries of versions
+    /// that didn't have it.
+    #[serde(default)]
+    pub worst_shift_published_sigma: Option<f64>,
     /// Difference of the navigation errors; null if one of the two didn't navigate.
     pub navigation: Option<DriftDifference>,
     /// Detection of each fault, in the order of the scenario.
@@ -164,6 +169,7 @@ pub fn counterfactual(
             .map(|outputs| outputs as f64 * sample_s),
         worst_parameter: worst.map(|(name, _)| name.clone()),
         worst_shift_sigma,
+        worst_shift_published_sigma: published(faulted, twin),
         parameters,
         navigation,
         undetected: faults
@@ -198,6 +204,18 @@ fn shifts(
             Some((name.clone(), Shift { shift, sigma: shift / sigma }))
         })
         .collect()
+}
+
+/// Largest shift in the σ that the faulted run published.
+fn published(faulted: &CounterfactualSide<'_>, twin: &CounterfactualSide<'_>) -> Option<f64> {
+    let (published, clean) = (faulted.calibration?, twin.calibration?);
+    if published.refused.is_some() {
+        return None;
+    }
+    let shift = |(name, score): (&String, &ParameterScore)| {
+        Some((score.estimate - clean.parameters.get(name)?.estimate).abs() / score.sigma?)
+    };
+    published.parameters.iter().filter_map(shift).max_by(f64::total_cmp)
 }
 
 fn difference(

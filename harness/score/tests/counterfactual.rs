@@ -33,6 +33,7 @@ fn calibration(estimate: f64, refused: Option<&str>) -> CalibrationScore {
         nees: BTreeMap::new(),
         worst_normalized_error: None,
         refused: refused.map(str::to_owned),
+        refusal_explained: Vec::new(),
         health: HealthCounts::default(),
         sigma_hours: Vec::new(),
     }
@@ -83,6 +84,20 @@ fn a_shift_is_in_sigma_of_the_twin_and_a_silent_one_is_missed() {
     assert_eq!(c.worst_parameter.as_deref(), Some("bg_x"));
     assert!(c.harmful && c.missed && !c.refused);
     assert_eq!(c.faults[0].noticed_by, None);
+}
+
+/// A fault that opens σ: 4 σ of the twin are one of those that are published, and a refused calibration publishes none.
+#[test]
+fn a_shift_is_in_published_sigma_too() {
+    let (mut faulted, twin) = (calibration(3.0, None), calibration(1.0, None));
+    faulted.parameters.get_mut("bg_x").unwrap().sigma = Some(2.0);
+    faulted.parameters.get_mut("bg_y").unwrap().estimate = 7.5;
+    let c = compare((&faulted, &[]), (&twin, &[]), None);
+    assert_eq!((c.worst_parameter.as_deref(), c.worst_shift_sigma), (Some("bg_x"), Some(4.0)));
+    assert_eq!(c.worst_shift_published_sigma, Some(2.0), "that of bg_y: 0.5 over 0.25");
+    let refused = CalibrationScore { refused: Some("no".to_owned()), ..faulted };
+    let c = compare((&refused, &[]), (&twin, &[]), None);
+    assert_eq!((c.worst_shift_sigma, c.worst_shift_published_sigma), (Some(4.0), None));
 }
 
 #[test]

@@ -68,6 +68,16 @@ const COUNTERFACTUAL: Place = table(
             ),
         ),
         (
+            "worst_shift_published_sigma",
+            with(
+                &[Calibration, Sigma],
+                magnitude(
+                    Unit::Sigma,
+                    "largest |shift| of a parameter over the standard deviation that the run with the faults published",
+                ),
+            ),
+        ),
+        (
             "navigation",
             table(
                 "navigation",
