@@ -119,6 +119,7 @@ impl Bench {
                 nees: BTreeMap::new(),
                 worst_normalized_error: None,
                 refused: None,
+                refusal_explained: Vec::new(),
                 health: HealthCounts::default(),
                 sigma_hours: Vec::new(),
             }),

@@ -97,6 +97,7 @@ fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) 
         parameters,
         further: BTreeMap::new(),
         refused: None,
+        refusal_explained: Vec::new(),
         health: HealthCounts { measurements: 86_400, ..HealthCounts::default() },
         sigma_hours: Vec::new(),
     };

@@ -53,6 +53,7 @@ fn summary() -> Summary {
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: None,
+            refusal_explained: Vec::new(),
             health: HealthCounts::default(),
             sigma_hours: Vec::new(),
         }),

@@ -146,6 +146,7 @@ impl Parts {
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: refused.then(|| "so it was".to_owned()),
+            refusal_explained: Vec::new(),
             health: HealthCounts::default(),
             sigma_hours: Vec::new(),
         };

@@ -3,6 +3,7 @@
 use super::at_rest::instrument_noise;
 use super::findings::findings;
 use super::method::MethodRun;
+use super::refusal::{RefusedRun, explained};
 use super::rotation::leaves_g_zz_alone;
 use super::scores_text::{alignment_line, navigation_lines, solution_line};
 use super::twin::difference;
@@ -11,6 +12,7 @@ use octant_base::number;
 use octant_calibration::sequence::Stop;
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_evidence::disposition::Dispositions;
+use octant_recorder::event::FaultResult;
 use octant_report::counterfactual::in_words;
 use octant_report::{ReportData, ReportProvenance, SolutionSeries, StopLabel};
 use octant_requirements::Verdict;
@@ -18,14 +20,15 @@ use octant_requirements::decision::{DecisionRule, NavigationContext, TimeDoubt};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_scenario::file_names::FileNames;
-use octant_scenario::{MotionSpec, Scenario, SourceSpec};
+use octant_scenario::{CalibrationSpec, MotionSpec, Scenario, SourceSpec};
+use octant_score::counterfactual::Counterfactual;
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
 use octant_score::summary::{
-    AllanDeviation, AlteredStreamSummary, BaselineMethod, ParameterScore, Summary, WITH_FINDINGS,
-    results,
+    AllanDeviation, AlteredStreamSummary, BaselineMethod, CalibrationScore, ParameterScore,
+    Summary, WITH_FINDINGS, results,
 };
 use octant_turntable::TableAxis;
 use std::collections::BTreeMap;
@@ -183,6 +186,7 @@ pub fn assemble_with(
         pacing: primary.kept.as_ref().map(|kept| kept.pacing.clone()),
         stream_hash: primary.recorder.stream_hash.clone(),
     };
+    explain_refusals(&mut summary, scenario);
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
     judge_by(&mut summary, &requirements, &findings, |measure| {
         if scenario.decision.rule() == DecisionRule::SimpleAcceptance {
@@ -218,6 +222,32 @@ pub fn assemble_with(
 }
 
 /// Uncertainty of the times of a solution against its reference.
+/// Adds to each refused calibration what its reader needs.
+fn explain_refusals(summary: &mut Summary, scenario: &Scenario) {
+    let explain = |calibration: &mut Option<CalibrationScore>,
+                   faults: &[FaultResult],
+                   twin: Option<&Counterfactual>,
+                   plan: Option<&CalibrationSpec>| {
+        if let (Some(calibration), Some(plan)) = (calibration, plan)
+            && let Some(reason) = &calibration.refused
+        {
+            let health = &calibration.health;
+            let run = RefusedRun { reason, health, faults, twin, scenario, plan };
+            calibration.refusal_explained = explained(&run);
+        }
+    };
+    explain(
+        &mut summary.calibration,
+        &summary.faults,
+        summary.counterfactual.as_ref(),
+        scenario.calibration.as_ref(),
+    );
+    if let Some(baseline) = &mut summary.baseline {
+        let twin = baseline.counterfactual.as_ref();
+        explain(&mut baseline.calibration, &baseline.faults, twin, scenario.baseline.as_ref());
+    }
+}
+
 fn timing(scenario: &Scenario, run: &MethodRun) -> Option<TimeDoubt> {
     let SourceSpec::Solution(spec) = &scenario.source else { return None };
     let [speed_mps, acceleration_mps2, turning_radps] = run.watcher.moved.rates();
@@ -346,6 +376,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
             let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
             let worst = calibration
                 .worst_normalized_error
+                .filter(|_| calibration.refused.is_none())
                 .map_or(String::new(), |worst| format!(", worst parameter {worst:.1} σ off"));
             line(format!(
                 "  calibration {} h: NIS {nis}{worst}",
@@ -353,6 +384,7 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
             ));
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
+                calibration.refusal_explained.iter().for_each(|text| line(format!("    {text}")));
             }
             let solution = calibration.solution.iter();
             solution.filter_map(|solution| solution_line(solution, units)).for_each(&mut line);

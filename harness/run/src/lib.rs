@@ -42,6 +42,7 @@ pub mod prepared;
 pub mod raw_counts;
 pub mod realtime;
 mod recording;
+pub mod refusal;
 pub mod replayed;
 pub mod rotation;
 pub mod scores_text;

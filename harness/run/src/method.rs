@@ -444,6 +444,7 @@ pub(super) fn finish(
             parameters,
             further,
             refused: refused.clone(),
+            refusal_explained: Vec::new(),
             health,
             sigma_hours: watcher
                 .filtered

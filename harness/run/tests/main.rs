@@ -7,6 +7,7 @@ mod follow;
 mod minimise;
 mod moments;
 mod passes;
+mod refusal;
 mod rotation;
 mod unit;
 mod whiteness;

@@ -34,6 +34,10 @@ pub struct CalibrationScore {
     pub worst_normalized_error: Option<f64>,
     /// Reason for which the core refused its own calibration; null if it didn't.
     pub refused: Option<String>,
+    /// What that means, the likely causes with their evidence, and what to try, a line each. Empty for a published
+    /// calibration.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refusal_explained: Vec<String>,
     /// Counts of the core's reports.
     pub health: HealthCounts,
     /// Rows of the filter's σ over the calibration: hours of the run; heading, pitch and roll of the
