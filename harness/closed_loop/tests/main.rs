@@ -17,6 +17,7 @@ mod ensembles;
 mod further_states;
 mod gimbal_angles;
 mod presets;
+mod quiet_instruments;
 mod sigma_limits;
 mod smoothing;
 mod state_core;

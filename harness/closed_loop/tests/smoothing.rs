@@ -60,6 +60,7 @@ fn run(seed: u64, hours: f64, walk: f64, nodes: usize) -> Run {
     let interval_s = 1.0 / HZ as f64;
     let mut errors = Vec::new();
     let mut measured_s = None;
+    let mut last = None;
     loop {
         run.step_altered(|mut sample, aiding| {
             let fresh = noise.at(sample.sequence);
@@ -69,9 +70,12 @@ fn run(seed: u64, hours: f64, walk: f64, nodes: usize) -> Run {
                 sample.delta_theta[axis] += carried[axis].round() as i32;
                 carried[axis] -= carried[axis].round();
             }
-            Some((sample, aiding))
+            last = Some((sample, aiding));
+            last
         });
         if !matches!(run.output.mode, Mode::Aligning | Mode::Calibrating) {
+            let (sample, aiding) = last.unwrap();
+            history.end(&sample, aiding.as_ref()).unwrap();
             break;
         }
         // The answer to the sample of a measurement doesn't have its correction yet; that to the next one has.
@@ -85,6 +89,38 @@ fn run(seed: u64, hours: f64, walk: f64, nodes: usize) -> Run {
         }
     }
     Run { smoothed: history.smooth().unwrap(), errors }
+}
+
+#[test]
+fn the_last_measurement_of_a_calibration_is_smoothed_too() {
+    let (plant, core) = configuration(1, 0.5, 0.0);
+    let mut run = ClosedLoop::new(&plant, &core);
+    let mut history = FilterHistory::new(&core, 24).unwrap();
+    let mut last = None;
+    while matches!(run.output.mode, Mode::Aligning | Mode::Calibrating) {
+        run.step_altered(|sample, aiding| {
+            last = Some((sample, aiding));
+            last
+        });
+        history.watch(&run.core).unwrap();
+    }
+    let (sample, aiding) = last.unwrap();
+    history.end(&sample, aiding.as_ref()).unwrap();
+    // All that the core used: one a second up to the end of the half hour.
+    let table = run.core.table().unwrap();
+    assert_eq!((history.len() as u64, table.quality.used), (1800, 1800));
+    assert!((history.ends_s() - 1800.0).abs() < 1e-6, "{}", history.ends_s());
+    // The filter knows of constants at its end what the smoother knows at every time.
+    let mut largest: f64 = 0.0;
+    for node in history.smooth().unwrap().nodes {
+        let found = node.covariance();
+        for i in 0..PARAMETER_COUNT {
+            let smoothed = found[(PARAMETERS + i, PARAMETERS + i)];
+            largest = largest.max((smoothed / table.covariance[i][i] - 1.0).abs());
+        }
+    }
+    println!("variances of parameters: smoothed and published differ by {largest:e} at most");
+    assert!(largest < 1e-6, "{largest}");
 }
 
 fn errors_of(run: &ClosedLoop, parameters: &[f64; PARAMETER_COUNT], bias: &[f64; 3]) -> Errors {

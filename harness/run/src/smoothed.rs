@@ -53,6 +53,7 @@ impl Keeps<Replay, InProcess> for RepeatedCalibration {
         self.mode = output.mode;
         if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
             self.refusal = endpoint.core().refusal().map(ToString::to_string);
+            self.history.end(&sent.sample, sent.aiding.as_ref())?;
             return Ok(Some(Ended::Done));
         }
         self.history.watch(endpoint.core())?;

@@ -174,6 +174,11 @@ fn calibration(document: &mut DocumentTable) {
         (None, None) => by_case::G_DEPENDENT.to_owned(),
     };
     set(document, "procedure.calibration.prior.g_dependent", &prior);
+    let simulated = text(document, "source.uri").is_none_or(|uri| uri == "plant");
+    let still = text(document, "motion.kind").is_none_or(|kind| kind == "static");
+    let [exact, surveyed] = by_case::POSITION;
+    let position = if simulated && still { exact } else { surveyed };
+    set(document, "procedure.calibration.prior.position", position);
 }
 
 fn text<'a>(document: &'a DocumentTable, path: &str) -> Option<&'a str> {

@@ -522,6 +522,9 @@ mod tests {
             (at_dock, &format!("{aiding}.noise"), "dock-position"),
             (own, "source.fmu.time_limit", "in a process of its own"),
             ("", "procedure.calibration.prior.g_dependent", "elsewhere"),
+            ("", "procedure.calibration.prior.position", "simulated at rest"),
+            (at_dock, "procedure.calibration.prior.position", "elsewhere"),
+            (own, "procedure.calibration.prior.position", "elsewhere"),
         ] {
             let text = format!("schema = 1\n{set}[procedure.calibration.least_squares]\n");
             let mut document = document::parse(&text).unwrap();

@@ -8,7 +8,10 @@ use octant_calibration::Core;
 use octant_calibration::config::{Calibration, CoreConfig, Estimator, Kalman, SwayNoise};
 use octant_calibration::covariance::{Covariance, DR, DV, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
-use octant_sample::InnovationOf;
+use octant_sample::{Aiding, InnovationOf, Sample};
+
+/// Time within which two times are one, s: shorter than an aiding period.
+const END_S: f64 = 1e-5;
 
 /// History of a filter, taken from the core that holds it.
 #[derive(Debug)]
@@ -16,12 +19,17 @@ pub struct FilterHistory {
     store: Store,
     prior: Row,
     variance: f64,
+    duration_s: f64,
     node_every_s: f64,
     next_node_s: f64,
     used: u64,
     held: u64,
     begins_s: f64,
     ends_s: f64,
+    /// Samples of an aiding period, and the core as it was before the last one of its calibration: with that sample both
+    /// the filter and its last measurement are gone.
+    period_samples: u64,
+    before_end: Option<Box<Core>>,
 }
 
 fn filter_of(config: &CoreConfig) -> Result<(&Calibration, &Kalman), SmootherError> {
@@ -57,12 +65,15 @@ impl FilterHistory {
             store: Store::new()?,
             prior: prior_sigmas(kalman),
             variance: sigma * sigma,
+            duration_s: calibration.duration_s,
             node_every_s: calibration.duration_s / nodes.max(1) as f64,
             next_node_s: 0.0,
             used: 0,
             held: 0,
             begins_s: 0.0,
             ends_s: 0.0,
+            period_samples: kalman.aiding_period_ns / config.sample_period_ns.max(1),
+            before_end: None,
         })
     }
 
@@ -72,6 +83,10 @@ impl FilterHistory {
     /// If the file can't be written.
     pub fn watch(&mut self, core: &Core) -> Result<(), SmootherError> {
         let Some(filter) = core.filter() else { return Ok(()) };
+        // A gap may take the last samples.
+        if core.samples_to_end() <= self.period_samples {
+            self.before_end = Some(Box::new(core.clone()));
+        }
         let tally = filter.tally();
         if tally.used == self.used {
             return Ok(());
@@ -98,7 +113,9 @@ impl FilterHistory {
         };
         let covariance = filter.covariance();
         let time_s = filter.time_s();
-        let node = (time_s >= self.next_node_s).then(|| {
+        // At the end nothing follows that could tell more.
+        let looked_at = time_s >= self.next_node_s && time_s < self.duration_s - END_S;
+        let node = looked_at.then(|| {
             self.next_node_s += self.node_every_s
                 * (1.0 + libm::floor((time_s - self.next_node_s) / self.node_every_s));
             Box::new(Node {
@@ -118,6 +135,18 @@ impl FilterHistory {
             node,
         })?;
         Ok(())
+    }
+
+    /// Takes the last measurement, which comes with the sample that ended the calibration. Without it, where the stream ended
+    /// before or the calibration was broken off, nothing changes.
+    ///
+    /// # Errors
+    /// If the file can't be written.
+    pub fn end(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> Result<(), SmootherError> {
+        let Some(mut core) = self.before_end.take() else { return Ok(()) };
+        core.outlast();
+        core.step(sample, aiding);
+        self.watch(&core)
     }
 
     /// Prior standard deviations of all states.

@@ -65,6 +65,11 @@ const SUM_LOG: f64 = 40.0;
 /// cause, by 3°; and the number of such edges after which they are distrusted.
 const ENCODERS_SHARE: f64 = 0.05;
 const ENCODERS_EDGES: u32 = 2;
+/// Correction of the attitude after which velocity in n has an edge from the correction, rad, whatever the noise: 50″ of
+/// gravity are half of what the noise of Table 1 is allowed.
+const CORRECTION_RAD: f64 = 2.4e-4;
+/// Standard gravity, for a bound.
+const GRAVITY_MPS2: f64 = 9.81;
 /// Number of alarms in a stretch of 60 s that is a property of the stream; fewer may come from
 /// spikes.
 const ALARMS_MAX: u32 = 6;
@@ -104,6 +109,8 @@ pub struct Continuity {
     /// rad; and the turn of the base in a block, rad: their product is the apparent edge.
     corner: f64,
     sway: f64,
+    /// Change of the specific force whose edge is half of the velocity's limit, m/s².
+    correction_mps2: f64,
     /// Parameters of the cumulative sums: turn of a block attributed to noise, and limit, rad.
     sum: (f64, f64),
 
@@ -130,7 +137,7 @@ octant_state::state! {
     Continuity {
         values: ring, others, next, filled, way, middle, sums, widened, alarms, encoder_edges, stretch;
         parts: ;
-        kept: weights, limits, axes, corner, sway, sum;
+        kept: weights, limits, axes, corner, sway, correction_mps2, sum;
         check: Self::check_places
     }
 }
@@ -212,17 +219,19 @@ impl Continuity {
         // turn that the acceleration causes from one sample to the next.
         let step = 0.5 * weights.iter().map(|one| one.abs()).sum::<f64>();
         let corner = step * turntable.acceleration_radps2 * sample_s * sample_s / 12.0;
+        let limits = [
+            limit(walk, base.0, screening.resolution.0, screening.vibration.0),
+            limit(
+                noise.velocity_random_walk,
+                base.1,
+                screening.resolution.1,
+                screening.vibration.1,
+            ),
+        ];
         Some(Self {
             weights,
-            limits: [
-                limit(walk, base.0, screening.resolution.0, screening.vibration.0),
-                limit(
-                    noise.velocity_random_walk,
-                    base.1,
-                    screening.resolution.1,
-                    screening.vibration.1,
-                ),
-            ],
+            limits,
+            correction_mps2: 0.5 * limits[1] / (step * block_s),
             axes: AXES_SIGMAS * libm::sqrt(scale * scale + across * across + encoder * encoder),
             corner,
             sway: match screening.base {
@@ -261,11 +270,15 @@ impl Continuity {
         self.way.follow(gimbal);
     }
 
-    /// Discards the earlier velocity: the attitude was corrected by so much that velocity in n has
-    /// an edge from the correction. The gyros in the case don't.
-    pub fn attitude_corrected(&mut self) {
-        self.filled[1] = 0;
-        self.sums = [[0.0; 2]; 3];
+    /// Takes a correction that turned the attitude, rad, and changed the compensated specific force, m/s². Discards the
+    /// earlier velocity if that in n has an edge from it. The gyros in the case don't.
+    pub fn corrected(&mut self, turned_rad: f64, force_mps2: f64) {
+        if turned_rad > CORRECTION_RAD
+            || turned_rad * GRAVITY_MPS2 + force_mps2 > self.correction_mps2
+        {
+            self.filled[1] = 0;
+            self.sums = [[0.0; 2]; 3];
+        }
     }
 
     /// Encoder angles at the end of the last block.

@@ -38,6 +38,7 @@ use checkpoint::Checkpoint;
 use further::FurtherStates;
 use known_motion::KnownMotion;
 use nalgebra::{Matrix3, Vector3};
+use octant_earth::rotation::exp;
 use octant_sample::Parameters;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use sub_step::SubStep;
@@ -252,6 +253,10 @@ impl CalibrationFilter {
         step.samples += 1;
         if step.samples == step.samples_max.div_ceil(2) {
             step.c_middle = strapdown.c_nb();
+            if step.samples_max % 2 == 1 {
+                // The middle of the sub-step is that of this sample, which turned the body by dtheta.
+                step.c_middle *= exp(&(dtheta * -0.5)).to_rotation_matrix().matrix();
+            }
         }
         if step.samples >= step.samples_max {
             self.close_sub_step(strapdown);

@@ -10,6 +10,9 @@ pub(crate) const TIME_LIMIT: &str = "10 s";
 pub(crate) const GUARD: [&str; 2] = ["1 s", "0 s"];
 /// `procedure.calibration.prior.g_dependent`, where the scenario doesn't draw them.
 pub(crate) const G_DEPENDENT: &str = "0.0005 deg/h/g";
+/// `procedure.calibration.prior.position`: of a simulated instrument at rest, which is where the site is, and elsewhere.
+/// A metre of height is 0.3 µg of gravity, which the accelerometers' scale factors take.
+pub(crate) const POSITION: [&str; 2] = ["1 cm", "1 m"];
 /// `procedure.calibration.aiding.reference`, at rest and at the dockside.
 pub(crate) const REFERENCES: [&str; 2] = ["zero-velocity", "dock-position"];
 /// `procedure.calibration.aiding.sigma` and `noise` of a velocity.
@@ -32,6 +35,8 @@ pub(super) const G_DEPENDENTS: Cases = &[
     ("where imu.g_dependent is drawn", Told("its standard deviation")),
     ("elsewhere", Value(G_DEPENDENT)),
 ];
+pub(super) const PRIOR_POSITIONS: Cases =
+    &[("simulated at rest", Value(POSITION[0])), ("elsewhere", Value(POSITION[1]))];
 pub(super) const REFERENCE_CASES: Cases =
     &[("static", Value(REFERENCES[0])), ("dockside", Value(REFERENCES[1]))];
 pub(super) const SIGMAS: Cases = &[

@@ -1,6 +1,6 @@
 //! Keys of the procedure: alignment, calibration, navigation, screening, baseline.
 
-use super::by_case::{G_DEPENDENTS, NOISES, REFERENCE_CASES, SIGMAS};
+use super::by_case::{G_DEPENDENTS, NOISES, PRIOR_POSITIONS, REFERENCE_CASES, SIGMAS};
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use super::further::FurtherKeys;
 use super::table::{
@@ -229,7 +229,8 @@ keys! {
             "Attitude error north, east, down.";
         velocity: f64 = si(&[UnitDimension::VELOCITY], Bounds::Positive), "0.02 m/s",
             "Velocity, each axis.";
-        position: f64 = si(&[UnitDimension::LENGTH], Bounds::Positive), "1 m", "Position, each axis.";
+        position: f64 = si(&[UnitDimension::LENGTH], Bounds::Positive), by_case(PRIOR_POSITIONS),
+            "Position, each axis.";
         gyro_bias: f64 = si(&[UnitDimension::GYRO_BIAS], Bounds::Positive), "0.005 deg/h",
             "Gyro biases.";
         gyro_scale: f64 = si(&[UnitDimension::RATIO], Bounds::Positive), "30 ppm",

@@ -11,6 +11,7 @@ use crate::reference::ReferenceSpec;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
 use octant_calibration::config as core;
+use octant_earth::units::{DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_faults::station::FaultSpec;
 use octant_faults::{FaultBuildError, Setup, Station};
 use octant_plant::config as plant;
@@ -19,6 +20,11 @@ use octant_power::PowerPlan;
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
 use std::path::PathBuf;
+
+/// Noise of gyros, rad/√s, and of accelerometers, (m/s²)/√Hz, below which, both together, squares of normalized errors are
+/// above 1.1 in the mean (`quiet_instruments` in `harness/closed_loop`).
+const QUIET_GYRO: f64 = 1e-5 * DEG_PER_SQRT_HOUR;
+const QUIET_ACCELEROMETER: f64 = 0.5 * MICRO_G;
 
 /// A checked scenario, in SI. Random values are still distributions: see [`resolve`](crate::resolve).
 #[derive(Clone, Debug)]
@@ -306,6 +312,30 @@ impl Scenario {
             let id = &fault.spec.id;
             format!("fault {id:?} is fired by hand, and no --fire {id}=TIME does: it won't fire")
         };
-        self.faults.iter().filter(idle).map(text).collect()
+        let faults = self.faults.iter().filter(idle).map(text);
+        faults.chain(self.quiet()).collect()
+    }
+
+    /// Warning about sensors so quiet that the filter's σ are too small: its error model is linear, and what is of second
+    /// order in errors of the size of Table 1 is more than such noise.
+    fn quiet(&self) -> Option<String> {
+        let calibrates = self
+            .calibration
+            .iter()
+            .chain(&self.baseline)
+            .any(|calibration| matches!(calibration.estimator, core::Estimator::Kalman(_)));
+        let (gyro, accel) = (self.imu.angle_random_walk, self.imu.velocity_random_walk);
+        let quiet = gyro < QUIET_GYRO && accel < QUIET_ACCELEROMETER;
+        (calibrates && quiet && matches!(self.source, SourceSpec::Plant)).then(|| {
+            format!(
+                "imu.angle_random_walk and imu.velocity_random_walk: found {:.1e} deg/√h and {:.1e} ug/√Hz, both below \
+                 {:.0e} deg/√h and {:.1} ug/√Hz: the filter is linear, and its σ are too small for what is of second order \
+                 in errors of the size of Table 1",
+                gyro / DEG_PER_SQRT_HOUR,
+                accel / MICRO_G,
+                QUIET_GYRO / DEG_PER_SQRT_HOUR,
+                QUIET_ACCELEROMETER / MICRO_G
+            )
+        })
     }
 }

@@ -14,10 +14,6 @@ use octant_sample::{GimbalAngles, Health, Mode, Sample, Status};
 /// Tolerance of the length of a block, as a share; after a gap a block is outside of it.
 const LENGTH_SHARE: f64 = 0.02;
 
-/// Correction of the attitude after which velocity in n has an edge from the correction, rad: 50″
-/// of gravity are half of the allowance for noise.
-pub(super) const CORRECTION_RAD: f64 = 2.4e-4;
-
 /// Time for which a disturbance explains a recovery, s: a recovery goes back by one to two minutes.
 const EXPLAINS_S: f64 = 60.0;
 

@@ -24,6 +24,21 @@ impl Core {
         self.output(Health::empty(), f64::NAN)
     }
 
+    /// Samples until the calibration ends by its duration; 0 where it has ended, or there is none.
+    #[must_use]
+    pub fn samples_to_end(&self) -> u64 {
+        match self.mode {
+            Mode::Aligning | Mode::Calibrating => self.calibration_ticks.saturating_sub(self.tick),
+            _ => 0,
+        }
+    }
+
+    /// Lets the calibration outlast its duration: [`Self::end_of_stream`] alone ends it. So the filter can be looked at after
+    /// its last measurement, with which it otherwise ends.
+    pub fn outlast(&mut self) {
+        self.calibration_ticks = u64::MAX;
+    }
+
     /// Not inlined: the copies that an adjustment makes would give every step a frame of a hundred
     /// kilobytes, each page of which is touched on entry.
     #[cold]

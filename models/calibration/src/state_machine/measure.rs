@@ -1,13 +1,15 @@
 //! One measurement: the reference that came with a sample, and the filter's use of it.
 
-use super::edges::CORRECTION_RAD;
 use super::estimation::Estimation;
 use super::{CalibrationRefusal, Core, kalman_of};
 use crate::compensation::Compensation;
 use crate::drift::DriftTest;
 use octant_earth::frames::c_cb;
-use octant_sample::{Aiding, Health, Sample, Status};
+use octant_sample::parameters::ParameterGroup;
+use octant_sample::{Aiding, Health, Parameters, Sample, Status};
 
+/// Standard gravity, for a bound.
+const GRAVITY_MPS2: f64 = 9.81;
 /// Memory of the running mean of NIS, measurements.
 const NIS_MEMORY: f64 = 64.0;
 
@@ -101,10 +103,9 @@ impl Core {
                 }
                 self.revision = self.revision.saturating_add(1);
             }
-            if measured.turned_rad > CORRECTION_RAD
-                && let Some(continuity) = &mut self.continuity
-            {
-                continuity.attitude_corrected();
+            if let Some(continuity) = &mut self.continuity {
+                let force_mps2 = force_change_mps2(&before, &self.parameters);
+                continuity.corrected(measured.turned_rad, force_mps2);
             }
             if measured.recovery_started
                 && self.tick - self.disturbed_tick > explains_ticks
@@ -131,4 +132,15 @@ impl Core {
         }
         self.compare_turns(sample, health);
     }
+}
+
+/// Largest change of the compensated specific force by a change of the accelerometers' parameters, m/s².
+fn force_change_mps2(before: &Parameters, after: &Parameters) -> f64 {
+    let (before, after) = (before.to_array(), after.to_array());
+    let changed = |group: ParameterGroup| {
+        group.range().fold(0.0f64, |most, i| most.max((after[i] - before[i]).abs()))
+    };
+    changed(ParameterGroup::AccelBias)
+        + GRAVITY_MPS2
+            * (changed(ParameterGroup::AccelScale) + changed(ParameterGroup::AccelMisalignment))
 }
