@@ -126,3 +126,22 @@ def constants(program):
          "sites": sorted(entry["sites"]), "functions": sorted(entry["functions"])}
         for key, entry in sorted(sites.items(), key=lambda item: min(item[1]["offsets"]))
     ]
+
+
+def copies(program, value):
+    """Every place of this number: in read-only data, whoever reads it there (a table of units is read by its index), and in
+    instructions that hold it."""
+    data = program.read_bytes()
+    bits = struct.pack("<d", value)
+    found = []
+    for name, (_, offset, length) in sections(data).items():
+        if name not in (".rodata", ".data.rel.ro", ".text"):
+            continue
+        at = data.find(bits, offset, offset + length)
+        while at != -1:
+            # Data is aligned; REX.W and the opcode of a move stand before the number in an instruction.
+            moves = data[at - 2] in (0x48, 0x49) and 0xB8 <= data[at - 1] <= 0xBF
+            if moves if name == ".text" else at % 8 == 0:
+                found.append({"kind": "copy", "value": value, "offsets": [at], "sites": [], "functions": [f"{name} at {at:#x}"]})
+            at = data.find(bits, at + 1, offset + length)
+    return found

@@ -57,6 +57,15 @@ class Tool(unittest.TestCase):
     def test_constants_of_our_functions_are_found_and_no_others(self):
         self.assertEqual(sorted(c["value"] for c in elf.constants(self.program)), [9.780325, 1852.75, 6378137.25])
 
+    def test_a_number_is_changed_in_each_of_its_places(self):
+        tool = HERE.parent / "mutate-constants"
+        for change, status, words in (("6378137.25=6378138.25", 0, "1 of 1 places found"),
+                                      ("299792458.5=299792459.5", 1, "NOT FOUND"), ("7.5=8.5", 2, "")):
+            done = subprocess.run([sys.executable, tool, "--program", self.program, "--everywhere", change],
+                                  capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+            self.assertIn(words, done.stdout)
+
     def test_what_is_executed_is_in_reach(self):
         constants = elf.constants(self.program)
         sites = {site for constant in constants for site in constant["sites"]}

@@ -14,6 +14,7 @@ mod drift_power;
 mod earth_golden;
 mod ensemble_prediction;
 mod ensembles;
+mod expected_nis;
 mod further_states;
 mod gimbal_angles;
 mod presets;

@@ -139,6 +139,7 @@ impl Endpoint for InProcess {
         Conclusion {
             refused: self.core.refusal().map(ToString::to_string),
             nis_mean: Some(quality.nis_mean),
+            nis_expected: self.core.expected_nis().map(|expected| [expected.low, expected.high]),
             measurements: Some(quality.used + quality.rejected),
             // A table has the parameters alone: without the further states that were estimated beside them it would
             // be another compensation.

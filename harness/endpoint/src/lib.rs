@@ -209,6 +209,8 @@ pub struct Conclusion {
     pub refused: Option<String>,
     /// Mean NIS of the measurements used.
     pub nis_mean: Option<f64>,
+    /// Mean NIS that is expected, where it isn't 3: 95 % of runs are between the two.
+    pub nis_expected: Option<[f64; 2]>,
     /// Measurements, used and rejected.
     pub measurements: Option<u64>,
     /// The calibration table, where the calibration was accepted.

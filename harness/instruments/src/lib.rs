@@ -68,3 +68,5 @@ pub use framing::{FramingEvent, ReadingCounters, ReadingDefect, UnreadBytes};
 pub use reading::{MeasuredTriad, Reading, ReadingKind, Stamp, StampClock};
 pub use sampler::{Sampler, SamplerCounters, SamplerSettings, Unusable};
 pub use stamp_scale::{GPS_EPOCH_S, StampScale};
+#[cfg(any(feature = "dbc", feature = "descriptions"))]
+pub use units::unit_si;

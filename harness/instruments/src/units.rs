@@ -47,6 +47,12 @@ pub(crate) fn unit(text: &str) -> Option<Unit> {
     UNITS.iter().find(|(names, _)| names.contains(&text)).map(|(_, unit)| *unit)
 }
 
+/// Size of a unit in SI units, °C for temperatures.
+#[must_use]
+pub fn unit_si(text: &str) -> Option<f64> {
+    unit(text).map(|(_, si)| si)
+}
+
 /// Names of the units of some quantities.
 pub(crate) fn names(quantities: &[Quantity]) -> std::string::String {
     let of = UNITS.iter().filter(|(_, (quantity, _))| quantities.contains(quantity));

@@ -116,6 +116,7 @@ impl Bench {
                 parameters: NAMES.map(|name| (name.to_owned(), parameter(name))).into(),
                 further: BTreeMap::new(),
                 nis_mean: Some(3.0),
+                nis_expected: None,
                 nees: BTreeMap::new(),
                 worst_normalized_error: None,
                 refused: None,

@@ -92,6 +92,7 @@ fn calibration(positions: &str, with_g: bool) -> (CalibrationScore, Parameters) 
         estimator: "39-state Kalman filter (phi)".to_owned(),
         duration_h: 24.0,
         nis_mean: Some(3.004),
+        nis_expected: None,
         nees: parameters::nees(&parameters, &std::collections::BTreeMap::new()),
         worst_normalized_error: parameters::worst_normalized_error(&parameters, &[]),
         parameters,

@@ -50,6 +50,7 @@ fn summary() -> Summary {
             parameters: BTreeMap::new(),
             further: BTreeMap::new(),
             nis_mean: Some(3.01),
+            nis_expected: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: None,

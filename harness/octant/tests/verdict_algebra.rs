@@ -143,6 +143,7 @@ impl Parts {
             parameters: BTreeMap::new(),
             further: BTreeMap::new(),
             nis_mean: None,
+            nis_expected: None,
             nees: BTreeMap::new(),
             worst_normalized_error: None,
             refused: refused.then(|| "so it was".to_owned()),

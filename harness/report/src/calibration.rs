@@ -35,6 +35,6 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
         (convergence(data))
         (filtered(data))
         (correlation(data))
-        (innovations(data))
+        (innovations(data, calibration.nis_expected))
     }
 }

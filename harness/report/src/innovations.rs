@@ -11,8 +11,9 @@ const CHI_SQUARED_3: [f64; 2] = [0.2158, 9.3484];
 /// Largest lag of the autocorrelation.
 const LAGS: usize = 50;
 
-/// Renders the innovations; empty for fewer than two.
-pub(super) fn innovations(data: &ReportData) -> Markup {
+/// Renders the innovations; empty for fewer than two. `expected`: between which values the mean of a run is expected, where
+/// it isn't 3.
+pub(super) fn innovations(data: &ReportData, expected: Option<[f64; 2]>) -> Markup {
     let finite: Vec<NisPoint> = data.nis.iter().copied().filter(|p| p.nis.is_finite()).collect();
     if finite.len() < 2 {
         return html! {};
@@ -25,8 +26,13 @@ pub(super) fn innovations(data: &ReportData) -> Markup {
             single values lie between 0.22 and 9.35. Here "
             (number::fixed(100.0 * inside as f64 / finite.len() as f64, 1)) " % of "
             (finite.len()) " values do." }
+        @if let Some([low, high]) = expected {
+            p.hint { "This filter considers states whose errors in a run move all innovations of it: they aren't white, and \
+                95 % of runs have a mean NIS between " (number::fixed(low, 2)) " and " (number::fixed(high, 2)) ". Over all \
+                runs it is 3." }
+        }
         div.plots {
-            (means(&finite))
+            (means(&finite, expected))
             (single(&finite))
             (whiteness(&finite))
         }
@@ -35,7 +41,7 @@ pub(super) fn innovations(data: &ReportData) -> Markup {
 }
 
 /// Draws means of equal numbers of measurements with the bounds of such a mean.
-fn means(finite: &[NisPoint]) -> Markup {
+fn means(finite: &[NisPoint], expected: Option<[f64; 2]>) -> Markup {
     let size = finite.len().div_ceil(240);
     let means: Vec<[f64; 2]> = finite
         .chunks(size)
@@ -47,16 +53,19 @@ fn means(finite: &[NisPoint]) -> Markup {
         .collect();
     // The mean of n values of χ²₃ has variance 6/n.
     let half = 1.96 * libm::sqrt(6.0 / size as f64);
+    let [low, high] = expected.map_or([3.0 - half, 3.0 + half], |[low, high]| {
+        [low.min(3.0 - half), high.max(3.0 + half)]
+    });
     let ends = [means.first().map_or(0.0, |p| p[0]), means.last().map_or(1.0, |p| p[0])];
     let mut chart = Chart::new("Mean NIS", "hours of the run", "Mean NIS, three axes");
     chart.height = 200.0;
     chart.run_offset_h = Some(0.0);
-    let highest = means.iter().map(|p| p[1]).fold(3.0 + half, f64::max);
+    let highest = means.iter().map(|p| p[1]).fold(high, f64::max);
     chart.y_range = Some([0.0, (1.1 * highest).max(6.0)]);
     chart.bands.push(Band {
         label: "95 % interval of the mean".to_owned(),
         role: ChartRole::Reference,
-        points: ends.iter().map(|&x| [x, (3.0 - half).max(0.0), 3.0 + half]).collect(),
+        points: ends.iter().map(|&x| [x, low.max(0.0), high]).collect(),
     });
     chart.lines.push(ChartLine {
         label: format!("mean of {size} measurements"),

@@ -195,7 +195,7 @@ fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
             }
             @if let Some(c) = &summary.calibration {
                 @if let Some(nis) = c.nis_mean {
-                    (figure("Mean NIS, 3 expected", "", nis, 3, other_calibration.and_then(|o| o.nis_mean)))
+                    (figure(&format!("Mean NIS, {} expected", c.nis_expected_words()), "", nis, 3, other_calibration.and_then(|o| o.nis_mean)))
                 }
                 @if let Some(worst) = c.worst_normalized_error {
                     (figure("Worst parameter error", "σ", worst, 2,

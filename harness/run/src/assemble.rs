@@ -373,7 +373,12 @@ pub fn text(summary: &Summary, units: &DisplayUnits) -> String {
         line(format!("{label}, seed {}", summary.seed));
         alignment.iter().map(|alignment| alignment_line(alignment, units)).for_each(&mut line);
         if let Some(calibration) = calibration {
-            let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
+            let expected = match calibration.nis_expected {
+                Some(_) => format!(" ({} expected)", calibration.nis_expected_words()),
+                None => String::new(),
+            };
+            let nis =
+                calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}{expected}"));
             let worst = calibration
                 .worst_normalized_error
                 .filter(|_| calibration.refused.is_none())

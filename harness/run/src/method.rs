@@ -439,6 +439,7 @@ pub(super) fn finish(
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
             nis_mean: nis_mean.filter(|nis| nis.is_finite()),
+            nis_expected: conclusion.nis_expected,
             nees: nees(&parameters, &further),
             worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
             parameters,

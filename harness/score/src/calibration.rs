@@ -27,6 +27,10 @@ pub struct CalibrationScore {
     pub further: BTreeMap<String, ParameterScore>,
     /// Mean normalized innovation squared; expected: 3 for three axes.
     pub nis_mean: Option<f64>,
+    /// Where the filter considers states, whose errors in a run move all of its innovations: between which values 95 % of
+    /// the runs have their mean NIS. Without such states, and with a core that isn't called directly, it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nis_expected: Option<[f64; 2]>,
     /// Normalized estimation error squared by group, divided by the size of the group; expected: 1.
     /// Groups that were not estimated are left out.
     pub nees: BTreeMap<String, f64>,
@@ -45,6 +49,15 @@ pub struct CalibrationScore {
     /// of a campaign.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sigma_hours: Vec<[f64; 6]>,
+}
+
+impl CalibrationScore {
+    /// The mean NIS that is expected, in words: `3`, or `2.81 to 3.79`.
+    #[must_use]
+    pub fn nis_expected_words(&self) -> String {
+        self.nis_expected
+            .map_or_else(|| "3".to_owned(), |[low, high]| format!("{low:.2} to {high:.2}"))
+    }
 }
 
 /// One parameter, in its unit.

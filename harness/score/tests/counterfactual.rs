@@ -30,6 +30,7 @@ fn calibration(estimate: f64, refused: Option<&str>) -> CalibrationScore {
         .into(),
         further: BTreeMap::new(),
         nis_mean: None,
+        nis_expected: None,
         nees: BTreeMap::new(),
         worst_normalized_error: None,
         refused: refused.map(str::to_owned),

@@ -1,7 +1,7 @@
 //! Numbers known from other sources: closed forms, matrix exponentials, an independent filter.
 
 use super::bench::CaseBench;
-use super::case::SelftestCase;
+use super::case::{STARTED_LIMIT, SelftestCase};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation, Known};
 use super::scenarios::{BELIEVING, MOSTLY, SHORT, SPIKE, campaign};
@@ -33,6 +33,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 "matrix exponential of the free-inertial system (golden/static_free_inertial.json); \
                  the tolerance is what terms of second order make",
             ),
+            limit: STARTED_LIMIT,
             run: free_inertial,
         },
         SelftestCase {
@@ -48,6 +49,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 ],
                 "closed forms: Britting, Inertial Navigation Systems Analysis, chapter 7",
             ),
+            limit: STARTED_LIMIT,
             run: drift,
         },
         SelftestCase {
@@ -63,6 +65,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 ],
                 "static algebra of horizontal and vertical gyro drift",
             ),
+            limit: STARTED_LIMIT,
             run: ranks,
         },
         SelftestCase {
@@ -72,6 +75,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 sigmas(),
                 "an independent filter (golden/covariance.json); 1 % of each σ",
             ),
+            limit: STARTED_LIMIT,
             run: posterior,
         },
         SelftestCase {
@@ -82,6 +86,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 vec![known("nis_mean", 3.0, 4.0 * 0.020_412)],
                 "χ² with three degrees of freedom, 14400 values; the tolerance is 4 σ",
             ),
+            limit: STARTED_LIMIT,
             run: consistent,
         },
         SelftestCase {
@@ -91,6 +96,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 vec![known("worst_shift_sigma", 122.0, 0.2 * 122.0)],
                 "an independent filter; 20 % for what it leaves out",
             ),
+            limit: STARTED_LIMIT,
             run: believed,
         },
         SelftestCase {
@@ -102,6 +108,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 source: "this version, where it was made: an operating system, processor or \
                          compiler that computes otherwise shows here",
             },
+            limit: STARTED_LIMIT,
             run: stream_hash,
         },
         SelftestCase {
@@ -112,6 +119,7 @@ pub(super) fn cases() -> Vec<SelftestCase> {
                 vec![known("needed", 58.0, 0.1)],
                 "Clopper and Pearson: 0.95^59 < 0.05 < 0.95^58",
             ),
+            limit: STARTED_LIMIT,
             run: fifty_nine,
         },
     ]

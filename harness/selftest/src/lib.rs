@@ -3,7 +3,7 @@
 //! [`judge`](mod@judge) compares outcome and expectation, [`bench`](mod@bench) starts the program,
 //! [`golden`] has the known numbers of whole runs, [`answers`] those of every part, [`verdicts`]
 //! the cases that must pass and those that must not, [`same`] those that must give the same bytes,
-//! [`record`] the stored result.
+//! [`record`] the stored result. Each case has a limit of time: a program with another number may compute for ever.
 //!
 //! Nothing is taken from the repository: scenarios and numbers are built into the program.
 
@@ -17,11 +17,11 @@ pub mod record;
 pub mod same;
 mod scenarios;
 pub mod verdicts;
+mod within;
 
-pub use case::SelftestCase;
+pub use case::{COMPUTED_LIMIT, STARTED_LIMIT, SelftestCase};
 
-use bench::CaseBench;
-use error::{CaseFolderError, CaseSetupError};
+use error::CaseFolderError;
 use octant_base::pool::in_order;
 use record::CaseRecord;
 use std::path::Path;
@@ -54,9 +54,7 @@ pub fn run(
     let is_cancelled = || cancel.load(Ordering::Relaxed);
     let work = |index: usize| {
         let case = &cases[index];
-        let outcome = CaseBench::new(program, &folder.path().join(case.id), cancel)
-            .map_err(CaseSetupError::from)
-            .and_then(|bench| (case.run)(&bench));
+        let outcome = within::outcome(program, &folder.path().join(case.id), case, cancel);
         // The outcome of a case that was interrupted by us has no meaning.
         if is_cancelled() {
             return Ok::<_, CaseFolderError>(None);

@@ -2,13 +2,19 @@
 //! in parts.
 
 use super::bench::CaseBench;
-use super::case::SelftestCase;
+use super::case::{STARTED_LIMIT, SelftestCase};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, SHORT, campaign};
 
 pub(super) fn cases() -> Vec<SelftestCase> {
-    let case = |id, about, run| SelftestCase { id, about, expectation: Expectation::Same, run };
+    let case = |id, about, run| SelftestCase {
+        id,
+        about,
+        expectation: Expectation::Same,
+        limit: STARTED_LIMIT,
+        run,
+    };
     vec![
         case("run-twice", "A run with a fault and its twin, made twice.", run_twice),
         case("sweep-jobs", "A sweep of a fault, a cell at a time and four at a time.", sweep),

@@ -2,7 +2,7 @@
 //! recordings, in evidence and in campaigns.
 
 use super::bench::CaseBench;
-use super::case::SelftestCase;
+use super::case::{STARTED_LIMIT, SelftestCase};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
@@ -17,7 +17,7 @@ const DROPPED: &str = include_str!("../../../fixtures/selftest/dropped.toml");
 type Work = fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>;
 
 fn passes(id: &'static str, about: &'static str, run: Work) -> SelftestCase {
-    SelftestCase { id, about, expectation: Expectation::Pass, run }
+    SelftestCase { id, about, expectation: Expectation::Pass, limit: STARTED_LIMIT, run }
 }
 
 fn fails(
@@ -26,7 +26,8 @@ fn fails(
     (status, because): (i32, &'static str),
     run: Work,
 ) -> SelftestCase {
-    SelftestCase { id, about, expectation: Expectation::NotPass { status, because }, run }
+    let expectation = Expectation::NotPass { status, because };
+    SelftestCase { id, about, expectation, limit: STARTED_LIMIT, run }
 }
 
 pub(super) fn must_pass() -> Vec<SelftestCase> {

@@ -4,4 +4,5 @@
 mod answers;
 mod golden;
 mod judge;
+mod limit;
 mod record;

@@ -60,6 +60,15 @@ pub struct Tally {
     pub held: u64,
 }
 
+/// Mean NIS that is expected of a run whose filter considers states: 95 % of runs are between the two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedNis {
+    /// Lower bound.
+    pub low: f64,
+    /// Upper bound.
+    pub high: f64,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 enum Stage {
@@ -389,6 +398,20 @@ impl CalibrationFilter {
     #[must_use]
     pub fn further(&self) -> Option<FurtherEstimates> {
         self.further.as_ref().map(FurtherStates::estimates)
+    }
+
+    /// Mean NIS that is expected of this run; `None` where no further state is considered, and 3 is.
+    #[must_use]
+    pub fn expected_nis(&self) -> Option<ExpectedNis> {
+        self.further.as_ref().and_then(FurtherStates::expected_nis)
+    }
+
+    /// Mean NIS that is expected of a run in which the considered states have these values, in units of their σ and in the
+    /// order of the border.
+    #[cfg(feature = "state")]
+    #[must_use]
+    pub fn expected_nis_of(&self, values: &[f64]) -> Option<f64> {
+        self.further.as_ref().and_then(|further| further.expected_nis_of(values))
     }
 
     /// Counts of the gimbal angles as measurements; `None` where they are none.

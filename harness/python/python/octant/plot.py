@@ -167,6 +167,13 @@ def parameters(run: Run, axes: Any = None, *, group: str = "g_dependent", sigmas
     return figure
 
 
+def _expected_nis(run: Method) -> str:
+    """Mean NIS that is expected of a run: 3, or a range where its filter considers states."""
+    calibration = (getattr(run, "summary", None) or {}).get("calibration") or {}
+    expected = calibration.get("nis_expected")
+    return f"{expected[0]:.2f} to {expected[1]:.2f}" if expected else "3"
+
+
 def nis(run: Method, axes: Any = None) -> Any:
     """Normalized innovation squared of the measurements, with the bounds that hold 95 % of them."""
     table = run.innovations
@@ -178,7 +185,7 @@ def nis(run: Method, axes: Any = None) -> Any:
     for bound in NIS_BOUNDS:
         axis.axhline(bound, color="0.4", linewidth=0.7, linestyle="--")
     mean = float(np.mean(table["nis"][~rejected])) if (~rejected).any() else float("nan")
-    axis.set_title(f"NIS: mean {mean:.3f}, expected 3", fontsize=10)
+    axis.set_title(f"NIS: mean {mean:.3f}, expected {_expected_nis(run)}", fontsize=10)
     axis.set_yscale("log")
     axis.set_xlabel("time, h")
     axis.legend(loc="upper right", fontsize=8)

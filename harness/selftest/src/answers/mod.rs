@@ -27,7 +27,7 @@ mod strapdown;
 mod units;
 
 use super::bench::CaseBench;
-use super::case::SelftestCase;
+use super::case::{COMPUTED_LIMIT, SelftestCase};
 use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation, Known};
 use numbers::{Found, known};
@@ -47,7 +47,8 @@ fn case(
     source: &'static str,
     run: fn(&CaseBench<'_>) -> Result<CaseOutcome, CaseSetupError>,
 ) -> SelftestCase {
-    SelftestCase { id, about, expectation: Expectation::Numbers { known, source }, run }
+    let expectation = Expectation::Numbers { known, source };
+    SelftestCase { id, about, expectation, limit: COMPUTED_LIMIT, run }
 }
 
 /// Whole runs with known numbers that take less than a second.

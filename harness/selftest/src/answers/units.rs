@@ -18,6 +18,13 @@ pub(super) fn found() -> Result<Found, String> {
         let value = match name.strip_prefix("unit of ") {
             Some(_) if let Some(state) = state => state_unit(std::hint::black_box(state)).1,
             Some(group) => of_group(group).ok_or_else(|| format!("find the group {group}"))?,
+            None if let Some(unit) = name.strip_suffix(" in an FMU") => {
+                of_fmu(unit).ok_or_else(|| format!("find the unit of {name}"))?
+            }
+            None if let Some(unit) = name.strip_suffix(" in a field") => {
+                octant_instruments::unit_si(std::hint::black_box(unit))
+                    .ok_or_else(|| format!("find the unit of {name}"))?
+            }
             None if name.ends_with(REPORTED) => {
                 reported(&name).ok_or_else(|| format!("find the angle of {name}"))?
             }
@@ -46,6 +53,15 @@ fn reported(name: &str) -> Option<f64> {
         "pitch" => score.pitch_deg,
         _ => score.roll_deg,
     }
+}
+
+/// Factor of a unit in the description of an FMU, or its zero: `zero of degC`. Of two meanings it is the one without a mass:
+/// `g` is a gram too.
+fn of_fmu(name: &str) -> Option<f64> {
+    let zero = name.strip_prefix("zero of ");
+    let known = octant_fmu_host::description::units::known(std::hint::black_box(zero.unwrap_or(name)));
+    let massless = known.iter().find(|unit| unit.exponents[0] == 0).or(known.first())?;
+    Some(if zero.is_some() { massless.offset } else { massless.factor })
 }
 
 fn of_group(name: &str) -> Option<f64> {

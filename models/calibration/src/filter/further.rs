@@ -10,6 +10,7 @@
 mod angles;
 mod border;
 mod columns;
+mod expected;
 mod gimbals;
 #[cfg(test)]
 mod jacobian;
@@ -30,6 +31,7 @@ pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
 use border::{BORDER_COUNT, Border, CASE, Process, places};
 use columns::UNHEATED_ROW;
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
+use expected::NisSpread;
 pub use gimbals::AngleTally;
 use gimbals::GimbalAngleMeasurement;
 use nalgebra::{Matrix3, Vector3};
@@ -56,6 +58,8 @@ pub(super) struct FurtherStates {
     driving_row: usize,
     /// Gimbal angles as measurements, if they are.
     angles: Option<GimbalAngleMeasurement>,
+    /// What the NIS of a run owes to states that are considered, if any are.
+    spread: Option<NisSpread>,
 }
 
 impl FurtherStates {
@@ -72,7 +76,7 @@ impl FurtherStates {
             (None, true) => DRIVING_COUNT,
             (None, false) => TEMPERATURE_START,
         });
-        let mut estimated = [false; BORDER_COUNT];
+        let (mut estimated, mut considered) = ([false; BORDER_COUNT], [false; BORDER_COUNT]);
         if angles.is_some() {
             estimated[CASE..].fill(true);
         }
@@ -81,6 +85,7 @@ impl FurtherStates {
             for k in places(group) {
                 border.own[k][k] = sigma * sigma;
                 estimated[k] = matches!(further.of(group), FurtherUse::Estimated { .. });
+                considered[k] = !estimated[k];
             }
         }
         Some(Self {
@@ -96,6 +101,7 @@ impl FurtherStates {
             processes: processes(further),
             driving_row: if heated { FURTHER_ROW } else { UNHEATED_ROW },
             angles,
+            spread: NisSpread::new(considered),
         })
     }
 
@@ -350,6 +356,7 @@ impl octant_state::State for FurtherStates {
             processes: _,
             driving_row,
             angles,
+            spread,
         } = self;
         if *driving_row == FURTHER_ROW {
             save_rows(columns, to);
@@ -368,6 +375,9 @@ impl octant_state::State for FurtherStates {
         to.part("checkpoints", checkpoints);
         if let Some(angles) = angles {
             to.value("angles", &angles.tally);
+        }
+        if let Some(spread) = spread {
+            to.part("nis spread", spread);
         }
     }
 
@@ -395,6 +405,9 @@ impl octant_state::State for FurtherStates {
             angles.tally = from.value("angles")?;
             octant_state::check_count("angles.used", angles.tally.used)?;
             octant_state::check_count("angles.rejected", angles.tally.rejected)?;
+        }
+        if let Some(spread) = &mut self.spread {
+            from.part("nis spread", spread)?;
         }
         Ok(())
     }

@@ -82,6 +82,11 @@ impl CalibrationFilter {
 
         let mut x = [0.0; STATE_COUNT];
         let held = self.stage != Stage::Normal;
+        if let Some(further) = &mut self.further
+            && !held
+        {
+            further.expect(&self.covariance, first, r);
+        }
         if let Some(sway) = &mut self.sway {
             sway.update(r, &measured, held, &mut self.covariance, &mut x);
         } else {

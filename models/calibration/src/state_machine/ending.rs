@@ -7,6 +7,7 @@ use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Estimator, Site};
 use crate::covariance::{PARAMETERS, SolutionCovariance};
+use crate::filter::ExpectedNis;
 use crate::standstill::{AverageUncertainty, StandstillAverage};
 use crate::table::{CalibrationTable, Provenance, Quality};
 use nalgebra::Vector3;
@@ -22,6 +23,13 @@ impl Core {
             self.finish_calibration(self.answered.1);
         }
         self.output(Health::empty(), f64::NAN)
+    }
+
+    /// Mean NIS that is expected of this run, up to its last measurement; `None` where no further state is considered, and 3
+    /// is. A core that was loaded from a state has it from its next measurement on.
+    #[must_use]
+    pub fn expected_nis(&self) -> Option<&ExpectedNis> {
+        self.expected_nis.as_ref()
     }
 
     /// Samples until the calibration ends by its duration; 0 where it has ended, or there is none.

@@ -164,6 +164,13 @@ pub(super) fn quality_of(filter: &CalibrationFilter) -> Quality {
     }
 }
 
+/// Largest mean NIS of an accepted calibration. What the configuration gives is for a mean of 3; where considered states let
+/// it be more, it is the same multiple of that.
+pub(super) fn nis_limit(filter: &CalibrationFilter, kalman: &Kalman) -> f64 {
+    let high = filter.expected_nis().map_or(3.0, |expected| expected.high.max(3.0));
+    kalman.refuse_above_mean_nis * (high / 3.0)
+}
+
 /// Judges a filter at the end of its calibration, in which `expected` measurements were due, and
 /// `bridged` of `samples` were bridged, with the number of slips of gimbals that the screens noticed.
 pub(super) fn judge(
@@ -197,11 +204,9 @@ pub(super) fn judge(
     if tally.recoveries > RECOVERIES_MAX {
         return Err(CalibrationRefusal::Recoveries { recoveries: tally.recoveries });
     }
-    if !(quality.nis_mean <= kalman.refuse_above_mean_nis) {
-        return Err(CalibrationRefusal::Inconsistent {
-            mean: quality.nis_mean,
-            limit: kalman.refuse_above_mean_nis,
-        });
+    let limit = nis_limit(filter, kalman);
+    if !(quality.nis_mean <= limit) {
+        return Err(CalibrationRefusal::Inconsistent { mean: quality.nis_mean, limit });
     }
     if bridged as f64 > BRIDGED_SHARE_MAX * samples as f64 {
         return Err(CalibrationRefusal::Bridged { bridged, total: samples });

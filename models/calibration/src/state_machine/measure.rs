@@ -1,6 +1,7 @@
 //! One measurement: the reference that came with a sample, and the filter's use of it.
 
 use super::estimation::Estimation;
+use super::judgement::nis_limit;
 use super::{CalibrationRefusal, Core, kalman_of};
 use crate::compensation::Compensation;
 use crate::drift::DriftTest;
@@ -96,6 +97,7 @@ impl Core {
             } else {
                 self.compensation = Compensation::new(&self.parameters);
                 self.sigma = filter.parameter_sigmas();
+                self.expected_nis = filter.expected_nis();
                 if let (Some(found), Some((estimates, compensation))) = (further, &mut self.further)
                 {
                     *estimates = found;
@@ -127,7 +129,9 @@ impl Core {
         if filter.drift().is_some_and(DriftTest::is_found) {
             *health |= Health::DRIFTING;
         }
-        if self.nis_running > kalman.refuse_above_mean_nis {
+        if self.nis_running > kalman.refuse_above_mean_nis
+            && self.nis_running > nis_limit(filter, kalman)
+        {
             *health |= Health::INCONSISTENT;
         }
         self.compare_turns(sample, health);

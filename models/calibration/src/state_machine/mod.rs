@@ -29,7 +29,7 @@ use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, CoreConfig, Estimator, Kalman, NavigationPlan, Site};
 use crate::continuity::{Continuity, POINTS, block_ticks};
 use crate::covariance::SolutionCovariance;
-use crate::filter::CalibrationFilter;
+use crate::filter::{CalibrationFilter, ExpectedNis};
 use crate::further::FurtherEstimates;
 use crate::further::compensation::FurtherCompensation;
 use crate::monitor::{Monitor, MonitorTally};
@@ -129,6 +129,8 @@ pub struct Core {
     /// Covariance of attitude and velocity at the end of the calibration. A statement about the past:
     /// nothing computes with it, and a stored state doesn't have it.
     concluded: Option<SolutionCovariance>,
+    /// Mean NIS that is expected where states are considered; not stored, as `concluded`.
+    expected_nis: Option<ExpectedNis>,
     /// Innovation of the last measurement.
     innovation: Innovation,
     /// Gimbals and stamp of the last output.
@@ -222,6 +224,7 @@ impl Core {
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
             concluded: None,
+            expected_nis: None,
             innovation: Innovation::default(),
             gimbals: Gimbals::default(),
             answered: Default::default(),

@@ -152,6 +152,7 @@ impl State for Core {
             last_quality,
             table,
             concluded: _,
+            expected_nis: _,
             innovation: _,
             gimbals,
             answered,
