@@ -269,7 +269,7 @@ impl<T> Drop for Done<'_, T> {
 
 /// Stack of a thread that runs cores, bytes: that of a main thread. A core is some 100 KiB, and passes by
 /// value where it is made, copied and ended.
-const STACK: usize = 8 << 20;
+pub const STACK: usize = 8 << 20;
 
 /// Starts a thread of a scope, with a stack on which cores can be made and copied.
 ///

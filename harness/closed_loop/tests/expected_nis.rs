@@ -7,6 +7,7 @@ use octant_closed_loop::draws::draws;
 use octant_closed_loop::instrument::InstrumentCase;
 use octant_earth::units::MICRO_G;
 use octant_random::stream::Triad;
+use octant_sample::Mode;
 use octant_sample::further::FurtherGroup;
 
 /// σ of the anomaly that the filter considers, m/s².
@@ -21,6 +22,7 @@ struct Found {
     /// Expected of runs with this anomaly.
     of_anomaly: f64,
     within: (f64, f64),
+    accepted: bool,
 }
 
 /// A calibration of a base with an anomaly (in units of σ) that the filter considers.
@@ -45,11 +47,10 @@ fn run(seed: u64, anomaly: f64) -> Found {
     values[FurtherGroup::GravityAnomaly.range()].fill(anomaly);
     let expected = filter.expected_nis().unwrap();
     assert_eq!(run.core.expected_nis(), Some(&expected));
-    Found {
-        nis: run.core.diagnostics().quality.nis_mean,
-        of_anomaly: filter.expected_nis_of(&values).unwrap(),
-        within: (expected.low, expected.high),
-    }
+    let of_anomaly = filter.expected_nis_of(&values).unwrap();
+    let nis = run.core.diagnostics().quality.nis_mean;
+    let accepted = run.calibrate() == Mode::Done;
+    Found { nis, of_anomaly, within: (expected.low, expected.high), accepted }
 }
 
 #[test]
@@ -87,4 +88,16 @@ fn the_mean_nis_with_a_considered_anomaly_is_what_is_expected_of_the_run() {
     assert!(off.abs() < 4.0 * left / n.sqrt(), "{off}");
     assert!(left < 0.5 * scatter, "{left}");
     assert!(inside > 0.88, "{inside}");
+}
+
+#[test]
+fn a_mean_nis_is_refused_above_three_times_what_is_expected() {
+    // 9 is three times 3. With the anomaly considered 3.74 is at the end of what is expected, and 11.2 the limit.
+    for (anomaly, accepted) in [(6.3, true), (8.0, false)] {
+        let found = run(1, anomaly);
+        println!("anomaly of {anomaly} σ: NIS {:.2}, accepted: {}", found.nis, found.accepted);
+        assert!(found.nis > 9.0, "{}", found.nis);
+        assert_eq!(found.nis <= 3.0 * found.within.1, found.accepted);
+        assert_eq!(found.accepted, accepted);
+    }
 }

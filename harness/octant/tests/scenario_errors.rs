@@ -410,12 +410,15 @@ fn a_rate_at_which_counts_overflow_in_a_turn_is_told_with_the_lowest() {
 
 #[test]
 fn sensors_quieter_than_the_linear_filter_are_warned_of() {
-    let warnings = |gyro: &str, accel: &str| {
+    let warnings_at = |rate: &str, gyro: &str, accel: &str| {
         let text = format!(
-            "{HEAD}[imu]\nangle_random_walk = \"{gyro} deg/sqrt(h)\"\nvelocity_random_walk = \"{accel} ug/sqrt(Hz)\"\n"
+            "{HEAD}[imu]\nrate = \"{rate} Hz\"\nangle_random_walk = \"{gyro} deg/sqrt(h)\"\nvelocity_random_walk = \"{accel} ug/sqrt(Hz)\"\n"
         );
         Scenario::parse(&text, "test.toml", Path::new(""), &[]).unwrap().warnings()
     };
+    let warnings = |gyro, accel| warnings_at("20", gyro, accel);
+    assert_eq!(warnings_at("10", "0", "1.5"), [""; 0]);
+    assert_eq!(warnings_at("10", "0", "1").len(), 1);
     assert_eq!(warnings("1e-5", "0.1"), [""; 0]);
     assert_eq!(warnings("0", "0.5"), [""; 0]);
     let quiet = warnings("1e-6", "0.1");

@@ -4,6 +4,7 @@ use crate::bench::CaseBench;
 use crate::case::SelftestCase;
 use crate::error::CaseSetupError;
 use crate::judge::CaseOutcome;
+use octant_base::pool::STACK;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,7 +28,8 @@ pub(crate) fn outcome(
     let ended = Arc::new(AtomicBool::new(false));
     let (program, folder, its, work) =
         (program.to_owned(), folder.to_owned(), Arc::clone(&ended), case.run);
-    let spawned = std::thread::Builder::new().name(case.id.to_owned()).spawn(move || {
+    let thread = std::thread::Builder::new().name(case.id.to_owned()).stack_size(STACK);
+    let spawned = thread.spawn(move || {
         let outcome = CaseBench::new(&program, &folder, &its)
             .map_err(CaseSetupError::from)
             .and_then(|bench| work(&bench));

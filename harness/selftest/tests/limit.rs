@@ -49,7 +49,11 @@ fn a_case_that_computes_for_ever_fails_after_its_limit_and_the_others_go_on() {
 #[test]
 fn every_case_has_a_limit() {
     for case in cases() {
-        assert!(case.limit > Duration::ZERO && case.limit <= Duration::from_secs(3600), "{}", case.id);
+        assert!(
+            case.limit > Duration::ZERO && case.limit <= Duration::from_secs(3600),
+            "{}",
+            case.id
+        );
         assert_eq!(case.id.starts_with("answers-"), case.limit == COMPUTED_LIMIT, "{}", case.id);
     }
 }

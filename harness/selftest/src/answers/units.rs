@@ -59,7 +59,8 @@ fn reported(name: &str) -> Option<f64> {
 /// `g` is a gram too.
 fn of_fmu(name: &str) -> Option<f64> {
     let zero = name.strip_prefix("zero of ");
-    let known = octant_fmu_host::description::units::known(std::hint::black_box(zero.unwrap_or(name)));
+    let known =
+        octant_fmu_host::description::units::known(std::hint::black_box(zero.unwrap_or(name)));
     let massless = known.iter().find(|unit| unit.exponents[0] == 0).or(known.first())?;
     Some(if zero.is_some() { massless.offset } else { massless.factor })
 }
