@@ -17,8 +17,8 @@ mod sub_step;
 mod sway;
 
 pub use further::{
-    ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, FURTHER_ROW, FurtherEffects, FurtherRow,
-    angle_rows,
+    ANGLE_GATE_NIS, AngleResult, AngleRows, AngleTally, ExpectedNis, FURTHER_ROW, FurtherEffects,
+    FurtherRow, angle_rows,
 };
 pub use measurement::MeasurementResult;
 pub use noise::{add_bias_walk, add_process_noise};
@@ -58,15 +58,6 @@ pub struct Tally {
     pub recoveries: u32,
     /// Measurements used while a recovery held the parameters.
     pub held: u64,
-}
-
-/// Mean NIS that is expected of a run whose filter considers states: 95 % of runs are between the two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExpectedNis {
-    /// Lower bound.
-    pub low: f64,
-    /// Upper bound.
-    pub high: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

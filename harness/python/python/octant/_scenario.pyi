@@ -1708,7 +1708,8 @@ class ProcedureCalibrationPrior(Section):
     gyro_scale: str
     """Gyro scale factors. Takes a ratio such as "30 ppm". Default: "30 ppm"."""
     position: str
-    """Position, each axis. Takes a length such as "0.15 m". Default: "1 m"."""
+    """Position, each axis. Takes a length such as "0.15 m". Default: simulated at rest: "1 cm"; elsewhere: "1
+    m"."""
     velocity: str
     """Velocity, each axis. Takes a velocity such as "1 mm/s". Default: "0.02 m/s"."""
 

@@ -31,6 +31,7 @@ pub use angles::{ANGLE_GATE_NIS, AngleResult, AngleRows, angle_rows};
 use border::{BORDER_COUNT, Border, CASE, Process, places};
 use columns::UNHEATED_ROW;
 pub use columns::{FURTHER_ROW, FurtherEffects, FurtherRow};
+pub use expected::ExpectedNis;
 use expected::NisSpread;
 pub use gimbals::AngleTally;
 use gimbals::GimbalAngleMeasurement;
@@ -258,6 +259,24 @@ impl FurtherStates {
             }
         }
         self.fold_case();
+    }
+
+    /// Takes what a measurement of the states from `first` on tells of the NIS, before the update.
+    pub(super) fn expect(&mut self, errors: &Covariance, first: usize, r: f64) {
+        if let Some(spread) = &mut self.spread {
+            spread.take(&self.border, errors, first, r);
+        }
+    }
+
+    /// Mean NIS that is expected of the run so far; `None` where no state is considered.
+    pub(super) fn expected_nis(&self) -> Option<ExpectedNis> {
+        self.spread.as_ref().map(NisSpread::range)
+    }
+
+    /// The same where the states of the border have these values, in units of their σ.
+    #[cfg(feature = "state")]
+    pub(super) fn expected_nis_of(&self, values: &[f64]) -> Option<f64> {
+        self.spread.as_ref().map(|spread| spread.of(values))
     }
 
     /// Takes out the correlation with the moving states, which are reopened.
