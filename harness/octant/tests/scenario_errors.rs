@@ -391,24 +391,6 @@ fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
 }
 
 #[test]
-fn a_rate_at_which_counts_overflow_in_a_turn_is_told_with_the_lowest() {
-    // 2³¹ counts of 2⁻³⁶ rad are 1.79°: at 10 °/s those of 0.179 s.
-    let text = "schema = 1\nimu.rate = \"5 Hz\"\nturntable.rate = \"TURN deg/s\"\nprocedure.calibration = {}\n";
-    let (_, path, message) = problem(&text.replace("TURN", "10"));
-    assert_eq!(path, "imu.rate");
-    assert_eq!(
-        message,
-        "found \"5 Hz\", expected 5.6 Hz or more: a sample's counts hold 1.79 deg and 2.00 m/s, and turntable.rate is 10 \
-         deg/s"
-    );
-    assert!(problems_with(&text.replace("TURN", "8"), &[]).is_empty());
-    // Nothing turns, and gravity is 1.96 m/s in 0.2 s, but 2.45 m/s in 0.25 s.
-    let still = "schema = 1\nimu.rate = \"RATE\"\n[procedure.navigation]\nduration = \"1 h\"\nrotation = \"none\"\n";
-    assert!(problems_with(&still.replace("RATE", "5 Hz"), &[]).is_empty());
-    assert_eq!(problem(&still.replace("RATE", "4 Hz")).1, "imu.rate");
-}
-
-#[test]
 fn sensors_quieter_than_the_linear_filter_are_warned_of() {
     let warnings_at = |rate: &str, gyro: &str, accel: &str| {
         let text = format!(
