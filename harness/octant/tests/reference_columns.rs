@@ -17,6 +17,7 @@ method = \"inertial\"
 duration = \"5 min\"
 [procedure.calibration]
 duration = \"15 min\"
+prior = { position = \"1 m\" }
 stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"90 deg\" }]
 [screening]
 jumps = \"off\"

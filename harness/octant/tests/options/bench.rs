@@ -34,8 +34,9 @@ rate = "1 Hz"
 duration = "DURATION"
 "#;
 
-/// Rest of a scenario with two methods, both of which are refused at its rate.
-const REFUSED: &str = r#"[procedure.navigation]
+/// Rest of a scenario with two methods, both of which are refused: no calibration has innovations as small.
+const REFUSED: &str = r#"refuse_above_mean_nis = 1e-3
+[procedure.navigation]
 duration = "24 h"
 [baseline]
 name = "other"
@@ -132,7 +133,7 @@ impl Bench {
         bench.write("short.toml", SHORT);
         bench.write("faulty.toml", &format!("{SHORT}{FAULTS}"));
         bench.write("campaign.toml", CAMPAIGN);
-        bench.write("refused.toml", &format!("{}{REFUSED}", SHORT.replace("10 Hz", "1 Hz")));
+        bench.write("refused.toml", &format!("{SHORT}{REFUSED}"));
         bench.write("free.toml", &NAVIGATION.replace("DURATION", "24 h"));
         bench.write("nav.toml", &NAVIGATION.replace("DURATION", "10 min"));
         bench.write("old.toml", SHORT);

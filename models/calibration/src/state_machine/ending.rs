@@ -2,10 +2,10 @@
 
 use super::estimation::Estimation;
 use super::judgement::{judge, judge_sigmas};
-use super::{CalibrationRefusal, Core, kalman_of, strapdown_at};
+use super::{CalibrationRefusal, Core, kalman_of, prior_after_alignment, strapdown_at};
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
-use crate::config::{Estimator, Site};
+use crate::config::{Estimator, SigmaLimits, Site};
 use crate::covariance::{PARAMETERS, SolutionCovariance};
 use crate::filter::ExpectedNis;
 use crate::standstill::{AverageUncertainty, StandstillAverage};
@@ -80,7 +80,9 @@ impl Core {
                 return Err(CalibrationRefusal::Disturbed { disturbances: self.unrepaired });
             }
             let duration_s = ticks as f64 * self.sample_s;
-            judge_sigmas(filter, &self.config, kalman, duration_s)?;
+            let prior = prior_after_alignment(&self.config, kalman);
+            let of_grade = SigmaLimits::attitude_of_grade(&self.config, &prior, duration_s);
+            judge_sigmas(filter, &kalman.sigma_limits, of_grade)?;
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
         let Some(adjusted) = self.estimation.adjust() else {

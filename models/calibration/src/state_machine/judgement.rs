@@ -1,7 +1,6 @@
 //! Judgement of a calibration: accepted, or refused with a reason.
 
-use super::aligning::prior_after_alignment;
-use crate::config::{CoreConfig, Kalman, SigmaLimits, UncertainQuantity};
+use crate::config::{Kalman, SigmaLimits, UncertainQuantity};
 use crate::covariance::PHI;
 use crate::drift::Largest;
 use crate::filter::{AngleTally, CalibrationFilter};
@@ -223,18 +222,16 @@ pub(super) fn judge(
     Ok(quality)
 }
 
-/// Judges the standard deviations that would be published.
+/// Judges the standard deviations that would be published; heading and tilt have the limits of the instrument's grade, rad,
+/// where the scenario gives none.
 pub(super) fn judge_sigmas(
     filter: &CalibrationFilter,
-    config: &CoreConfig,
-    kalman: &Kalman,
-    duration_s: f64,
+    limits: &SigmaLimits,
+    of_grade: (f64, f64),
 ) -> Result<(), CalibrationRefusal> {
-    let prior = prior_after_alignment(config, kalman);
-    let of_grade = SigmaLimits::attitude_of_grade(config, &prior, duration_s);
     let [north, east, down] = [0, 1, 2].map(|axis| filter.covariance().sigma(PHI + axis));
     let parameters = filter.parameter_sigmas();
-    match kalman.sigma_limits.exceeded(of_grade, (down, north.max(east)), &parameters) {
+    match limits.exceeded(of_grade, (down, north.max(east)), &parameters) {
         Some((of, sigma, limit)) => Err(CalibrationRefusal::Uncertain { of, sigma, limit }),
         None => Ok(()),
     }
