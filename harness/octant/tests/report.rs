@@ -327,6 +327,21 @@ fn the_report_holds_every_parameter_and_loads_nothing() {
 }
 
 #[test]
+fn a_refusal_stands_above_the_parameters_with_its_causes() {
+    let mut data = data();
+    assert!(!run::render(&data).contains("Refused: "));
+    let calibration = data.summary.calibration.as_mut().unwrap();
+    calibration.refused = Some("the mean NIS of 12 is above 9".to_owned());
+    calibration.refusal_explained =
+        vec!["likely: the sea <is> larger".to_owned(), "try: coloured".to_owned()];
+    let html = run::render(&data);
+    let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text} is not in the report"));
+    let refused = at("<strong>Refused: </strong>the mean NIS of 12 is above 9.");
+    assert!(refused < at("<li>likely: the sea &lt;is&gt; larger</li><li>try: coloured</li>"));
+    assert!(refused < at(&format!(">{}<", NAMES[0])));
+}
+
+#[test]
 fn a_report_of_next_to_nothing_is_still_a_page() {
     let mut data = data();
     data.summary.calibration = None;

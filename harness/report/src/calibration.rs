@@ -15,6 +15,12 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
     let baseline = summary.baseline.as_ref();
     let beyond = octant_score::parameters::beyond(&calibration.parameters, 3.0);
     html! {
+        @if let Some(reason) = &calibration.refused {
+            p { strong { "Refused: " } (reason) "." }
+            @if !calibration.refusal_explained.is_empty() {
+                ul { @for line in &calibration.refusal_explained { li { (line) } } }
+            }
+        }
         p.hint {
             "Estimates by " (calibration.estimator) ". The strip shows the error in units of the claimed σ: "
             "the inner field is ±1σ, the outer one ±3σ, "
