@@ -2,6 +2,7 @@
 
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
+use octant_closed_loop::squares::{AttitudeSquares, assert_consistent};
 use octant_sample::Mode;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::{Method, Scenario};
@@ -15,6 +16,8 @@ struct Ensemble {
     all: f64,
     nis: f64,
     refused: usize,
+    /// Heading and tilt of those that were accepted.
+    attitude: Vec<AttitudeSquares>,
 }
 
 impl Ensemble {
@@ -34,7 +37,8 @@ impl Ensemble {
             let (estimate, sigma) = (run.core.parameters().to_array(), *run.core.sigma());
             let squares: [f64; PARAMETER_COUNT] =
                 core::array::from_fn(|i| ((estimate[i] - truth[i]) / sigma[i]).powi(2));
-            (refused, run.core.diagnostics().quality.nis_mean, squares)
+            let attitude = (!refused).then(|| AttitudeSquares::of(&run));
+            (refused, attitude, run.core.diagnostics().quality.nis_mean, squares)
         });
         let n = runs.len() as f64;
         let mean = |range: core::ops::Range<usize>| {
@@ -45,8 +49,9 @@ impl Ensemble {
         let found = Self {
             groups: ParameterGroup::ALL.map(|group| mean(group.range())),
             all: mean(0..PARAMETER_COUNT),
-            nis: runs.iter().map(|(_, nis, _)| nis).sum::<f64>() / n,
+            nis: runs.iter().map(|(_, _, nis, _)| nis).sum::<f64>() / n,
             refused: runs.iter().filter(|(refused, ..)| *refused).count(),
+            attitude: runs.iter().filter_map(|(_, attitude, ..)| *attitude).collect(),
         };
         let groups: Vec<String> =
             found.groups.iter().map(|square| format!("{square:.2}")).collect();
@@ -80,6 +85,8 @@ fn normalized_errors_of_quiet_sensors_have_the_size_of_one() {
         assert!((scale - 1.0).abs() < 3.5 * 0.82 / root, "accelerometer scale factors: {scale}");
         assert!((found.nis - 3.0).abs() < 0.05, "NIS {}", found.nis);
         assert!(found.refused <= 1, "{} of {seeds} refused", found.refused);
+        let what = format!("{angle_random_walk} °/√h, {velocity_random_walk} µg/√Hz");
+        assert_consistent(&what, found.attitude.into_iter());
     }
 }
 
