@@ -55,6 +55,8 @@ def constants(program):
     """All constants: where they are, their value, who takes them, and the instructions that do."""
     data = program.read_bytes()
     known = sections(data)
+    if ".symtab" not in known:
+        raise SystemExit(f"{program} has no symbols, by which constants are told apart: build it with CARGO_PROFILE_RELEASE_STRIP=debuginfo")
     address, offset, length = known[".rodata"]
     text_address, text_offset, _ = known[".text"]
     listing = subprocess.Popen(
