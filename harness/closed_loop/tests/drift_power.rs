@@ -314,8 +314,9 @@ fn jumps_shift_as_predicted_and_are_noticed_as_often() {
         schema = 1
         title = "jumps"
         imu.rate = "20 Hz"
-        procedure.calibration = { positions = "eight", duration = "4 h" }
+        procedure.calibration = { positions = "eight", duration = "4 h", prior = { position = "1 m" } }
     "#;
+    // The prior is that of the core that is run.
     let scenario = Scenario::parse(SCENARIO, "jumps.toml", Path::new(""), &[]).unwrap();
     let found = protection(&scenario, Method::Primary).unwrap();
     let channel = |parameter: usize| match parameter {

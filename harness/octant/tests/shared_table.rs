@@ -95,7 +95,9 @@ fn a_driving_run_that_is_killed_ends_the_other_one() {
 fn a_driving_run_that_is_interrupted_or_hangs_ends_the_other_one() {
     let [(host, said), (guest, why)] = ended(|_, host, _| host.signal("-INT"));
     assert_eq!((host, guest), (Some(3), Some(4)), "{said} {why}");
-    assert!(why.contains("the run that drives it stopped it: the run was interrupted"), "{why}");
+    // The driving run's own table may be the one that tells it.
+    assert!(why.contains("the run that drives it stopped it: "), "{why}");
+    assert!(why.contains("the run was interrupted"), "{why}");
     let [_, (guest, why)] = ended(|pair, host, _| {
         host.signal("-STOP");
         // Its guard stops the table.
