@@ -23,6 +23,7 @@ from mcap.reader import make_reader
 SCENARIO = """schema = 1
 title = "receipts"
 seed = 3
+imu.rate = "100 Hz"
 [procedure.calibration]
 duration = "120 s"
 stops = [{ azimuth = "0 deg", roll = "0 deg" }, { azimuth = "0 deg", roll = "90 deg" }, \
@@ -30,7 +31,7 @@ stops = [{ azimuth = "0 deg", roll = "0 deg" }, { azimuth = "0 deg", roll = "90 
 [record]
 samples = "full"
 """
-PERIOD_NS = 5_000_000
+PERIOD_NS = 10_000_000
 # sequence, stamp, three and three counts, two encoder angles, status
 SAMPLE = struct.Struct("<QQ3i3i2iH")
 COUNTS = slice(2, 8)

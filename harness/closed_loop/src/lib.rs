@@ -12,7 +12,7 @@
 //! run.run_to(200);
 //! assert_eq!(run.output.sequence, 200);
 //! ```
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 pub mod closed_loop;
 pub mod draws;

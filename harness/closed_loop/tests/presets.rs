@@ -198,7 +198,7 @@ fn no_preset_is_refused_and_its_squares_are_as_large_as_its_sigma_says() {
         for (nth, motion) in MOTIONS.into_iter().enumerate() {
             // Other seeds for each: what is drawn of the alignment is the same for all instruments.
             let first = 1 + 100 * (2 * index + nth) as u64;
-            let seeds: Vec<u64> = (first..first + draws(30, 10)).collect();
+            let seeds: Vec<u64> = (first..first + draws(30, 3)).collect();
             let all = on_two_threads(&seeds, |seed| {
                 let (plant, core) = configured(sheet, motion, rate_hz(*seed), *seed);
                 calibrated(&plant, &core)

@@ -327,7 +327,7 @@ fn classes() -> [Class; 14] {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn squares_of_heading_tilt_and_parameters_are_as_large_as_their_sigma_says() {
-    let all = conditions(draws(300, 60));
+    let all = conditions(draws(300, 30));
     let runs = on_two_threads(&all, |condition| calibrated(condition, None));
     let mut good = Vec::new();
     for (condition, run) in all.iter().zip(&runs) {
@@ -392,7 +392,7 @@ fn squares_of_heading_tilt_and_parameters_are_as_large_as_their_sigma_says() {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn large_errors_of_the_first_azimuth_do_not_stay() {
-    let all = conditions(draws(100, 20));
+    let all = conditions(draws(100, 10));
     let signed: Vec<(usize, Condition)> = all.into_iter().enumerate().collect();
     let runs = on_two_threads(&signed, |(i, condition)| {
         let azimuth_rad = if i % 2 == 0 { 18.0 * ARCMIN } else { -18.0 * ARCMIN };
