@@ -1,12 +1,12 @@
 //! The instruments of `octant new` with its defaults, at rest and at the dockside: no calibration is refused, and the squares
 //! of heading, tilt and parameters are as large as their σ say.
 
-use nalgebra::{Matrix2, Quaternion, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config::CoreConfig;
 use octant_calibration::covariance::PARAMETERS;
 use octant_closed_loop::closed_loop::{ClosedLoop, on_two_threads};
 use octant_closed_loop::draws::draws;
-use octant_earth::rotation::log;
+use octant_closed_loop::squares::{AttitudeSquares, chi_squared_limit};
 use octant_earth::units::*;
 use octant_plant::config::PlantConfig;
 use octant_sample::parameters::{PARAMETER_COUNT, ParameterGroup};
@@ -108,20 +108,14 @@ fn calibrated(plant: &PlantConfig, core: &CoreConfig) -> Found {
             before = Some((p, x));
         }
     }
-    // computed = (I − [φ×]) true
-    let phi =
-        -log(&(quaternion(run.output.navigation.q_nb)
-            * quaternion(run.plant.truth().q_nb).inverse()));
     let (truth, estimate) = (plant.imu.parameters.to_array(), run.core.parameters().to_array());
     let sigma = run.core.sigma();
     let mut groups = [f64::NAN; GROUPS];
     let mut heading_sigma_arcmin = f64::NAN;
-    if let Some(concluded) = run.core.concluded() {
-        let tilt = Matrix2::from_fn(|i, j| concluded.phi[i][j]);
-        let level = Vector2::new(phi.x, phi.y);
-        groups[0] = phi.z * phi.z / concluded.phi[2][2];
-        groups[1] = level.dot(&(tilt.try_inverse().unwrap() * level));
-        heading_sigma_arcmin = concluded.phi[2][2].sqrt() / ARCMIN;
+    if run.core.concluded().is_some() {
+        let attitude = AttitudeSquares::of(&run);
+        (groups[0], groups[1]) = (attitude.heading, attitude.tilt);
+        heading_sigma_arcmin = attitude.heading_sigma_rad / ARCMIN;
     }
     for (square, group) in groups[2..].iter_mut().zip(ParameterGroup::ALL) {
         *square = group.range().map(|i| ((estimate[i] - truth[i]) / sigma[i]).powi(2)).sum();
@@ -166,13 +160,6 @@ fn print(name: &str, all: &[Found]) {
     }
 }
 
-/// Value that a χ² of so many degrees of freedom, divided by them, exceeds with the probability of a normal deviate
-/// `z` (Wilson and Hilferty, 1931).
-fn limit(degrees: f64, z: f64) -> f64 {
-    let spread = 2.0 / (9.0 * degrees);
-    (1.0 - spread + z * spread.sqrt()).powi(3)
-}
-
 /// Rate of the n-th seed of a preset: of ten, one runs at the rate of the preset, one at 100 Hz, two at 50 Hz.
 fn rate_hz(seed: u64) -> u64 {
     match seed % 10 {
@@ -207,7 +194,7 @@ fn no_preset_is_refused_and_its_squares_are_as_large_as_its_sigma_says() {
             print(&of, &all);
             refused += all.iter().filter(|found| found.refusal.is_some()).count();
             for (group, mean) in means(&all).into_iter().enumerate() {
-                if !(mean <= limit((all.len() * degrees(group)) as f64, z)) {
+                if !(mean <= chi_squared_limit((all.len() * degrees(group)) as f64, z)) {
                     wrong.push(format!("{of}, {}: {mean}", name(group)));
                 }
             }
@@ -217,7 +204,7 @@ fn no_preset_is_refused_and_its_squares_are_as_large_as_its_sigma_says() {
     assert_eq!(refused, 0);
 }
 
-/// What a MEMS gyro's noise at rest tells of its scale factor is nothing. With the noise in the columns of the transition the
+/// The noise of a MEMS gyro at rest says nothing of its scale factor. With the noise in the columns of the transition the
 /// mean of z was 4.6 at rest, a drift of 5 σ in two of six calibrations, and at the dockside five of sixteen were refused.
 #[test]
 fn noise_at_rest_is_no_drift() {
@@ -236,7 +223,7 @@ fn noise_at_rest_is_no_drift() {
     }
 }
 
-/// What is changed in the instrument, or in what the filter is told of it.
+/// Change of the instrument, or of the filter's tuning.
 type Suspect = (&'static str, fn(&mut PlantConfig, &mut CoreConfig));
 
 /// Suspects of a refusal, one switched off at a time.

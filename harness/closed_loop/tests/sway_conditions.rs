@@ -406,7 +406,7 @@ fn large_errors_of_the_first_azimuth_do_not_stay() {
         let all_degrees = (good.len() * degrees) as f64;
         let mean = good.iter().map(|s| s.groups[group]).sum::<f64>() / all_degrees;
         println!("±18′, {} published, {what}: {mean:.2}", good.len());
-        // Of nine groups one exceeds it with 0.5 %.
+        // One of the nine groups exceeds it with a probability of 0.5 %.
         assert!(mean <= chi_squared_limit(all_degrees, 3.29), "{what}: {mean}");
     }
     assert!(runs.len() - good.len() <= 1, "refused");

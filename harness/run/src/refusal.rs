@@ -19,7 +19,7 @@ const NARROW: f64 = 1.5;
 /// A sway is larger than the noise that the filter takes it for from this ratio on.
 const LARGE_SWAY: f64 = 1.2;
 
-/// Test of the core that failed.
+/// Test of the core that refused the calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seen {
     /// Innovations larger than their σ: NIS, rejections, recoveries, held parameters.
@@ -71,7 +71,7 @@ impl Seen {
                 "navigation and reference differed by more than the filter can explain with the noise and the errors that it is told of"
             }
             Self::Drift => {
-                "a parameter that should be a constant changed, or was taught by something that isn't noise"
+                "a parameter that should be constant changed, or something other than noise was taken for it"
             }
             Self::Uncertain => {
                 "too little was learned, or it was forgotten again after a disturbance"
@@ -92,14 +92,14 @@ struct Cause {
     advice: &'static str,
 }
 
-/// What is known of a run whose calibration was refused.
+/// Run whose calibration was refused, with the data that may show why.
 #[derive(Clone, Copy, Debug)]
 pub struct RefusedRun<'a> {
     /// Reason that the core gave.
     pub reason: &'a str,
     /// Counts of the core's reports.
     pub health: &'a HealthCounts,
-    /// What the faults did.
+    /// Receipts of the faults.
     pub faults: &'a [FaultResult],
     /// Comparison with the twin, if there is one.
     pub twin: Option<&'a Counterfactual>,
@@ -116,7 +116,14 @@ pub fn explained(run: &RefusedRun<'_>) -> Vec<String> {
     let mut lines: Vec<String> =
         seen.meaning().map(|meaning| format!("this means: {meaning}")).into_iter().collect();
     let causes = causes(run, seen);
-    if causes.is_empty() && seen != Seen::Other {
+    if causes.is_empty() && seen == Seen::Uncertain {
+        lines.push(
+            "likely cause: the calibration is too short for this instrument to be known as well as the limit asks".to_owned(),
+        );
+        lines.push(
+            "  try: a longer calibration, or another limit in [procedure.calibration.refuse_above_sigma]".to_owned(),
+        );
+    } else if causes.is_empty() && seen != Seen::Other {
         lines.push(
             "likely cause: none shows in the scenario or in the core's reports; compare the data with the site, the axes and \
              the noise that the scenario states"

@@ -9,18 +9,23 @@ use octant_sample::{Innovation, InnovationOf};
 const OUTLIER: f64 = 25.0;
 /// Smallest number of pairs for a statement.
 const PAIRS_LEAST: u64 = 100;
-/// Correlation from which innovations aren't white. Of a hundred white pairs on three axes it is 0.06 (1σ).
+/// Number of earlier innovations with which one is compared. A sway whose period is four times that of the reference has
+/// no correlation with the one before, but with that before it.
+const LAGS: usize = 4;
+/// Magnitude of a correlation from which innovations aren't white. Of a hundred white pairs on three axes it is 0.06 (1σ).
 const CORRELATED: f64 = 0.3;
 /// Mean NIS on three axes from which the σ of a filter are too small to be believed.
 const NIS_MAX: f64 = 3.5;
 
-/// Correlation of innovations with those before them.
+/// Correlations of innovations with those before them.
 #[derive(Clone, Debug, Default)]
 pub struct Whiteness {
-    last: Option<[f64; 3]>,
-    products: f64,
-    squares: f64,
-    pairs: u64,
+    /// Whitened innovations in a row, the last one first.
+    last: [[f64; 3]; LAGS],
+    in_a_row: usize,
+    products: [f64; LAGS],
+    squares: [f64; LAGS],
+    pairs: [u64; LAGS],
 }
 
 impl Whiteness {
@@ -30,31 +35,40 @@ impl Whiteness {
             std::array::from_fn(|axis| innovation.value[axis] / innovation.sigma[axis]);
         let square: f64 = whitened.iter().map(|z| z * z).sum();
         if innovation.of != InnovationOf::Position || !(square <= OUTLIER) {
-            self.last = None;
+            self.in_a_row = 0;
             return;
         }
-        if let Some(last) = self.last.replace(whitened) {
-            self.products += (0..3).map(|axis| last[axis] * whitened[axis]).sum::<f64>();
-            self.squares += square;
-            self.pairs += 1;
+        for lag in 0..self.in_a_row {
+            self.products[lag] +=
+                (0..3).map(|axis| self.last[lag][axis] * whitened[axis]).sum::<f64>();
+            self.squares[lag] += square;
+            self.pairs[lag] += 1;
         }
+        self.last.rotate_right(1);
+        self.last[0] = whitened;
+        self.in_a_row = LAGS.min(self.in_a_row + 1);
     }
 
-    /// Correlation of successive innovations of a position; `None` before there are enough.
+    /// Largest correlation in magnitude of innovations of a position with earlier ones, and how many measurements lie
+    /// between; `None` before there are enough.
     #[must_use]
-    pub fn correlation(&self) -> Option<f64> {
-        (self.pairs >= PAIRS_LEAST && self.squares > 0.0).then(|| self.products / self.squares)
+    pub fn correlation(&self) -> Option<(f64, usize)> {
+        (0..LAGS)
+            .filter(|lag| self.pairs[*lag] >= PAIRS_LEAST && self.squares[*lag] > 0.0)
+            .map(|lag| (self.products[lag] / self.squares[lag], lag + 1))
+            .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     }
 
     /// Says that the sway isn't the white noise that the filter takes it for, where innovations of this mean NIS
     /// show it.
     #[must_use]
     pub fn doubt(&self, nis_mean: f64) -> Option<String> {
-        let correlation = self.correlation().filter(|correlation| *correlation >= CORRELATED)?;
+        let (correlation, lag) =
+            self.correlation().filter(|(found, _)| found.abs() >= CORRELATED)?;
         (nis_mean > NIS_MAX).then(|| {
             format!(
-                "the sway isn't the white noise that the filter takes it for: innovations follow those before them \
-                 (correlation {correlation:.2}, expected 0), their mean NIS is {nis_mean:.2}, expected 3, and the \
+                "the sway isn't the white noise that the filter takes it for: innovations follow earlier ones \
+                 (correlation {correlation:.2} with the one {lag} measurements before, expected 0), their mean NIS is {nis_mean:.2}, expected 3, and the \
                  published uncertainties are too small. procedure.calibration.aiding.sway = \"coloured\" estimates the sway"
             )
         })

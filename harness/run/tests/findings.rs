@@ -44,13 +44,14 @@ fn a_limit_of_the_clock_holds_up_to_its_value() {
 }
 
 /// Findings of an hour at a dockside, with a swell of this period on both horizontal axes.
-fn at_a_dockside(amplitude: &str, period: &str, sway: &str) -> (Vec<String>, f64) {
+fn at_a_dockside(amplitude: &str, period: &str, sway: &str, reference: &str) -> (Vec<String>, f64) {
     let text = format!(
         "schema = 1\n[motion]\nkind = \"dockside\"\n[motion.ship]\nroll = []\npitch = []\nyaw = []\n\
          surge = [{{ amplitude = \"{amplitude}\", period = \"{period}\" }}]\n\
          sway = [{{ amplitude = \"{amplitude}\", period = \"{period}\" }}]\nheave = []\n\
          [imu]\nrate = \"20 Hz\"\n[procedure.calibration]\nduration = \"1 h\"\n\
-         [procedure.calibration.aiding]\nreference = \"dock-position\"\nsway = \"{sway}\"\n"
+         [procedure.calibration.aiding]\nreference = \"dock-position\"\nsway = \"{sway}\"\n\
+         period = \"{reference}\"\n"
     );
     let scenario = Scenario::parse(&text, "s.toml", Path::new(""), &[]).unwrap();
     let run = run_method(&scenario, Method::Primary, 1, StreamKeeping::None, &Control::default())
@@ -63,8 +64,14 @@ fn at_a_dockside(amplitude: &str, period: &str, sway: &str) -> (Vec<String>, f64
 
 #[test]
 fn a_swell_that_the_filter_takes_for_white_noise_is_said() {
-    for (amplitude, period) in [("0.3 m", "10 s"), ("0.4 m", "10 s"), ("0.3 m", "12 s")] {
-        let (said, nis) = at_a_dockside(amplitude, period, "white");
+    // With a reference each 2 s a swell of 8 s has no correlation with the measurement before.
+    for (amplitude, period, reference) in [
+        ("0.3 m", "10 s", "1 s"),
+        ("0.4 m", "10 s", "1 s"),
+        ("0.3 m", "12 s", "1 s"),
+        ("0.3 m", "8 s", "2 s"),
+    ] {
+        let (said, nis) = at_a_dockside(amplitude, period, "white", reference);
         assert!(nis > 3.5, "{amplitude}, {period}: {nis}");
         assert_eq!(said.len(), 1, "{amplitude}, {period}: {said:?}");
         assert!(said[0].contains("isn't the white noise"), "{}", said[0]);
@@ -72,7 +79,7 @@ fn a_swell_that_the_filter_takes_for_white_noise_is_said() {
     }
     // The size that the filter is told of, and a filter that estimates the sway.
     for (amplitude, sway) in [("0.1 m", "white"), ("0.4 m", "coloured")] {
-        let (said, _) = at_a_dockside(amplitude, "10 s", sway);
+        let (said, _) = at_a_dockside(amplitude, "10 s", sway, "1 s");
         assert!(said.is_empty(), "{amplitude}, {sway}: {said:?}");
     }
 }

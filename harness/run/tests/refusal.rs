@@ -169,3 +169,12 @@ fn nothing_is_invented() {
     assert!(said[1].starts_with("likely cause: none shows"), "{said:?}");
     assert!(lines("the unit says no", "", &HealthCounts::default(), &[]).is_empty());
 }
+
+#[test]
+fn a_limit_that_the_time_does_not_reach() {
+    let of = octant_calibration::config::UncertainQuantity::Heading;
+    let reason = Refusal::Uncertain { of, sigma: 4.5e-5, limit: 3e-6 }.to_string();
+    let said = lines(&reason, "", &HealthCounts::default(), &[]);
+    assert!(said[1].contains("too short for this instrument"), "{said:?}");
+    assert!(said[2].contains("refuse_above_sigma"), "{said:?}");
+}

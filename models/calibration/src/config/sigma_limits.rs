@@ -25,7 +25,7 @@ pub struct SigmaLimits {
     pub parameters: [Option<f64>; 7],
 }
 
-/// What a standard deviation is of.
+/// Quantity with a limit of its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum UncertainQuantity {
