@@ -355,6 +355,12 @@ fn squares_of_heading_tilt_and_parameters_are_as_large_as_their_sigma_says() {
         let inside: Vec<&Squares> =
             good.iter().filter(|(c, _)| is_in(c)).map(|(_, squares)| *squares).collect();
         let mut line = format!("{name} ({})", inside.len());
+        // A small sample can be without a class; the whole one has each.
+        if inside.is_empty() {
+            assert!(all.len() < 300, "no condition: {name}");
+            println!("{line}");
+            continue;
+        }
         for (group, (what, degrees)) in GROUPS.iter().enumerate() {
             let all_degrees = (inside.len() * degrees) as f64;
             let mean = inside.iter().map(|s| s.groups[group]).sum::<f64>() / all_degrees;

@@ -339,6 +339,11 @@ fn a_refusal_stands_above_the_parameters_with_its_causes() {
     let refused = at("<strong>Refused: </strong>the mean NIS of 12 is above 9.");
     assert!(refused < at("<li>likely: the sea &lt;is&gt; larger</li><li>try: coloured</li>"));
     assert!(refused < at(&format!(">{}<", NAMES[0])));
+    // Nothing of it is told as a result.
+    data.summary.navigation = None;
+    let html = run::render(&data);
+    assert!(html.contains("The calibration through the eight positions was refused after 24 h"));
+    assert!(!html.contains("was calibrated for") && !html.contains("Worst parameter error"));
 }
 
 #[test]

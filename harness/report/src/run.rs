@@ -112,6 +112,11 @@ pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
             number::plain(n.duration_h, 4),
             height(n.height),
         ),
+        (Some(c), None) if c.refused.is_some() => format!(
+            "The calibration through the {} positions was refused after {} h, and published nothing.",
+            c.positions,
+            number::plain(c.duration_h, 4)
+        ),
         (Some(c), None) => format!(
             "The instrument was calibrated for {} h through the {} positions.",
             number::plain(c.duration_h, 4),
@@ -144,7 +149,10 @@ pub fn what_was_done(summary: &Summary, units: &DisplayUnits) -> String {
                 )
             )
         ),
-        (None, Some(CalibrationScore { worst_normalized_error: Some(worst), .. })) => {
+        (
+            None,
+            Some(CalibrationScore { worst_normalized_error: Some(worst), refused: None, .. }),
+        ) => {
             format!(" The worst parameter is {} σ from truth.", number::fixed(*worst, 1))
         }
         _ => String::new(),
@@ -197,7 +205,7 @@ fn figures(summary: &Summary, units: &DisplayUnits) -> Markup {
                 @if let Some(nis) = c.nis_mean {
                     (figure(&format!("Mean NIS, {} expected", c.nis_expected_words()), "", nis, 3, other_calibration.and_then(|o| o.nis_mean)))
                 }
-                @if let Some(worst) = c.worst_normalized_error {
+                @if let (Some(worst), None) = (c.worst_normalized_error, &c.refused) {
                     (figure("Worst parameter error", "σ", worst, 2,
                         other_calibration.and_then(|o| o.worst_normalized_error)))
                 }
