@@ -19,7 +19,7 @@ import reference
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "harness/wire/README.md"]
+PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "harness/devices/wire/README.md"]
 PICTURES = {".svg", ".png"}
 LANGUAGES = {".rs": "rust", ".toml": "toml", ".py": "python", ".c": "c", ".h": "c", ".yml": "yaml", ".json": "json",
              ".sh": "bash", "": "bash"}

@@ -100,7 +100,7 @@ named_tests() {
 # Cargo's options for everything that is built: another choice of profile, packages or features would build
 # all of it again. Tests and program are of one build: the release profile, with all features, and what the tests add to them.
 # The Python module has no test that cargo could run, and a rig of its own.
-test_profile=(--release --workspace --exclude octant-python --features octant/full,octant-mapping/testing,octant-state/outline)
+test_profile=(--release --workspace --exclude octant-python --features octant/full,octant-fmu-bind/testing,octant-state/outline)
 export RUSTC_WORKSPACE_WRAPPER=$PWD/tests/rigs/rustc
 build_reference() {
   rm -rf .rigs/reference

@@ -29,7 +29,7 @@ const PAGES = {
   "docs/faults/spike.html": "spike",
   "docs/results.html": "Results",
   "docs/qualification/trace.html": "Trace",
-  "harness/wire/index.html": "The wire",
+  "harness/devices/wire/index.html": "The wire",
   "fixtures/scenarios/tour.toml.src.html": "tour.toml",
 };
 

@@ -7,7 +7,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 #[allow(dead_code, unreachable_pub, reason = "a module of the tests, which use all of it")]
-#[path = "../../../harness/octant/tests/common/foreign.rs"]
+#[path = "../../../harness/program/octant/tests/common/foreign.rs"]
 mod foreign;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

@@ -4,7 +4,7 @@
 use octant_fmu::c::{ServedStandard, token};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::{calibrator_can, plant};
-use octant_testing::command;
+use octant_test_processes::command;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;

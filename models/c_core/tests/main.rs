@@ -4,14 +4,14 @@
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIX};
-use octant_closed_loop::closed_loop::ClosedLoop;
-use octant_closed_loop::instrument::{InstrumentCase, dockside};
 use octant_core::config::{config, in_c};
 use octant_core::functions::*;
 use octant_core::status;
 use octant_core::types::{CAiding, CConfig, COutput, CSample, layout};
 use octant_sample::{Aiding, Output, Reference, Sample};
-use octant_testing::command;
+use octant_test_loop::closed_loop::ClosedLoop;
+use octant_test_loop::instrument::{InstrumentCase, dockside};
+use octant_test_processes::command;
 use std::ffi::{CStr, c_void};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

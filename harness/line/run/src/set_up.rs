@@ -1,0 +1,95 @@
+//! A method that is set up: its configurations, and the source and endpoint that were opened for it.
+
+use super::error::SetupError;
+use octant_calibration::config::CoreConfig;
+use octant_endpoint::AnyEndpoint;
+use octant_fmu_bind::OpenedFmus;
+use octant_plant::config::PlantConfig;
+use octant_sample::Parameters;
+use octant_scenario::resolve::DrawnValues;
+use octant_scenario::{Method, Scenario};
+use octant_source::AnySource;
+use octant_source::configure::{Configured, configured};
+use std::fmt;
+
+/// A method of a scenario with a seed, set up. What was checked is what runs: source and endpoint are opened once.
+pub(super) struct SetUp {
+    pub(super) plant: PlantConfig,
+    pub(super) core: CoreConfig,
+    pub(super) draws: DrawnValues,
+    /// FMUs of the run.
+    fmus: OpenedFmus,
+    source: Option<AnySource>,
+    endpoint: Option<AnyEndpoint>,
+}
+
+impl fmt::Debug for SetUp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SetUp").finish_non_exhaustive()
+    }
+}
+
+impl SetUp {
+    /// Configures a method. An FMU that moves the case is opened, since it knows the attitude at the start.
+    ///
+    /// # Errors
+    /// If the configurations contradict themselves, or that FMU can't be opened.
+    pub(super) fn of(
+        scenario: &Scenario,
+        method: Method,
+        seed: u64,
+        fmus: &OpenedFmus,
+    ) -> Result<Self, SetupError> {
+        let Configured { plant, core, draws, source } = configured(scenario, method, seed, fmus)?;
+        Ok(Self { plant, core, draws, fmus: fmus.clone(), source, endpoint: None })
+    }
+
+    /// Opens everything that can be opened before a run begins.
+    ///
+    /// # Errors
+    /// If the core can't be set up, or source or endpoint can't be opened.
+    pub(super) fn check(&mut self, scenario: &Scenario) -> Result<(), SetupError> {
+        octant_calibration::Core::new(&self.core)?;
+        if !octant_source::check_live(scenario)? {
+            self.source = self.source(scenario)?;
+        }
+        if !octant_endpoint::check_live(scenario)? {
+            self.endpoint = self.endpoint(scenario)?;
+        }
+        Ok(())
+    }
+
+    /// Sets the initial parameters to those on which earlier passes settled. An endpoint that was opened with others
+    /// is opened again.
+    pub(super) fn settle(&mut self, parameters: Option<Parameters>) {
+        if let Some(parameters) = parameters {
+            self.core.initial_parameters = parameters;
+            self.endpoint = None;
+        }
+    }
+
+    /// Takes the source at its start, and opens it if it isn't; `None` where it is the plant alone.
+    ///
+    /// # Errors
+    /// As [`octant_source::open`].
+    pub(super) fn source(&mut self, scenario: &Scenario) -> Result<Option<AnySource>, SetupError> {
+        match self.source.take() {
+            Some(source) => Ok(Some(source)),
+            None => Ok(octant_source::open_with(scenario, &self.plant, &self.fmus)?),
+        }
+    }
+
+    /// Takes the endpoint at its start, and opens it if it isn't; `None` where it is the core in this process.
+    ///
+    /// # Errors
+    /// As [`octant_endpoint::open`].
+    pub(super) fn endpoint(
+        &mut self,
+        scenario: &Scenario,
+    ) -> Result<Option<AnyEndpoint>, SetupError> {
+        match self.endpoint.take() {
+            Some(endpoint) => Ok(Some(endpoint)),
+            None => Ok(octant_endpoint::open_with(scenario, &self.core, &self.fmus)?),
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! `octant verify --reexecute`: runs the content of a folder of evidence again from that folder
+//! alone.
+
+use super::evidenced::{execute, prepare};
+use super::progress::Follower;
+use crate::failure::Failure;
+use crate::terminal::note;
+use octant_base::number::counted;
+use octant_campaign::plan::{FILE_NAME, Plan};
+use octant_campaign::reexecute::{self, CONFIDENCE, altered_at_most};
+use octant_evidence::InputFacts;
+use octant_evidence::inside::SUMMARY;
+use octant_evidence::manifest::{Manifest, program_sha256};
+use octant_fmu_bind::OpenedFmus;
+use octant_requirements::Verdict;
+use octant_requirements::equipment::Day;
+use octant_run::assemble::{Choice, assemble_with};
+use octant_scenario::Scenario;
+use octant_score::numerics::differs;
+use serde::Serialize;
+use serde_json::Value;
+use std::hash::{BuildHasher, RandomState};
+use std::path::Path;
+
+/// Number of a campaign's cases to run again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Count(Option<usize>);
+
+impl Count {
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self(None)),
+            (_, Ok(count)) if count > 0 => Ok(Self(Some(count))),
+            _ => Err(format!("found {text:?}, expected a number of cases or all")),
+        }
+    }
+
+    /// Refuses options of a campaign for a run, which has no cases to draw.
+    pub(super) fn refuse_for_run(self, folder: &Path, seed: Option<u64>) -> Result<(), Failure> {
+        let option = match (self.0, seed) {
+            (Some(count), _) => format!("--reexecute {count}"),
+            (None, Some(seed)) => format!("--sample-seed {seed}"),
+            (None, None) => return Ok(()),
+        };
+        Err(Failure::input(format!(
+            "{option}: found {}, the folder of a run, expected a campaign: a run has no cases to draw, and --reexecute \
+             runs it again as a whole",
+            folder.display()
+        )))
+    }
+}
+
+/// Result of the re-execution.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Reexecuted {
+    /// `pass`: same results; `fail`: different results; `inconclusive`: no evidence.
+    #[serde(skip)]
+    pub verdict: Verdict,
+    /// True if the program is the same, and all results are the same to the last bit.
+    matches: bool,
+    /// Actions and findings, as text.
+    told: Vec<String>,
+    /// Seed of the sample of a campaign's cases; null for a run.
+    sample_seed: Option<u64>,
+    /// Largest number of altered results of a campaign, with a confidence of 95 %; null for a run.
+    altered_at_most: Option<usize>,
+}
+
+impl Reexecuted {
+    fn of(verdict: Verdict, told: Vec<String>) -> Self {
+        Self { verdict, matches: false, told, sample_seed: None, altered_at_most: None }
+    }
+
+    /// Renders the result as text.
+    pub(super) fn text(&self) -> String {
+        self.told.iter().map(|line| format!("re-executed: {line}\n")).collect()
+    }
+}
+
+/// Runs the folder's content again. The folder was verified.
+pub(super) fn command(
+    folder: &Path,
+    manifest: &Manifest,
+    count: Count,
+    seed: Option<u64>,
+) -> Result<Reexecuted, Failure> {
+    let then = match &manifest.campaign {
+        Some(facts) => facts.program_sha256.as_deref(),
+        None => manifest.program_sha256.as_deref(),
+    };
+    let now = program_sha256();
+    let same_program = then.is_some() && then == now.as_deref();
+    let mut found = match &manifest.campaign {
+        Some(_) => campaign(folder, count, seed)?,
+        None => run(folder, manifest, same_program)?,
+    };
+    if found.verdict == Verdict::Pass && !same_program {
+        let name = |hash: Option<&str>| hash.map_or("unknown".to_owned(), |hash| hash.to_owned());
+        found.verdict = Verdict::Inconclusive;
+        found.told.push(format!(
+            "found another program (SHA-256 {}, that of the evidence is {}): equal numbers are no match",
+            name(now.as_deref()),
+            name(then)
+        ));
+    }
+    found.matches = found.verdict == Verdict::Pass;
+    Ok(found)
+}
+
+/// Runs a run again, with its twin if it had one.
+fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecuted, Failure> {
+    let cannot = |reason: String| Reexecuted::of(Verdict::Inconclusive, vec![reason]);
+    let bytes = manifest.read_file(folder, SUMMARY).map_err(|e| Failure::input(e).failed())?;
+    let then: Value = serde_json::from_slice(&bytes).map_err(Failure::input)?;
+    let Some(seed) = manifest.seed.filter(|_| then.get("system").is_none()) else {
+        return Ok(cannot("not possible: only runs of a scenario are run again".to_owned()));
+    };
+    let mut scenario = match Scenario::load(&folder.join("scenario.toml"), &[]) {
+        Ok(scenario) => scenario,
+        Err(error) => return Ok(cannot(format!("not possible: {error}"))),
+    };
+    if scenario.source.instrument().is_some() || scenario.endpoint.device().is_some() {
+        return Ok(cannot(
+            "not possible: the run used a device, which can't be run again".to_owned(),
+        ));
+    }
+    // The clock has no effect on numbers.
+    scenario.realtime.by_clock = false;
+    // Nor have the operator's answers.
+    scenario.operator.clear();
+    let opened = OpenedFmus::default();
+    let fmus = match octant_evidence::fmus(&scenario, 1, &opened) {
+        Ok(fmus) => fmus,
+        Err(error) => return Ok(cannot(format!("not possible: failed to {error}"))),
+    };
+    for (then, now) in manifest.fmus.iter().zip(&fmus) {
+        if then.sha256 != now.sha256 {
+            return Ok(cannot(format!("not possible: the content of {} has changed", now.file)));
+        }
+    }
+    match octant_evidence::inputs(&scenario) {
+        Ok(now) => {
+            let changed = |(then, now): &(&InputFacts, &InputFacts)| then.sha256 != now.sha256;
+            if let Some((_, now)) = manifest.inputs.iter().zip(&now).find(changed) {
+                return Ok(cannot(format!(
+                    "not possible: the content of {} has changed",
+                    now.file
+                )));
+            }
+        }
+        Err(reason) => return Ok(cannot(format!("not possible: failed to {reason}"))),
+    }
+    let twins = !manifest.command_line.iter().any(|word| word == "--no-twin");
+    let place = tempfile::tempdir()
+        .map_err(|error| Failure::bench(format!("failed to create a folder: {error}")))?;
+    let prepared = prepare(&scenario, seed, twins, &opened)?;
+    let mut runs = execute(&prepared, &scenario, place.path(), &Follower::Terminal)?.into_iter();
+    let (Some(primary), baseline) = (runs.next(), runs.next()) else {
+        return Err(Failure::bench("failed to run the scenario: no method ran"));
+    };
+    let choice = Choice { day: Day::of_text(&manifest.ended).ok(), ..Choice::default() };
+    let now = assemble_with(&scenario, seed, primary, baseline, &choice)
+        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    let json = now.summary.to_json().map_err(Failure::bench)?;
+    let mut now: Value = serde_json::from_str(&json).map_err(Failure::bench)?;
+    let mut then = then;
+    // Time keeping depends on the host.
+    for summary in [&mut now, &mut then] {
+        summary["pacing"] = Value::Null;
+    }
+    Ok(match reexecute::difference(&then, &now) {
+        None => Reexecuted::of(
+            Verdict::Pass,
+            vec!["the stream hash and every measure are the same".to_owned()],
+        ),
+        // Other numerics are expected to give other bits: this shows nothing, and no alteration.
+        // The same program always has the same version, whatever the summary states.
+        Some(difference) => match differs(numerics_of(&then)).filter(|_| !same_program) {
+            Some(told) => Reexecuted::of(Verdict::Inconclusive, vec![difference, told]),
+            None => Reexecuted::of(Verdict::Fail, vec![difference]),
+        },
+    })
+}
+
+/// Reads the numerics version of a summary.
+fn numerics_of(summary: &Value) -> Option<u32> {
+    summary.get("numerics")?.as_u64()?.try_into().ok()
+}
+
+/// Runs a sample of a campaign's cases again.
+fn campaign(folder: &Path, count: Count, seed: Option<u64>) -> Result<Reexecuted, Failure> {
+    let plan = Plan::read(&folder.join(FILE_NAME))?;
+    // The sample must not be predictable for anyone who altered a result.
+    let drawn = || RandomState::new().hash_one(std::process::id());
+    let seed = seed.unwrap_or_else(drawn);
+    let tell = |done: usize, of: usize| note!("octant: re-executing case {} of {of}", done + 1);
+    let again = reexecute::run(&plan, folder, count.0, seed, tell)
+        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    let ran = again.same + again.differing.len() + again.other_numerics.len();
+    let mut told = vec![format!(
+        "{ran} of {}, drawn with --sample-seed {seed}: {} the same",
+        counted(again.of, "case", "cases"),
+        again.same
+    )];
+    told.extend(again.differing.iter().cloned());
+    told.extend(again.other_numerics.iter().cloned());
+    told.extend(again.not_run.iter().map(|reason| format!("not possible: {reason}")));
+    let bound = altered_at_most(again.of, again.same, CONFIDENCE);
+    let verdict = if !again.differing.is_empty() {
+        Verdict::Fail
+    } else if !(again.not_run.is_empty() && again.other_numerics.is_empty()) || ran == 0 {
+        Verdict::Inconclusive
+    } else {
+        told.push(format!(
+            "with a confidence of {:.0} %, at most {bound} of {} altered",
+            100.0 * CONFIDENCE,
+            counted(again.of, "result is", "results are")
+        ));
+        Verdict::Pass
+    };
+    let shown = (verdict == Verdict::Pass).then_some(bound);
+    let found = Reexecuted::of(verdict, told);
+    Ok(Reexecuted { sample_seed: Some(seed), altered_at_most: shown, ..found })
+}

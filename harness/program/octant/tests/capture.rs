@@ -1,0 +1,130 @@
+//! `octant capture`: what comes is in the file, whatever ends it.
+
+use crate::common::program::program;
+use octant_test_processes::{Started, start};
+use std::io::{BufRead, BufReader};
+use std::net::{SocketAddr, UdpSocket};
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// Longer than any host needs: ends a test that hangs.
+const LONG: Duration = octant_test_processes::HANGS;
+
+/// A capture, and the address at which it listens.
+fn capture(folder: &Path, more: &[&str]) -> (Started, SocketAddr) {
+    let arguments = [&["capture", "udp:127.0.0.1:0", "--out", "unit.bin"][..], more].concat();
+    let mut child = start(
+        program(&arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped()),
+    );
+    let mut said = String::new();
+    let stderr = child.stderr.as_mut().unwrap();
+    BufReader::with_capacity(1, stderr).read_line(&mut said).unwrap();
+    let address = said.trim().rsplit("udp:").next().unwrap().parse().expect(&said);
+    (child, address)
+}
+
+/// Sends datagrams until the file has grown to a size.
+fn send(to: SocketAddr, file: &Path, size: u64) {
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let begun = Instant::now();
+    let mut k = 0_u64;
+    while std::fs::metadata(file).map_or(0, |file| file.len()) < size {
+        // The receiver may be gone, where a duration ends it.
+        let _ = socket.send_to(&k.to_le_bytes(), to);
+        k += 1;
+        std::thread::sleep(Duration::from_millis(5));
+        assert!(begun.elapsed() < LONG);
+    }
+}
+
+/// Checks that a file has the numbers in their order, without a gap.
+fn counts(file: &Path) -> u64 {
+    let bytes = std::fs::read(file).unwrap();
+    for (k, number) in bytes.as_chunks::<8>().0.iter().enumerate() {
+        assert_eq!(u64::from_le_bytes(*number), k as u64);
+    }
+    assert_eq!(bytes.len() % 8, 0);
+    bytes.len() as u64 / 8
+}
+
+#[test]
+fn what_comes_is_kept_until_it_is_interrupted() {
+    for (more, status) in [(&[][..], 0), (&["--duration", "1 h"], 3)] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("unit.bin");
+        let (child, address) = capture(folder.path(), more);
+        send(address, &file, 800);
+        let pid = rustix::process::Pid::from_raw(child.id() as i32).unwrap();
+        rustix::process::kill_process(pid, rustix::process::Signal::INT).unwrap();
+        let ended = child.output();
+        assert_eq!(ended.status.code(), Some(status), "{ended:?}");
+        let numbers = counts(&file);
+        let said = String::from_utf8_lossy(&ended.stdout);
+        assert!(said.contains(&format!("unit.bin: {} bytes in", numbers * 8)), "{said}");
+    }
+}
+
+#[test]
+fn a_kill_costs_what_came_last() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("unit.bin");
+    let (mut child, address) = capture(folder.path(), &[]);
+    send(address, &file, 800);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(counts(&file) >= 100);
+}
+
+#[test]
+fn a_duration_and_a_silence_end_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("unit.bin");
+    // On a busy host nothing may come in a short time.
+    for duration in ["0.2 s", "1 s", "5 s", "30 s"] {
+        let (mut child, address) = capture(folder.path(), &["--duration", duration]);
+        let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+        for k in 0_u64.. {
+            // The receiver may be gone.
+            let _ = sender.send_to(&k.to_le_bytes(), address);
+            if child.try_wait().unwrap().is_some() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        if child.wait().unwrap().code() == Some(0) {
+            break;
+        }
+    }
+    assert!(counts(&file) > 0);
+    // What is there stays.
+    let arguments = ["capture", "udp:127.0.0.1:0", "--out", "unit.bin"];
+    let again = program(&arguments).current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&again.stderr);
+    assert!(again.status.code() == Some(2) && said.contains("expected a new name"), "{said}");
+    counts(&file);
+    std::fs::remove_file(&file).unwrap();
+    let (child, _) = capture(folder.path(), &["--silence", "0.3 s"]);
+    let ended = child.output();
+    assert_eq!(ended.status.code(), Some(4), "{ended:?}");
+    assert!(String::from_utf8_lossy(&ended.stdout).contains("unit.bin: nothing came"));
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |arguments: &[&str], expected: &str| {
+        let arguments = [&["capture"], arguments, &["--out", "unit.bin"]].concat();
+        let ended = program(&arguments).current_dir(folder.path()).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(said.contains(expected), "{said}");
+        assert!(!folder.path().join("unit.bin").exists());
+        ended.status.code()
+    };
+    assert_eq!(refused(&["udq:5005"], "expected udp?"), Some(2));
+    assert_eq!(refused(&["udp:0", "--duration", "0 s"], "expected more"), Some(2));
+    assert_eq!(refused(&["udp:0", "--silence", "-1"], "expected 0 to"), Some(2));
+    assert_eq!(refused(&["udp:0", "--duration", "NaN"], "expected a time such as"), Some(2));
+    assert_eq!(refused(&["udp:0?secret=key"], "expected no secret"), Some(2));
+    assert_eq!(refused(&["serial:/dev/nowhere"], "/dev/nowhere"), Some(4));
+}

@@ -1,0 +1,20 @@
+//! Plant and core of the reference instrument in a closed loop, without scenario, recorder or program between them: what
+//! the tests of the core's behaviour run.
+//!
+//! It is for tests, and panics where a configuration is refused.
+//!
+//! ```
+//! use octant_calibration::positions::EIGHT;
+//! use octant_test_loop::closed_loop::ClosedLoop;
+//! use octant_test_loop::instrument::InstrumentCase;
+//!
+//! let mut run = ClosedLoop::of(&InstrumentCase::table_1(1, EIGHT));
+//! run.run_to(200);
+//! assert_eq!(run.output.sequence, 200);
+//! ```
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+pub mod closed_loop;
+pub mod draws;
+pub mod instrument;
+pub mod squares;
