@@ -4,9 +4,10 @@
 use super::case::{CaseError, CaseResult, hash_of};
 use super::plan::{Case, PlannedScenario};
 use octant_base::control::Control;
+use octant_run::Plan;
 use octant_run::assemble;
-use octant_run::branches::{BranchPlan, run_branches};
-use octant_run::method::{MethodError, MethodRun, StreamKeeping};
+use octant_run::branches::run_branches;
+use octant_run::{MethodError, MethodRun, StreamKeeping};
 use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -50,7 +51,7 @@ pub fn groups(cases: &[&Case], jobs: usize) -> Vec<Vec<usize>> {
 pub fn run_alike(planned: &PlannedScenario, cases: &[&Case]) -> Vec<Result<CaseResult, CaseError>> {
     let scenarios: Vec<_> = cases.iter().map(|case| planned.scenario(case)).collect();
     let control = Control::default();
-    let mut plans: Vec<BranchPlan<'_>> = Vec::new();
+    let mut plans: Vec<Plan<'_>> = Vec::new();
     // Case and method of each run.
     let mut runs: Vec<(usize, Method)> = Vec::new();
     for (place, scenario) in scenarios.iter().enumerate() {
@@ -58,12 +59,13 @@ pub fn run_alike(planned: &PlannedScenario, cases: &[&Case]) -> Vec<Result<CaseR
         let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
         for method in [Some(Method::Primary), baseline].into_iter().flatten() {
             let seed = cases[place].seed;
-            plans.push(BranchPlan { scenario, method, seed, control: &control });
+            let keeping = StreamKeeping::HashAlone;
+            plans.push(Plan::of(scenario, method, seed, keeping, &control));
             runs.push((place, method));
         }
     }
     let done: Mutex<BTreeMap<(usize, bool), Result<MethodRun, MethodError>>> = Mutex::default();
-    run_branches(&plans, StreamKeeping::HashAlone, 1, &|index, run| {
+    run_branches(&plans, 1, &|index, run| {
         let (place, method) = runs[index];
         let key = (place, method == Method::Primary);
         done.lock().unwrap_or_else(PoisonError::into_inner).insert(key, run);

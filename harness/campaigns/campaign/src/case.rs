@@ -8,7 +8,7 @@ use super::store::error::ResultPlace;
 use octant_base::control::Control;
 use octant_base::not_finite;
 use octant_requirements::{Comparison, Verdict};
-use octant_run::method::MethodError;
+use octant_run::MethodError;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::Method;
 use octant_score::rederive;

@@ -3,10 +3,11 @@
 use octant_base::control::Control;
 use octant_base::failing::{Failing, FailureKind};
 use octant_base::pool::processors;
-use octant_run::branches::{BranchPlan, run_branches};
-use octant_run::drive::Ended;
-use octant_run::method::{MethodError, MethodRun, StreamKeeping, run_method};
-use octant_run::twin::between;
+use octant_run::Ended;
+use octant_run::Plan;
+use octant_run::branches::run_branches;
+use octant_run::difference::between;
+use octant_run::{MethodError, MethodRun, StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use octant_score::counterfactual::HARMFUL_SHIFT_SIGMA;
 use serde::{Deserialize, Serialize};
@@ -136,11 +137,13 @@ pub fn sweep(
     if let Some(reason) = twin.calibration.as_ref().and_then(|c| c.refused.as_ref()) {
         return Err(SweepError::TwinRefused(reason.clone()));
     }
-    let plans: Vec<BranchPlan<'_>> = (scenarios.iter().zip(controls.iter().skip(1)))
-        .map(|(scenario, control)| BranchPlan { scenario, method: Method::Primary, seed, control })
+    let plans: Vec<Plan<'_>> = (scenarios.iter().zip(controls.iter().skip(1)))
+        .map(|(scenario, control)| {
+            Plan::of(scenario, Method::Primary, seed, StreamKeeping::None, control)
+        })
         .collect();
     let cells: Mutex<BTreeMap<usize, Result<SweepCell, SweepError>>> = Mutex::default();
-    run_branches(&plans, StreamKeeping::None, jobs.unwrap_or_else(processors), &|index, run| {
+    run_branches(&plans, jobs.unwrap_or_else(processors), &|index, run| {
         let ended = run.map_err(SweepError::from).and_then(uncancelled);
         let cell =
             ended.map(|run| cell(&scenarios[index], &run, &twin, fault, indices(axes, index)));

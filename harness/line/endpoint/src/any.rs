@@ -18,6 +18,7 @@ enum Kind {
     Fmu(Box<FmuEndpoint>),
     Live(Box<LiveEndpoint>),
     Solution(Box<SolutionEndpoint>),
+    Foreign(Box<dyn Endpoint + Send>),
 }
 
 macro_rules! of {
@@ -40,8 +41,16 @@ macro_rules! each {
             Kind::Fmu($endpoint) => $call,
             Kind::Live($endpoint) => $call,
             Kind::Solution($endpoint) => $call,
+            Kind::Foreign($endpoint) => $call,
         }
     };
+}
+
+/// A unit that a host program made.
+impl From<Box<dyn Endpoint + Send>> for AnyEndpoint {
+    fn from(endpoint: Box<dyn Endpoint + Send>) -> Self {
+        Self(Kind::Foreign(endpoint))
+    }
 }
 
 impl Endpoint for AnyEndpoint {

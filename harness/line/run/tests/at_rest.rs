@@ -1,7 +1,7 @@
 //! Stretches at rest, and the Allan variance in them.
 
 use octant_earth::units::DEG;
-use octant_run::at_rest::AtRest;
+use octant_run::observers::at_rest::AtRest;
 use octant_sample::DeviceTime;
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalAngles, Sample, Status};

@@ -1,7 +1,7 @@
 //! Solutions and NIS that don't follow the samples are found.
 
 use octant_endpoint::Tells;
-use octant_run::follow::RunFollower;
+use octant_run::observers::follow::RunFollower;
 use octant_sample::Navigation;
 use octant_sample::{Mode, Output};
 

@@ -1,8 +1,8 @@
 //! Solutions at the ends of alignment and calibration are those of their moments.
 
 use octant_plant::Truth;
-use octant_run::done::PlannedWork;
-use octant_run::watch::Watcher;
+use octant_run::Observers;
+use octant_run::observers::done::PlannedWork;
 use octant_sample::{DeviceTime, Epoch, Mode, Navigation, Output, Sample};
 use octant_score::alignment::SolutionPoint;
 
@@ -16,8 +16,8 @@ fn mode(number: u64) -> Mode {
 }
 
 /// Watches a unit whose heading is its sample number, degrees; the truth, where there is one, has a heading of zero.
-fn watched(truth: Option<Truth>) -> Watcher {
-    let mut watcher = Watcher::new(PlannedWork::default());
+fn watched(truth: Option<Truth>) -> Observers {
+    let mut observers = Observers::new(PlannedWork::default());
     for number in 1..=300_u64 {
         let half_rad = (number as f64).to_radians() / 2.0;
         let device_time = DeviceTime::from_ns(number * 100_000_000);
@@ -36,15 +36,15 @@ fn watched(truth: Option<Truth>) -> Watcher {
             nis: f64::NAN,
             ..Output::default()
         };
-        watcher.source(&sent);
-        if watcher.answer(&sent, false, &output)
+        observers.source(&sent);
+        if observers.answer(&sent, false, &output)
             && let Some(truth) = &truth
         {
-            watcher.truth(&output, truth);
+            observers.truth(&output, truth);
         }
     }
-    assert_eq!(watcher.misbehaved, None);
-    watcher
+    assert_eq!(observers.answers.misbehaved, None);
+    observers
 }
 
 fn heading_deg(point: &Option<SolutionPoint>) -> f64 {
@@ -54,14 +54,18 @@ fn heading_deg(point: &Option<SolutionPoint>) -> f64 {
 #[test]
 fn a_moment_is_noted_once_with_and_without_truth() {
     for truth in [None, Some(Truth { q_nb: [1.0, 0.0, 0.0, 0.0], ..Truth::default() })] {
-        let watcher = watched(truth);
-        assert!((heading_deg(&watcher.aligned) - 101.0).abs() < 1e-9, "{:?}", watcher.aligned);
+        let observers = watched(truth);
         assert!(
-            (heading_deg(&watcher.calibrated) - 201.0).abs() < 1e-9,
+            (heading_deg(&observers.moments.aligned) - 101.0).abs() < 1e-9,
             "{:?}",
-            watcher.calibrated
+            observers.moments.aligned
         );
-        let errors = [&watcher.aligned, &watcher.calibrated]
+        assert!(
+            (heading_deg(&observers.moments.calibrated) - 201.0).abs() < 1e-9,
+            "{:?}",
+            observers.moments.calibrated
+        );
+        let errors = [&observers.moments.aligned, &observers.moments.calibrated]
             .map(|point| point.as_ref().unwrap().attitude_error.is_some());
         assert_eq!(errors, [truth.is_some(); 2], "errors are those of the moment or none");
     }

@@ -16,8 +16,8 @@ fn a_source_that_ends_early_concludes_the_calibration() {
     let config = scenario.core(Method::Primary, &draws, &q_nb, &velocity).unwrap();
     // Twelfth part of the calibration's time.
     let samples = scenario.calibration_samples() / 12;
-    let mut source = PlantSource::new(&scenario.plant(1, &draws), samples).unwrap();
-    let mut core = pass(&config, &mut source).unwrap();
+    let source = PlantSource::new(&scenario.plant(1, &draws), samples).unwrap();
+    let mut core = pass(&config, source).unwrap();
     assert_eq!(core.refusal(), None);
     let table = core.table().cloned().unwrap();
     assert_eq!(table.provenance.ended_ns, samples * scenario.sample_period_ns);

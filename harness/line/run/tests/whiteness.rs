@@ -1,6 +1,6 @@
 //! White innovations and others.
 
-use octant_run::whiteness::Whiteness;
+use octant_run::observers::whiteness::Whiteness;
 use octant_sample::{Innovation, InnovationOf};
 
 fn of(values: impl Iterator<Item = f64>) -> Whiteness {

@@ -34,6 +34,7 @@ enum Kind {
     Log(Box<LogSource>),
     Live(Box<LiveSource>),
     Solution(Box<SolutionSource>),
+    Foreign(Box<dyn Source + Send>),
 }
 
 macro_rules! of {
@@ -60,8 +61,16 @@ macro_rules! each {
             Kind::Log($source) => $call,
             Kind::Live($source) => $call,
             Kind::Solution($source) => $call,
+            Kind::Foreign($source) => $call,
         }
     };
+}
+
+/// A source that a host program made.
+impl From<Box<dyn Source + Send>> for AnySource {
+    fn from(source: Box<dyn Source + Send>) -> Self {
+        Self { kind: Kind::Foreign(source), reference: None }
+    }
 }
 
 impl AnySource {

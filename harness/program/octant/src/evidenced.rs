@@ -20,9 +20,9 @@ use octant_operator::OperatorRecord;
 use octant_report as report;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
+use octant_run::MethodError;
 use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
-use octant_run::method::MethodError;
 use octant_run::{Ended, MethodRun, Prepared, Run, prepared, raw_counts};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Scenario, SourceSpec};
@@ -215,7 +215,7 @@ impl Asked {
             unfinished(run.ended)
                 || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
         });
-        let broken = runs.iter().find_map(|run| run.broken.as_ref().map(ToString::to_string));
+        let broken = runs.iter().find_map(|run| run.bench.broken.as_ref().map(ToString::to_string));
         // With a full disk, there may be no space for the results either.
         let failed = |failure: Failure| match &broken {
             None => failure,
@@ -233,16 +233,17 @@ impl Asked {
             ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
         ];
         let reasons = what_broke(&primary, baseline.as_ref());
-        let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
-        if let Some(bench) = primary.bench.as_ref().filter(|bench| bench.readings.missing > 0) {
+        let link = primary.bench.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
+        let instrument = primary.bench.instrument.as_ref();
+        if let Some(bench) = instrument.filter(|bench| bench.readings.missing > 0) {
             let missing = counted(bench.readings.missing, "sample is", "samples are");
             note!("octant: {}; {missing} missing, and the core bridges the gaps", bench.instrument);
         }
-        let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
-        let bench = with_power(bench, primary.power.as_deref());
-        let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
+        let bench = instrument.and_then(|bench| serde_json::to_value(bench).ok());
+        let bench = with_power(bench, primary.bench.power.as_deref());
+        let realtime = primary.bench.kept.as_ref().map(|kept| kept.granted.clone());
         let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
-        let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
+        let estimate = primary.observed.convergence.last.map(|e| e.parameters).filter(|_| !refused);
         // Certificates are compared with the day in the manifest.
         let ended = SystemTime::now();
         let Answers { records: answers, reasons: operator } = answers;

@@ -62,8 +62,8 @@ impl Failure {
     }
 }
 
-impl From<octant_run::method::MethodError> for Failure {
-    fn from(error: octant_run::method::MethodError) -> Self {
+impl From<octant_run::MethodError> for Failure {
+    fn from(error: octant_run::MethodError) -> Self {
         Self::of(&error)
     }
 }

@@ -6,8 +6,8 @@ use crate::terminal::{print, print_json, write};
 use clap::Args;
 use octant_base::control::Control;
 use octant_requirements::Verdict;
-use octant_run::branches::BranchPlan;
-use octant_run::drive::Ended;
+use octant_run::Ended;
+use octant_run::Plan;
 use octant_run::minimise::{SearchStep, SetOutcome, minimise};
 use octant_run::stem::Stem;
 use octant_run::{MethodRun, StreamKeeping, assemble, run_method};
@@ -158,7 +158,7 @@ fn twins(
 
 /// Runs up to the first fault, which all sets have in common; `None` where a run can't be divided.
 fn stems(scenario: &Scenario, seed: u64, control: &Control) -> Result<Vec<Option<Stem>>, Failure> {
-    let plan = |method| BranchPlan { scenario, method, seed, control };
+    let plan = |method| Plan::of(scenario, method, seed, StreamKeeping::None, control);
     methods(scenario).map(|method| Ok(Stem::of(&plan(method))?)).collect()
 }
 
@@ -203,7 +203,7 @@ fn outcome(
     }
     let mut runs = Vec::with_capacity(known.twins.len());
     for ((method, twin), stem) in methods(scenario).zip(&known.twins).zip(&known.stems) {
-        let plan = BranchPlan { scenario: &some, method, seed, control };
+        let plan = Plan::of(&some, method, seed, StreamKeeping::None, control);
         let mut run = match stem {
             Some(stem) if !set.is_empty() => uncancelled(stem.run(&plan, |i| set.contains(&i))?)?,
             _ => run(&some, method, seed, StreamKeeping::None, control)?,

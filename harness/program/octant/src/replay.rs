@@ -59,12 +59,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // with the core in this process.
     let device = scenario.endpoint.device().is_some();
     let elsewhere = (!device).then(|| octant_endpoint::open(&scenario, &core)).transpose();
-    let mut endpoint: AnyEndpoint = match elsewhere.map_err(|e| bad(&e))?.flatten() {
+    let endpoint: AnyEndpoint = match elsewhere.map_err(|e| bad(&e))?.flatten() {
         Some(endpoint) => endpoint,
         None => InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?.into(),
     };
-    let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
-    let mut replayed = replay(&mut source, &mut endpoint).map_err(|e| bad(&e))?;
+    let source = Replay::open(path, None).map_err(|e| bad(&e))?;
+    let mut replayed = replay(source, endpoint).map_err(|e| bad(&e))?;
     let samples = replayed.samples;
     let comparison = Comparison {
         samples,
@@ -72,7 +72,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         outputs_equal: !replayed.outputs_differ,
         parameters_equal: !replayed.parameters_differ,
         first_difference_sample: replayed.first_difference_sample,
-        truncated: source.truncated(),
+        truncated: replayed.truncated,
     };
     if *json {
         print_json(&comparison)?;

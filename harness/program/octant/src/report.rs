@@ -17,9 +17,9 @@ use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
 use octant_report::{ReportData, ReportProvenance, SolutionSeries};
 use octant_requirements::Verdict;
-use octant_run::done::PlannedWork;
-use octant_run::filtered::FilteredSeries;
-use octant_run::{Watcher, unit};
+use octant_run::observers::done::PlannedWork;
+use octant_run::observers::filtered::FilteredSeries;
+use octant_run::{Observers, unit};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT, ParameterGroup};
 use octant_scenario::file_names::FileNames;
@@ -91,12 +91,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         None => Dispositions::default(),
         Some(path) => disposed(&summary, path, folder)?,
     };
-    let (watcher, _) = watch(&folder.join("recording.mcap"), &scenario, Method::Primary)?;
+    let (observed, _) = watch(&folder.join("recording.mcap"), &scenario, Method::Primary)?;
     let baseline = folder.join(BASELINE);
     let (baseline_solution, baseline_calibration_errors) = if baseline.exists() {
         manifest.check_file(folder, BASELINE).map_err(failed)?;
-        let (watcher, _) = watch(&baseline, &scenario, Method::Baseline)?;
-        (watcher.solution, calibration_errors(watcher.filtered))
+        let (observed, _) = watch(&baseline, &scenario, Method::Baseline)?;
+        (observed.drift.solution, calibration_errors(observed.charts.filtered))
     } else {
         Default::default()
     };
@@ -104,19 +104,19 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         truth: truth(&summary),
         facts: octant_run::assemble::facts(&scenario),
         axes_of_source: FileNames::of(&scenario.source).line(),
-        events: watcher.events(),
-        navigation_start_h: watcher.navigation_start_h(),
-        solution: watcher.solution,
+        events: observed.measurements.events(),
+        navigation_start_h: observed.drift.start_h(),
+        solution: observed.drift.solution,
         baseline_solution,
-        calibration_errors: calibration_errors(watcher.filtered),
+        calibration_errors: calibration_errors(observed.charts.filtered),
         baseline_calibration_errors,
         latitude_rad: Some(scenario.site.latitude_rad),
         sample_period_s: Some(scenario.sample_period_ns as f64 * 1e-9),
         covariance: covariance(&manifest, folder)?,
         requirement_texts: octant_run::assemble::requirement_texts(&scenario),
-        convergence: watcher.convergence,
-        nis: watcher.nis,
-        gimbals: watcher.gimbals,
+        convergence: observed.convergence.points,
+        nis: observed.measurements.nis,
+        gimbals: observed.gimbals.points,
         stops: octant_run::assemble::stop_labels(&scenario),
         provenance: provenance(&manifest),
         dispositions,
@@ -174,20 +174,20 @@ fn calibration_errors(filtered: Option<FilteredSeries>) -> SolutionSeries {
     filtered.map(|filtered| filtered.errors).unwrap_or_default()
 }
 
-/// Feeds the recording of a method to a watcher; returns it with the recording's last event.
+/// Feeds the recording of a method to observers; returns them with the recording's last event.
 pub(super) fn watch(
     path: &Path,
     scenario: &Scenario,
     method: Method,
-) -> Result<(Watcher, Option<Event>), Failure> {
+) -> Result<(Observers, Option<Event>), Failure> {
     let bad = |error: &dyn std::fmt::Display| {
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
     // No comparison with a plan: a decimated recording doesn't contain all of the work.
-    let mut watcher = Watcher::new(PlannedWork::lasting(scenario));
-    watcher.recorded(&recording.info().run);
-    watcher.filtered = FilteredSeries::of(scenario, method);
+    let mut observed = Observers::new(PlannedWork::lasting(scenario));
+    observed.recorded(&recording.info().run);
+    observed.charts.filtered = FilteredSeries::of(scenario, method);
     let mut epochs = Epochs::new(recording);
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
@@ -195,34 +195,34 @@ pub(super) fn watch(
         last = Some(*output);
         for event in &epoch.events {
             if unit::of(event).ok().flatten().is_some_and(|event| event != UnitEvent::PowerOff) {
-                watcher.restarted();
+                observed.restarted();
             }
         }
         let wanted = match epoch.sample {
             Some(sample) => {
                 let sent = Epoch { sample, aiding: epoch.aiding };
-                watcher.answer(&sent, true, output)
+                observed.answer(&sent, true, output)
             }
-            None => watcher.epoch(output),
+            None => observed.epoch(output),
         };
         if let Some(innovation) = &epoch.innovation {
-            watcher.innovation(output, innovation);
+            observed.innovation(output, innovation);
         }
         if let Some(estimate) = &epoch.parameters {
-            watcher.parameters(output, estimate);
+            observed.parameters(output, estimate);
         }
         if let (true, Some(truth)) = (wanted, &epoch.truth) {
-            watcher.truth(output, truth);
+            observed.truth(output, truth);
         }
     }
     let concluded = epochs.last_event().and_then(octant_recorder::concluded::estimate);
     if let (Some(output), Some(estimate)) = (last, concluded) {
-        watcher.parameters(&output, &estimate);
+        observed.parameters(&output, &estimate);
     }
     if epochs.recording().truncated() {
         note!("octant: {} is truncated; the part before that is used", path.display());
     }
-    Ok((watcher, epochs.last_event().cloned()))
+    Ok((observed, epochs.last_event().cloned()))
 }
 
 /// Reads the true parameters from a summary.

@@ -9,7 +9,7 @@ use octant_base::display::{DisplayUnits, UnitChoice};
 use octant_recorder::Event;
 use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
-use octant_run::method::planned_of;
+use octant_run::planned_of;
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{Method, Scenario};
 use octant_score::parameters::{nees, score, worst_normalized_error};
@@ -91,8 +91,8 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
     }
     let path = &crate::run_folder::recording_of(run)?;
     let (scenario, method, seed) = scenario_of(path)?;
-    let (watcher, last_event) = super::report::watch(path, &scenario, method)?;
-    let navigation = match watcher.drift() {
+    let (observed, last_event) = super::report::watch(path, &scenario, method)?;
+    let navigation = match observed.drift.scored() {
         Some(drift) => Some(
             drift
                 .finish(HeightChannel::Held)
@@ -102,8 +102,9 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
     };
     let draws = DrawnValues::of(&scenario, &Seeded(seed));
     let truth = true_parameters(path, &scenario)?.then_some(draws.parameters);
-    let parameters = watcher
-        .last_parameters
+    let parameters = observed
+        .convergence
+        .last
         .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))
         .unwrap_or_default();
     let plan = match method {
@@ -114,12 +115,12 @@ pub(super) fn command(arguments: &Arguments, given: &GivenOptions) -> Result<Ver
     let scores = Scores {
         scenario: scenario.title.clone(),
         method: scenario.method_label(method),
-        nis_mean: watcher.health.nis_mean(),
+        nis_mean: observed.measurements.health.nis_mean(),
         nees: nees(&parameters, &BTreeMap::new()),
         worst_normalized_error: worst_normalized_error(&parameters, &planned),
         parameters,
         navigation,
-        misbehaved: watcher.misbehaved.as_ref().map(ToString::to_string),
+        misbehaved: observed.answers.misbehaved.as_ref().map(ToString::to_string),
     };
     if scores.navigation.is_none() && scores.parameters.is_empty() && scores.misbehaved.is_none() {
         if let Some(Event::Refused { reason }) = last_event {

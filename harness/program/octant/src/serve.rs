@@ -10,7 +10,7 @@ use octant_link::Uri;
 use octant_link::device::{Notice, serve};
 use octant_realtime::schedule::{self, Wish};
 use octant_requirements::Verdict;
-use octant_run::method::{MethodError, SetupError, core_of};
+use octant_run::{MethodError, SetupError, core_of};
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::StepPacing;
 use std::path::{Path, PathBuf};

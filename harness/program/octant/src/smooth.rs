@@ -97,11 +97,10 @@ pub(super) fn command(arguments: &SmoothArguments) -> Result<Verdict, Failure> {
     let (scenario, method, seed) = scenario_of(&path)?;
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
     let (_, config, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
-    let mut endpoint =
-        InProcess::new(&config).map_err(|e| bad(&format!("set up the core: {e}")))?;
-    let mut source = Replay::open(&path, None).map_err(|e| bad(&e))?;
+    let endpoint = InProcess::new(&config).map_err(|e| bad(&format!("set up the core: {e}")))?;
+    let source = Replay::open(&path, None).map_err(|e| bad(&e))?;
     let mut repeated =
-        repeat_calibration(&mut source, &mut endpoint, &config, NODES_MAX).map_err(|e| bad(&e))?;
+        repeat_calibration(source, endpoint, &config, NODES_MAX).map_err(|e| bad(&e))?;
     let smoothed = repeated.history.smooth().map_err(|e| bad(&e))?;
     let Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) = &config.calibration else {
         return Err(bad(&SmootherError::NoFilter { found: "none" }));

@@ -6,10 +6,11 @@ use octant_faults::FaultSpec;
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::{Signal, ThresholdSide, Trigger};
 use octant_fmu_bind::OpenedFmus;
-use octant_run::branches::{BranchPlan, first_alike, run_branches};
-use octant_run::method::{MethodError, MethodRun};
+use octant_run::Plan;
+use octant_run::branches::{first_alike, run_branches};
 use octant_run::stem::Stem;
 use octant_run::{Ended, Prepared, StreamKeeping, assemble, run_method};
+use octant_run::{MethodError, MethodRun};
 use octant_scenario::{Fault, Method, Place, Scenario};
 use proptest::prelude::*;
 use std::path::Path;
@@ -36,7 +37,7 @@ fn text(scenario: &Scenario, seed: u64, run: Result<MethodRun, MethodError>) -> 
         Err(error) => error.to_string(),
         Ok(mut run) => {
             run.recorder.bytes = 0;
-            let observed = format!("{:?} {:?} {:?}", run.watcher, run.recorder, run.receipts);
+            let observed = format!("{:?} {:?} {:?}", run.observed, run.recorder, run.receipts);
             let summary = assemble(scenario, seed, run, None).unwrap().summary;
             summary.to_json().unwrap() + &observed
         }
@@ -51,11 +52,11 @@ fn shared(
 ) -> Vec<String> {
     let controls: Vec<Control> = scenarios.iter().map(|_| Control::default()).collect();
     let method = Method::Primary;
-    let plans: Vec<BranchPlan<'_>> = (scenarios.iter().zip(&controls))
-        .map(|(scenario, control)| BranchPlan { scenario, method, seed, control })
+    let plans: Vec<Plan<'_>> = (scenarios.iter().zip(&controls))
+        .map(|(scenario, control)| Plan::of(scenario, method, seed, keeping, control))
         .collect();
     let found: Mutex<Vec<Vec<String>>> = Mutex::new(vec![Vec::new(); scenarios.len()]);
-    run_branches(&plans, keeping, jobs, &|index, run| {
+    run_branches(&plans, jobs, &|index, run| {
         found.lock().unwrap()[index].push(text(&scenarios[index], seed, run));
     });
     let found = found.into_inner().unwrap();
@@ -154,8 +155,8 @@ fn each_navigation_has_a_twin_of_its_own() {
         .map(|navigation| navigating(&clean, navigation));
     let control = Control::default();
     let method = Method::Primary;
-    let plans: Vec<BranchPlan<'_>> = (scenarios.iter())
-        .map(|scenario| BranchPlan { scenario, method, seed: 3, control: &control })
+    let plans: Vec<Plan<'_>> = (scenarios.iter())
+        .map(|scenario| Plan::of(scenario, method, 3, StreamKeeping::Hash, &control))
         .collect();
     assert_eq!(first_alike(&plans), [0, 0, 2, 3, 4]);
 }
@@ -185,10 +186,9 @@ fn the_end_of_one_run_can_be_asked_for_before_it_branches_off_and_after() {
     let scenario = scenario(&[]);
     let control = Control::default();
     control.cancel.store(true, Ordering::Relaxed);
-    let plan =
-        BranchPlan { scenario: &scenario, method: Method::Primary, seed: 1, control: &control };
+    let plan = Plan::of(&scenario, Method::Primary, 1, StreamKeeping::Hash, &control);
     let ended = Mutex::new(Vec::new());
-    run_branches(&[plan, plan], StreamKeeping::Hash, 1, &|_, run| {
+    run_branches(&[plan, plan], 1, &|_, run| {
         ended.lock().unwrap().push(run.unwrap().ended);
     });
     assert_eq!(ended.into_inner().unwrap(), [Ended::Cancelled; 2]);
@@ -210,7 +210,7 @@ proptest! {
             return Ok(());
         }
         let (method, control) = (Method::Primary, Control::default());
-        let plan = |scenario| BranchPlan { scenario, method, seed, control: &control };
+        let plan = |scenario| Plan::of(scenario, method, seed, StreamKeeping::None, &control);
         if let Some(stem) = Stem::of(&plan(&all)).unwrap() {
             let found = text(&some, seed, stem.run(&plan(&some), keep));
             prop_assert_eq!(&found, &undivided(std::slice::from_ref(&some), seed, StreamKeeping::None)[0]);

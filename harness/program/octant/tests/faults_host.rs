@@ -4,7 +4,7 @@ use crate::common::program::{json, program};
 use octant_base::control::Control;
 use octant_recorder::Event;
 use octant_recorder::reader::{self, Item};
-use octant_run::method::{MethodError, SetupError};
+use octant_run::{MethodError, SetupError};
 use octant_run::{StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use serde_json::Value;

@@ -8,13 +8,14 @@ use octant_faults::catalogue::{Acts, Example, Family, FaultKind, Lasts};
 use octant_faults::rule::{Context, DeliveryRule, FaultRule, UnitEvent, UnitRule};
 use octant_faults::station::FaultSpec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
-use octant_faults::{Station, Values};
+use octant_faults::{Receipt, Station, Values};
 use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
 use octant_requirements::Verdict;
-use octant_run::done::PlannedWork;
+use octant_run::bench::closed::Closed;
+use octant_run::observers::done::PlannedWork;
 use octant_run::{
-    Ended, Faulted, Line, MethodRun, RunHost, StreamKeeping, Watcher, assemble, drive_in_time,
+    Bench, Ended, Faulted, MethodRun, Observers, Records, RunHost, StreamKeeping, assemble,
     run_method,
 };
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
@@ -309,8 +310,8 @@ struct Driven {
     ended: Ended,
     epochs: Vec<RecordedEpoch>,
     summary: RecorderSummary,
-    watcher: Watcher,
-    station: Station,
+    observed: Observers,
+    receipts: Vec<Receipt>,
     path: std::path::PathBuf,
     _folder: tempfile::TempDir,
 }
@@ -331,7 +332,7 @@ fn drive_with(kind: &'static FaultKind, first: u64, epochs: u64, policy: Policy)
         },
     };
     let station = Station::new(&[spec], &scenario.fault_setup(1)).unwrap();
-    let mut faulted = Faulted { station, fires: Vec::new(), host: RunHost::default() };
+    let faulted = Faulted { station, fires: Vec::new(), host: RunHost::default() };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recording.mcap");
     let options = RecorderOptions {
@@ -339,16 +340,18 @@ fn drive_with(kind: &'static FaultKind, first: u64, epochs: u64, policy: Policy)
         scenario: scenario.to_resolved_toml(1, &draws),
         ..RecorderOptions::default()
     };
-    let mut recorder = Recorder::to_file(&path, &options).unwrap();
-    let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
-    let mut endpoint = InProcess::new(&core).unwrap();
-    let mut watcher = Watcher::new(PlannedWork::lasting(&scenario));
+    let recorder = Recorder::to_file(&path, &options).unwrap();
+    let source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
+    let endpoint = InProcess::new(&core).unwrap();
+    let observers = Observers::new(PlannedWork::lasting(&scenario));
     let control = Control::default();
-    let line = Line { source: &mut source, faulted: Some(&mut faulted), endpoint: &mut endpoint };
-    let ended = drive_in_time(line, &mut recorder, &mut watcher, &control).unwrap();
+    let records = Records::new(recorder, observers, &control);
+    let mut bench = Bench::of_parts(source, endpoint, Some(faulted), records);
+    bench.run();
+    let Closed { ended, recorder, observers: observed, receipts, .. } = bench.close().unwrap();
     let summary = recorder.finish().unwrap();
     let epochs = epochs_of(&path);
-    Driven { ended, epochs, summary, watcher, station: faulted.station, path, _folder: folder }
+    Driven { ended, epochs, summary, observed, receipts, path, _folder: folder }
 }
 
 fn full() -> Policy {
@@ -402,7 +405,7 @@ fn lost_late_and_repeated_samples_stand_in_the_recording() {
     let summary = &driven.summary;
     assert_eq!((summary.epochs, summary.altered), (120_000, 4));
     assert_eq!(summary.altered_streams.as_ref().unwrap().first_sample, 1001);
-    assert_eq!(driven.station.receipts()[0].samples_altered, 4);
+    assert_eq!(driven.receipts[0].samples_altered, 4);
     assert_eq!(driven.ended, Ended::Done);
     let file = Reader::open(&driven.path).unwrap();
     assert_eq!(stream_hash(file).unwrap().as_ref(), Some(&summary.stream_hash));
@@ -436,7 +439,7 @@ fn a_restarted_core_begins_anew_and_the_rest_copes() {
     assert_eq!((modes[99_999], modes[100_000]), (Mode::Navigating, Mode::Calibrating));
     let revision = |k: usize| driven.epochs[k].output.unwrap().parameters_revision;
     assert!(revision(100_000) < revision(99_999));
-    assert_eq!(driven.watcher.last_mode, Mode::Calibrating);
+    assert_eq!(driven.observed.last_mode(), Mode::Calibrating);
     assert_eq!(driven.ended, Ended::SourceEnded);
     let unit: Vec<_> =
         driven.epochs[100_000].events.iter().filter(|e| matches!(e, Event::Unit { .. })).collect();

@@ -180,7 +180,7 @@ fn a_file_that_is_overwritten_after_its_opening_changes_nothing() {
         std::fs::write(&fmu, "another").unwrap();
         let prepared = Prepared::of(&scenario, 1, true, &fmus).unwrap_or_else(|e| panic!("{e}"));
         let runs = prepared.run(folder.path()).unwrap_or_else(|e| panic!("{e}"));
-        assert!(runs[0].broken.is_none() && runs[0].recorder.epochs > 0);
+        assert!(runs[0].bench.broken.is_none() && runs[0].recorder.epochs > 0);
         assert_eq!(runs[0].twin.is_some(), !faults.is_empty());
         assert_eq!(octant_evidence::fmus(&scenario, 1, &fmus).unwrap()[0].sha256, Some(hash));
         // Another run opens the file again.

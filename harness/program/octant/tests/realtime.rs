@@ -7,9 +7,9 @@ use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, InProcess, Sent};
 use octant_realtime::clock::{MonotonicTime, now};
 use octant_recorder::{Recorder, RecorderOptions};
-use octant_run::done::PlannedWork;
-use octant_run::realtime::drive_by_clock;
-use octant_run::{Ended, Faulted, Line, RunHost, StreamKeeping, Watcher};
+use octant_run::observers::done::PlannedWork;
+use octant_run::realtime::run as run_by_clock;
+use octant_run::{Bench, Ended, Faulted, Observers, Records, RunHost, StreamKeeping};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Method, Scenario};
@@ -205,42 +205,32 @@ fn drive(
     held: fn(u64) -> u32,
     more: &str,
     watched: Option<(u64, u64)>,
-) -> (
-    Result<Ended, String>,
-    octant_run::realtime::TimeKeeping,
-    octant_recorder::RecorderSummary,
-    Option<u64>,
-) {
+) -> (Result<Ended, String>, octant_run::TimeKeeping, octant_recorder::RecorderSummary, Option<u64>)
+{
     let folder = tempfile::tempdir().unwrap();
     // Memory locking would lock all of this process, with the tests beside this one.
     let text = format!("{SECONDS}lock_memory = false\n{more}");
     let path = scenario(folder.path(), "s.toml", &text);
     let scenario = Scenario::load(Path::new(&path), &[]).unwrap();
     let (plant, core, _) = configurations(&scenario, Method::Primary, 1).unwrap();
-    let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
+    let source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
     let mut endpoint = Slow::new(InProcess::new(&core).unwrap(), held);
     endpoint.watched = watched;
     let options = RecorderOptions::default();
-    let mut faulted = scenario.station(1).unwrap().map(|station| Faulted {
+    let faulted = scenario.station(1).unwrap().map(|station| Faulted {
         station,
         fires: Vec::new(),
         host: RunHost::new(&scenario, &StreamKeeping::File(Path::new("sink")), &options.trouble)
             .unwrap(),
     });
-    let mut recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
-    let mut watcher = Watcher::new(PlannedWork::default());
-    let faulted = faulted.as_mut();
-    let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
-    let (ended, kept) = drive_by_clock(
-        &scenario.realtime,
-        scenario.sample_period_ns,
-        line,
-        &mut recorder,
-        &mut watcher,
-        &Control::default(),
-    );
-    let counted = endpoint.counted;
-    (ended.map_err(|error| error.to_string()), kept, recorder.finish().unwrap(), counted)
+    let recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
+    let (observers, control) = (Observers::new(PlannedWork::default()), Control::default());
+    let records = Records::new(recorder, observers, &control);
+    let mut bench = Bench::of_parts(source, endpoint, faulted, records);
+    run_by_clock(&mut bench, &scenario.realtime, scenario.sample_period_ns);
+    let ended = bench.ended.take().unwrap().map_err(|error| error.to_string());
+    let (kept, counted) = (bench.kept.take().unwrap(), bench.endpoint.counted);
+    (ended, kept, bench.keeper.recorder.finish().unwrap(), counted)
 }
 
 #[test]

@@ -17,7 +17,7 @@ use octant_requirements::requirement::{
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
-use octant_run::realtime::TimeKeeping;
+use octant_run::TimeKeeping;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
 use octant_score::judge::{Finding, FindingSubject, besides, derive, judge};
@@ -537,7 +537,7 @@ proptest! {
             memory: RequestOutcome::NotAsked,
             cpu: RequestOutcome::NotAsked,
         };
-        side.kept = Some(TimeKeeping { pacing, granted });
+        side.bench.kept = Some(TimeKeeping { pacing, granted });
         let lost = overruns + late_answers + missed_answers + not_sent + dropped_records > 0
             || p99_us > 500.0;
         let summary = assemble(&scenario, 1, primary, Some(baseline)).unwrap().summary;

@@ -1,11 +1,12 @@
 //! Parameters over the calibration: σ and error of each group, error of each parameter with ±σ.
 
 use super::chart::{Band, Chart, ChartLine, ChartRole};
-use super::data::{ParameterPoint, ReportData};
+use super::data::ReportData;
 use super::parameters::title;
 use maud::{Markup, html};
 use octant_sample::Parameters;
 use octant_sample::parameters::{NAMES, ParameterGroup};
+use octant_score::points::ParameterPoint;
 
 /// Renders the convergence; empty for fewer than two points.
 pub(super) fn convergence(data: &ReportData) -> Markup {

@@ -2,9 +2,9 @@
 
 use super::chart::{Band, Chart, ChartLine, ChartRole};
 use super::data::ReportData;
-use super::series::SolutionSeries;
 use super::solution::COLUMNS;
 use maud::{Markup, html};
+use octant_score::run_series::SolutionSeries;
 
 /// Part of the calibration that doesn't set the scale: the filter begins with the σ of its prior.
 const BEGINNING: f64 = 0.1;

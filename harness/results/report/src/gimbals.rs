@@ -1,10 +1,11 @@
 //! Gimbal angles by phase of the run.
 
 use super::chart::{Chart, ChartLine, ChartRole};
-use super::data::{GimbalPoint, ReportData};
+use super::data::ReportData;
 use super::marks::phases;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_score::points::GimbalPoint;
 
 /// Number of moves that one drawing tells apart.
 const MOVES_MAX: usize = 60;

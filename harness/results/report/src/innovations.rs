@@ -1,10 +1,11 @@
 //! Innovations of a calibration: NIS with its bounds, whiteness, and each axis.
 
 use super::chart::{Band, Chart, ChartLine, ChartRole};
-use super::data::{NisPoint, ReportData};
+use super::data::ReportData;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_sample::{Innovation, InnovationOf};
+use octant_score::points::NisPoint;
 
 /// 2.5th and 97.5th percentile of χ² with three degrees of freedom.
 const CHI_SQUARED_3: [f64; 2] = [0.2158, 9.3484];

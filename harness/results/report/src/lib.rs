@@ -5,7 +5,6 @@
 //! - [`chart`] draws lines as inline SVG in the colours of the page; `script/` draws them again for the
 //!   reader's width and range, with one cursor for all of them
 //! - [`page`] is the frame of every page: style, script, contents
-//! - [`series`] collects errors of any number of samples in bounded memory
 //! - [`filtered`], [`innovations`] and [`marks`] have what the page of a run derives for its plots: scales,
 //!   statistics, moves and stops
 
@@ -29,11 +28,9 @@ mod parameters;
 mod requirements;
 pub mod run;
 mod scores;
-pub mod series;
 mod solution;
 pub mod units;
 
-pub use run::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance, StopLabel,
-};
-pub use series::SolutionSeries;
+pub use octant_score::points::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
+pub use octant_score::run_series::SolutionSeries;
+pub use run::{ReportData, ReportProvenance, StopLabel};

@@ -1,8 +1,9 @@
 //! Markers of a run for its plots over time: moves, stops, faults, reports of the core.
 
 use super::chart::json_text;
-use super::data::{GimbalPoint, ReportData, StopLabel};
+use super::data::{ReportData, StopLabel};
 use maud::{Markup, PreEscaped, html};
+use octant_score::points::GimbalPoint;
 use std::fmt::Write as _;
 
 /// Maximum number of markers of a kind; the script leaves out kinds that a drawing can't tell apart.

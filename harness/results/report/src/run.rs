@@ -1,8 +1,6 @@
 //! `report.html` of one run, for the reader who assesses it.
 
-pub use super::data::{
-    GimbalPoint, HealthEvent, NisPoint, ParameterPoint, ReportData, ReportProvenance, StopLabel,
-};
+pub use super::data::{ReportData, ReportProvenance, StopLabel};
 
 use super::allan::allan;
 use super::calibration::calibration;

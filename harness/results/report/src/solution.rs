@@ -22,7 +22,7 @@ pub(super) fn errors(data: &ReportData) -> Markup {
         .enumerate()
         .filter_map(|(column, (name, title))| {
             let unit = data.units.of(name);
-            let series = |of: &super::series::SolutionSeries| -> Vec<[f64; 2]> {
+            let series = |of: &octant_score::run_series::SolutionSeries| -> Vec<[f64; 2]> {
                 of.points(column).into_iter().map(|p| [p[0], unit.of(p[1])]).collect()
             };
             let points = series(&data.solution);

@@ -6,5 +6,4 @@ mod filtered;
 mod innovations;
 mod marks;
 mod page;
-mod series;
 mod units;

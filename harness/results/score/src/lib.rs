@@ -10,6 +10,7 @@
 //! - [`summary`] is `summary.json`, [`work`] compares the work planned with the work done
 //! - [`verdict`] compares a measure with its limit, [`judge`] derives the verdict of a summary,
 //!   [`junit`] writes it for CI
+//! - [`points`] and [`run_series`] hold a run over its time, for charts, in bounded memory
 //! - [`rederive`] checks a stored summary for contradictions, [`numerics`] tells which programs give
 //!   the same bits, [`equipment`] finds expired certificates
 
@@ -32,9 +33,11 @@ mod maxima;
 mod navigation;
 pub mod numerics;
 pub mod parameters;
+pub mod points;
 pub mod rederive;
 pub mod reference;
 mod regression;
+pub mod run_series;
 pub mod series;
 pub mod summary;
 pub mod trace;

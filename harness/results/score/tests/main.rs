@@ -12,6 +12,7 @@ mod health;
 mod junit;
 mod numerics;
 mod parameters;
+mod run_series;
 mod series;
 mod trace;
 mod verdict;

@@ -24,7 +24,7 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::frames::c_nc;
 use octant_earth::units::{ARCSEC, NAUTICAL_MILE_M};
 use octant_plant::config as plant;
-use octant_run::method::SetupError;
+use octant_run::SetupError;
 use octant_sample::GimbalAngles;
 use octant_sample::parameters::ParameterGroup;
 use octant_scenario::resolve::{DrawnValues, Seeded};

@@ -2,10 +2,10 @@
 
 use octant_base::control::Control;
 use octant_requirements::Verdict;
+use octant_run::Ended;
 use octant_run::assemble::assemble;
-use octant_run::drive::Ended;
 use octant_run::many::judge_many;
-use octant_run::method::{MethodRun, StreamKeeping, run_method};
+use octant_run::{MethodRun, StreamKeeping, run_method};
 use octant_sample::Health;
 use octant_scenario::{Method, Scenario};
 use octant_score::health::name;
@@ -77,7 +77,7 @@ fn published(run: &MethodRun) -> RareOutcome {
         return RareOutcome::Refused(reason.clone());
     }
     // A measurement beyond the gate now and then is routine.
-    let mut reports = run.watcher.health.episodes().iter();
+    let mut reports = run.observed.measurements.health.episodes().iter();
     if let Some(report) = reports.find(|report| report.cause != Health::INNOVATION_REJECTED) {
         return RareOutcome::Noticed(name(report.cause).to_owned());
     }
@@ -96,8 +96,8 @@ fn published(run: &MethodRun) -> RareOutcome {
 
 /// A run whose faults don't all act shows nothing of the hypothesis.
 fn broken(run: &MethodRun) -> Option<String> {
-    let cut = run.cut_short.as_ref().map(|cut| format!("the run ended early: {cut}"));
-    let failed = run.broken.as_ref().map(ToString::to_string);
+    let cut = run.bench.cut_short.as_ref().map(|cut| format!("the run ended early: {cut}"));
+    let failed = run.bench.broken.as_ref().map(ToString::to_string);
     let misbehaved = matches!(run.ended, Ended::Misbehaved | Ended::Broken)
         .then(|| "the unit misbehaved, or the bench failed".to_owned());
     let unfired = run.receipts.iter().find(|receipt| !receipt.fired());

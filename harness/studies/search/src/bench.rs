@@ -6,9 +6,10 @@ use crate::space::{FaultForm, KeyValues, SearchSpace};
 use crate::trial::{FaultTrial, TrialEffect, TrialResult};
 use octant_base::control::Control;
 use octant_random::draws::Draws;
-use octant_run::branches::{BranchPlan, run_branches};
-use octant_run::drive::Ended;
-use octant_run::method::{MethodError, MethodRun, StreamKeeping, run_method};
+use octant_run::Ended;
+use octant_run::Plan;
+use octant_run::branches::run_branches;
+use octant_run::{MethodError, MethodRun, StreamKeeping, run_method};
 use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -109,16 +110,16 @@ impl SearchBench {
         let scenarios: Vec<Result<Scenario, String>> = (candidates.iter())
             .map(|candidate| self.scenario_of(&self.text_of(space, candidate, &[])))
             .collect();
-        let (places, plans): (Vec<usize>, Vec<BranchPlan<'_>>) = (scenarios.iter().enumerate())
+        let (places, plans): (Vec<usize>, Vec<Plan<'_>>) = (scenarios.iter().enumerate())
             .filter_map(|(place, scenario)| Some((place, scenario.as_ref().ok()?)))
             .map(|(place, scenario)| {
-                let (method, seed) = (Method::Primary, self.seed);
-                (place, BranchPlan { scenario, method, seed, control })
+                let (method, seed, keeping) = (Method::Primary, self.seed, StreamKeeping::None);
+                (place, Plan::of(scenario, method, seed, keeping, control))
             })
             .unzip();
         let results: Mutex<BTreeMap<usize, TrialResult>> = Mutex::default();
         let cancelled = Mutex::new(false);
-        run_branches(&plans, StreamKeeping::None, self.jobs, &|index, run| {
+        run_branches(&plans, self.jobs, &|index, run| {
             if matches!(&run, Ok(run) if run.ended == Ended::Cancelled) {
                 *cancelled.lock().unwrap_or_else(PoisonError::into_inner) = true;
                 return;
@@ -146,7 +147,8 @@ impl SearchBench {
             Ok(run) => match TrialEffect::of(scenario, &run, &self.twin) {
                 Some(effect) => TrialResult::Ran(effect),
                 None => TrialResult::Broken(
-                    run.broken
+                    run.bench
+                        .broken
                         .as_ref()
                         .map_or_else(|| "it has no end".to_owned(), ToString::to_string),
                 ),

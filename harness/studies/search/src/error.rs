@@ -2,7 +2,7 @@
 
 use octant_base::chained_lines::ChainedLinesError;
 use octant_base::failing::{Failing, FailureKind};
-use octant_run::method::MethodError;
+use octant_run::MethodError;
 use octant_scenario::Problem;
 use std::path::PathBuf;
 

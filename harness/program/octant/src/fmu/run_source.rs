@@ -7,7 +7,7 @@ use crate::terminal::{print, print_json};
 use octant_base::control::Control;
 use octant_base::number::counted;
 use octant_requirements::Verdict;
-use octant_run::method::run_as_far_as_it_goes;
+use octant_run::run_as_far_as_it_goes;
 use octant_run::{Ended, StreamKeeping};
 use octant_scenario::{Method, Scenario, setting_argument};
 use serde::Serialize;
@@ -87,7 +87,7 @@ pub(super) fn command(kept: &SharedRunOptions<'_>, scenario: &Path) -> Result<Ve
     } else {
         print(&text(&told))?;
     }
-    if let Some(error) = run.broken {
+    if let Some(error) = run.bench.broken {
         return Err(Failure::bench(format!("failed to run {}: {error}", told.fmu)));
     }
     Ok(match run.ended {

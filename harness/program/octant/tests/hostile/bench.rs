@@ -4,7 +4,7 @@ use super::unit::{SCENARIO, check, scenario, summary_of};
 use super::{Ends, Row, open};
 use octant_base::control::Control;
 use octant_run::assemble;
-use octant_run::method::{StreamKeeping, run_as_far_as_it_goes};
+use octant_run::{StreamKeeping, run_as_far_as_it_goes};
 use octant_scenario::{Method, Scenario};
 use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use super::unit::{check, scenario, summary_of};
 use super::{Ends, Row, breaks};
 use octant_endpoint::{ServedCore, configuration};
 use octant_link::device::Steps;
-use octant_run::method::core_of;
+use octant_run::core_of;
 use octant_sample::Output;
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::*;

@@ -6,7 +6,7 @@ use octant_link::device::{Device, Notice, Steps};
 use octant_link::port::{self, Bytes as _, Pty};
 use octant_link::{Uri, Wire};
 use octant_run::assemble;
-use octant_run::method::{StreamKeeping, core_of, run_as_far_as_it_goes};
+use octant_run::{StreamKeeping, core_of, run_as_far_as_it_goes};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_scenario::{Method, Scenario};

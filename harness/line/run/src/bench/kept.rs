@@ -1,0 +1,32 @@
+//! What the parts of the bench told over a run and at its end.
+
+use super::ended::RunError;
+use octant_realtime::schedule::Granted;
+use octant_recorder::event::{BenchRecord, LinkRecord, PowerRecord};
+use octant_score::summary::PacingRecord;
+
+/// Time keeping of a run by the clock.
+#[derive(Clone, Debug)]
+pub struct TimeKeeping {
+    /// Figures for the summary.
+    pub pacing: PacingRecord,
+    /// Real-time settings that the host granted the thread.
+    pub granted: Granted,
+}
+
+/// What the parts of the bench told at the end.
+#[derive(Debug, Default)]
+pub struct BenchEnd {
+    /// Failure in the middle that ended the run.
+    pub broken: Option<RunError>,
+    /// Description of the point where the source ended in the middle of something.
+    pub cut_short: Option<String>,
+    /// Time keeping of a run by the clock.
+    pub kept: Option<TimeKeeping>,
+    /// Device and traffic of a run over a wire; as in the recording.
+    pub link: Option<Box<LinkRecord>>,
+    /// Clocks and counts of a real instrument and its table; as in the recording.
+    pub instrument: Option<Box<BenchRecord>>,
+    /// Switchings of the device's power; as in the recording.
+    pub power: Option<Box<PowerRecord>>,
+}

@@ -1,0 +1,278 @@
+//! What is observed of a run as it goes by.
+//!
+//! Each observer has one subject: [`answers`] the rules of the unit, [`done`] the work completed, [`moments`] the
+//! solution at the ends of alignment and calibration, [`drift`] the navigation against the truth, [`convergence`] the
+//! parameters, [`measurements`] health and NIS, [`gimbals`] their angles; [`at_rest`] the noise of the sensors and
+//! [`filtered`] the σ of a filter, which only a report shows. [`Observers`] gives each of them what it needs, once.
+//!
+//! The same observers see a live run and a recording afterwards ([`Observers::answer`], then
+//! [`Observers::parameters`] and [`Observers::truth`] where there are any). A rule broken by the unit,
+//! or a real-time limit violated by the bench, ends the observation.
+
+pub mod answers;
+pub mod at_rest;
+pub mod convergence;
+pub mod done;
+pub mod drift;
+pub mod filtered;
+pub mod follow;
+pub mod gimbals;
+pub mod measurements;
+pub mod moments;
+mod solution;
+pub mod true_motion;
+pub mod whiteness;
+
+use self::answers::Answers;
+use self::at_rest::AtRest;
+use self::convergence::Convergence;
+use self::done::{Done, PlannedWork};
+use self::drift::NavigationDrift;
+use self::filtered::FilteredSeries;
+use self::gimbals::GimbalSeries;
+use self::measurements::Measurements;
+use self::moments::{Moment, Moments};
+use self::solution::{attitude_error, errors, velocity_error};
+use octant_endpoint::Tells;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{DeviceTime, Innovation, Mode, NavigationCovariance, Output, Truth};
+use octant_score::trace::RunTrace;
+use octant_source::Epoch;
+use std::collections::BTreeMap;
+
+/// Interval at which truth is compared with the navigation solution, ns.
+const SCORE_PERIOD_NS: u64 = 1_000_000_000;
+
+/// Key of a recording's metadata: whether the unit tells its velocity.
+pub(crate) const TELLS_VELOCITY: &str = "tells_velocity";
+/// Key of a recording's metadata: whether the unit tells its attitude.
+pub(crate) const TELLS_ATTITUDE: &str = "tells_attitude";
+
+/// The observers of one run.
+#[derive(Clone, Debug)]
+pub struct Observers {
+    now: Now,
+    tells: Tells,
+    /// The rules of the unit, and the bench's own limits.
+    pub answers: Answers,
+    /// The work planned and completed.
+    pub done: Done,
+    /// Solutions at the ends of alignment and calibration.
+    pub moments: Moments,
+    /// The last navigation against the truth.
+    pub drift: NavigationDrift,
+    /// The parameters.
+    pub convergence: Convergence,
+    /// Health, NIS and innovations.
+    pub measurements: Measurements,
+    /// Gimbal angles.
+    pub gimbals: GimbalSeries,
+    /// Trace for the comparison with a twin, where there is one.
+    pub trace: Option<RunTrace>,
+    /// What only a report shows.
+    pub charts: Charts,
+}
+
+/// Where the run is.
+#[derive(Clone, Copy, Debug)]
+struct Now {
+    /// Time of the source at the next output, where faults may have altered its stamp.
+    source: Option<DeviceTime>,
+    last_ns: u64,
+    mode: Mode,
+    next_score_ns: u64,
+    score_period_ns: u64,
+}
+
+impl Now {
+    /// Returns whether the truth is to be compared at this time; the next one is a period later.
+    #[inline(always)]
+    fn is_due(&mut self, now_ns: u64) -> bool {
+        let period_ns = self.score_period_ns;
+        // Also due if time has run back by more than a period: a fault can do that to stamps.
+        let due = self.next_score_ns.wrapping_sub(now_ns).wrapping_sub(1) >= period_ns;
+        if due {
+            self.next_score_ns = (now_ns / period_ns + 1) * period_ns;
+        }
+        due
+    }
+}
+
+/// Observers that only a report needs.
+#[derive(Clone, Debug, Default)]
+pub struct Charts {
+    /// Noise of the sensors at rest, where it is wanted.
+    pub at_rest: Option<Box<AtRest>>,
+    /// Errors and σ of a filter that calibrates, where they are wanted.
+    pub filtered: Option<FilteredSeries>,
+}
+
+impl Observers {
+    /// Creates the observers of a run with this plan.
+    #[must_use]
+    pub fn new(plan: PlannedWork) -> Self {
+        let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
+        let follows = plan.tells().is_none_or(|tells| tells.follows);
+        let tells = plan.tells().unwrap_or(Tells::ALL);
+        let now = Now {
+            source: None,
+            last_ns: 0,
+            mode: Mode::default(),
+            next_score_ns: 0,
+            // A solution from elsewhere may jump between two seconds.
+            score_period_ns: if follows { SCORE_PERIOD_NS } else { 1 },
+        };
+        Self {
+            now,
+            tells,
+            answers: Answers::new(plan.tells()),
+            moments: Moments::new(tells, plan.standing_rad(), plan.prior().copied()),
+            done: Done::towards(plan),
+            drift: NavigationDrift::default(),
+            convergence: Convergence::over(calibration_s),
+            measurements: Measurements::new(),
+            gimbals: GimbalSeries::default(),
+            trace: None,
+            charts: Charts::default(),
+        }
+    }
+
+    /// Sets which quantities the unit of a recording tells, from the recording's metadata. A recording
+    /// without a statement has all of them.
+    pub fn recorded(&mut self, run: &BTreeMap<String, String>) {
+        let told = |key: &str| run.get(key).is_none_or(|text| text != "false");
+        self.tells.velocity = told(TELLS_VELOCITY);
+        self.tells.attitude = told(TELLS_ATTITUDE);
+        self.moments.unit_tells(self.tells);
+    }
+
+    /// Takes the source's epoch, before faults alter it.
+    #[inline]
+    pub fn source(&mut self, clean: &Epoch) {
+        self.now.source = Some(clean.sample.device_time);
+        if let Some(at_rest) = &mut self.charts.at_rest {
+            at_rest.push(&clean.sample);
+        }
+        if clean.aiding.is_some() {
+            self.done.reference();
+        }
+    }
+
+    /// Takes the time of the source at an answer to a further epoch of a step.
+    #[inline]
+    pub(crate) fn source_time(&mut self, step_ns: u64) {
+        self.now.source = Some(DeviceTime { ns: step_ns });
+    }
+
+    /// Begins anew after a restart of the unit.
+    pub fn restarted(&mut self) {
+        self.answers.restarted();
+        self.done.restarted();
+    }
+
+    /// Takes the answer to an epoch as it reached the unit; returns true if truth at it is needed.
+    #[inline]
+    pub fn answer(&mut self, sent: &Epoch, altered: bool, output: &Output) -> bool {
+        if !self.answers.answer(sent, output) {
+            return false;
+        }
+        let now_ns = self.now.source.unwrap_or(output.device_time).ns;
+        self.done.epoch(now_ns, output);
+        if !altered {
+            self.answers.follow(now_ns, output);
+        }
+        let due = self.epoch(output);
+        if due {
+            self.moments.due(sent, output);
+        }
+        due
+    }
+
+    /// Takes an output that answers no sample, or one that isn't known any more; returns true if
+    /// truth at it is needed.
+    #[inline(always)]
+    pub fn epoch(&mut self, output: &Output) -> bool {
+        let now_ns = output.device_time.ns;
+        self.now.last_ns = now_ns;
+        if let Some(trace) = &mut self.trace {
+            trace.output(output);
+        }
+        if output.mode != self.now.mode {
+            self.change_mode(output);
+        }
+        self.measurements.answer(output, self.now.source);
+        if self.gimbals.answer(output)
+            && let Some(at_rest) = &mut self.charts.at_rest
+        {
+            at_rest.unit_moves(output.moving);
+        }
+        self.now.is_due(now_ns)
+    }
+
+    #[cold]
+    fn change_mode(&mut self, output: &Output) {
+        let now_ns = output.device_time.ns;
+        // The output in which navigation begins holds the state at its start.
+        if output.mode == Mode::Navigating {
+            self.drift.begin(now_ns);
+            self.trace.iter_mut().for_each(RunTrace::navigation_begins);
+            self.now.next_score_ns = now_ns;
+        }
+        if output.mode == Mode::Done {
+            self.now.next_score_ns = 0;
+        }
+        let moment = Moment::of(self.now.mode, output.mode);
+        if moment.is_some() {
+            self.now.next_score_ns = now_ns;
+        }
+        self.moments.comes(moment);
+        self.now.mode = output.mode;
+    }
+
+    /// Takes the innovation of the measurement in the last output.
+    pub fn innovation(&mut self, output: &Output, innovation: &Innovation) {
+        self.measurements.innovation(output, innovation);
+    }
+
+    /// Takes the filter's covariance after the measurement in the last output.
+    #[inline(never)]
+    pub fn covariance(&mut self, sent: &Epoch, output: &Output, covariance: &NavigationCovariance) {
+        if let Some(filtered) = &mut self.charts.filtered {
+            filtered.covariance(&sent.sample, output, covariance);
+        }
+    }
+
+    /// Takes the parameters that came with the last epoch.
+    #[inline]
+    pub fn parameters(&mut self, output: &Output, estimate: &ParameterEstimate) {
+        if self.answers.parameters(output, estimate) {
+            self.convergence.parameters(output, estimate);
+        }
+    }
+
+    /// Takes the truth of the last epoch.
+    pub fn truth(&mut self, output: &Output, truth: &Truth) {
+        self.moments.truth(output, truth);
+        let attitude_error = attitude_error(self.tells, output, truth);
+        let velocity_error_mps = velocity_error(self.tells, output, truth);
+        if let Some(filtered) = &mut self.charts.filtered {
+            filtered.errors(output, errors(attitude_error, velocity_error_mps));
+        }
+        let sample = self.drift.truth(output, truth, attitude_error, velocity_error_mps);
+        if let (Some(trace), Some(sample)) = (&mut self.trace, sample) {
+            trace.drift(sample.t_s, sample.latitude_error_rad, sample.longitude_error_rad);
+        }
+    }
+
+    /// Mode after the last epoch.
+    #[must_use]
+    pub fn last_mode(&self) -> Mode {
+        self.now.mode
+    }
+
+    /// Returns the length of the run so far, s of device time.
+    #[must_use]
+    pub fn elapsed_s(&self) -> f64 {
+        self.now.last_ns as f64 * 1e-9
+    }
+}

@@ -1,0 +1,12 @@
+//! What is said of a run that ended: its scores, findings and summary.
+
+mod aligned;
+pub mod assemble;
+pub mod difference;
+pub mod findings;
+pub(crate) mod method;
+pub(crate) mod planned;
+pub mod raw_counts;
+pub mod refusal;
+pub mod rotation;
+pub mod scores_text;
