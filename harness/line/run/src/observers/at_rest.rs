@@ -78,11 +78,7 @@ pub struct AtRest {
     base_moves: bool,
     /// Blocks that have been completed and not counted yet, and the one that is being filled.
     ring: Ring,
-    /// Flags of the samples in the present block.
-    flags: Status,
-    /// True if the unit said in this block that the gimbals move; whether it says so now.
-    unit_moved: bool,
-    unit_moves: bool,
+    signs: BlockSigns,
     /// Stamp and number of the last sample of the last block; `None` before it.
     last: Option<(u64, u64)>,
     /// Gimbal angles at the start of the stretch, and the sums of the block that ended there.
@@ -96,6 +92,16 @@ pub struct AtRest {
     fine: AllanCascade<6>,
     /// Averages of blocks.
     coarse: AllanCascade<6>,
+}
+
+/// What the samples of the present block and the unit tell.
+#[derive(Clone, Copy, Debug)]
+struct BlockSigns {
+    /// Flags of the samples.
+    flags: Status,
+    /// True if the unit said in this block that the gimbals move; whether it says so now.
+    unit_moved: bool,
+    unit_moves: bool,
 }
 
 /// Blocks of samples, one after the other, around a ring.
@@ -161,9 +167,7 @@ impl AtRest {
             period_ns,
             base_moves,
             ring: Ring::new(block, guard.max(1) + 1),
-            flags: Status::empty(),
-            unit_moved: false,
-            unit_moves: false,
+            signs: BlockSigns { flags: Status::empty(), unit_moved: false, unit_moves: false },
             last: None,
             stands: GimbalAngles::default(),
             began: [0.0; 6],
@@ -191,8 +195,8 @@ impl AtRest {
 
     /// Takes the unit's word whether the gimbals move, when it changes.
     pub fn unit_moves(&mut self, moves: bool) {
-        self.unit_moves = moves;
-        self.unit_moved |= moves;
+        self.signs.unit_moves = moves;
+        self.signs.unit_moved |= moves;
     }
 
     /// Takes the next sample of the source.
@@ -201,7 +205,7 @@ impl AtRest {
         let at = self.ring.at;
         self.ring.samples[at] = [sample.delta_theta, sample.delta_velocity];
         self.ring.at = at + 1;
-        self.flags |= sample.status;
+        self.signs.flags |= sample.status;
         if at + 1 == self.ring.end {
             self.block(sample);
         }
@@ -213,7 +217,7 @@ impl AtRest {
         let sum = self.ring.close();
         let rests = self.rests(sample, &sum);
         self.last = Some((sample.device_time.ns, sample.sequence));
-        (self.flags, self.unit_moved) = (Status::empty(), self.unit_moves);
+        (self.signs.flags, self.signs.unit_moved) = (Status::empty(), self.signs.unit_moves);
         if !rests {
             self.coarse.end_stretch();
             (self.rested, self.stands, self.began) = (0, sample.gimbal, sum);
@@ -236,12 +240,12 @@ impl AtRest {
         let lasted_ns = sample.device_time.ns.wrapping_sub(last_ns);
         if sample.sequence.wrapping_sub(last_sequence) != block
             || lasted_ns.abs_diff(block * self.period_ns) >= self.period_ns
-            || self.flags.intersects(unusable)
+            || self.signs.flags.intersects(unusable)
         {
             return false;
         }
-        if self.flags.contains(Status::GIMBAL_INVALID) {
-            return !self.unit_moved && (self.base_moves || self.feels_nothing(sum));
+        if self.signs.flags.contains(Status::GIMBAL_INVALID) {
+            return !self.signs.unit_moved && (self.base_moves || self.feels_nothing(sum));
         }
         let off = |a: i32, b: i32| (i64::from(a) - i64::from(b)).unsigned_abs();
         off(sample.gimbal.azimuth, self.stands.azimuth) <= STANDS_COUNTS

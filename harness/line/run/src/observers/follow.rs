@@ -31,10 +31,26 @@ pub struct RunFollower {
     next_ns: u64,
     began_ns: Option<u64>,
     last_ns: u64,
-    nis: Option<u64>,
-    nis_count: u64,
-    nis_alike: bool,
+    nis: Nis,
     told: [bool; 3],
+}
+
+/// The NIS values so far.
+#[derive(Clone, Copy, Debug)]
+struct Nis {
+    /// Bits of the first one.
+    first: Option<u64>,
+    count: u64,
+    alike: bool,
+}
+
+impl Nis {
+    #[inline]
+    fn take(&mut self, nis: f64) {
+        let bits = nis.to_bits();
+        self.alike &= *self.first.get_or_insert(bits) == bits;
+        self.count += 1;
+    }
 }
 
 /// Names of the parts.
@@ -57,9 +73,7 @@ impl RunFollower {
             next_ns: 0,
             began_ns: None,
             last_ns: 0,
-            nis: None,
-            nis_count: 0,
-            nis_alike: true,
+            nis: Nis { first: None, count: 0, alike: true },
         }
     }
 
@@ -67,7 +81,7 @@ impl RunFollower {
     #[inline]
     pub fn epoch(&mut self, now_ns: u64, output: &Output) {
         if !output.nis.is_nan() {
-            self.nis(output.nis);
+            self.nis.take(output.nis);
         }
         if output.mode != Mode::Navigating {
             self.began_ns = None;
@@ -124,13 +138,6 @@ impl RunFollower {
         self.seconds += 1;
     }
 
-    #[inline]
-    fn nis(&mut self, nis: f64) {
-        let bits = nis.to_bits();
-        self.nis_alike &= *self.nis.get_or_insert(bits) == bits;
-        self.nis_count += 1;
-    }
-
     /// Describes the answers that don't follow, in plain words.
     #[must_use]
     pub fn reasons(&self) -> Vec<String> {
@@ -160,11 +167,11 @@ impl RunFollower {
                 self.repeated, self.seconds
             ));
         }
-        if self.nis_count >= NIS_LEAST && self.nis_alike {
+        if self.nis.count >= NIS_LEAST && self.nis.alike {
             reasons.push(format!(
                 "the NIS doesn't follow the samples: all {} are {}",
-                self.nis_count,
-                self.nis.map_or(f64::NAN, f64::from_bits)
+                self.nis.count,
+                self.nis.first.map_or(f64::NAN, f64::from_bits)
             ));
         }
         reasons
