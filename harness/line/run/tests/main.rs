@@ -6,6 +6,7 @@ mod findings;
 mod follow;
 mod minimise;
 mod moments;
+mod observers;
 mod passes;
 mod refusal;
 mod rotation;
