@@ -95,7 +95,7 @@ fn gimbals() -> Vec<GimbalPoint> {
     points
 }
 
-/// A run of 28 h at full length: 1 Hz of errors, every measurement of NIS that a watcher keeps.
+/// A run of 28 h at full length: 1 Hz of errors, every measurement of NIS that an observer keeps.
 fn data() -> ReportData {
     let mut solution = SolutionSeries::default();
     for k in 0..(3600.0 * NAVIGATION_H) as usize {

@@ -1,0 +1,62 @@
+"""Run by gdb: stops at functions, and writes the order in which the thread of the fault first calls them, step by step.
+
+The functions before the first step come as they are called; then those of the step in which every station was passed.
+"""
+
+import json
+import os
+
+import gdb
+
+STATIONS = json.load(open(os.environ["OCTANT_STATIONS"]))
+# The station that tells the thread of the fault, and the function with which a step begins.
+FAULT, STEP = "on_epoch", "before"
+calls = []
+
+
+class Stop(gdb.Breakpoint):
+    def __init__(self, place, name):
+        super().__init__(place)
+        self.name = name
+
+    def stop(self):
+        calls.append((gdb.selected_thread().ptid, self.name))
+        return False
+
+
+def first_line(file, begin, end):
+    """The first line of a body that has code."""
+    for line in range(begin, end + 1):
+        try:
+            found = gdb.decode_line(f"{file}:{line}")[1] or ()
+        except gdb.error:
+            continue
+        if any(place.line == line for place in found):
+            return line
+    raise gdb.GdbError(f"{file}:{begin}: no code")
+
+
+gdb.execute("set pagination off")
+gdb.execute("set breakpoint pending off")
+gdb.execute("set print thread-events off")
+for file, function, begin, end in STATIONS:
+    Stop(f"{file}:{first_line(file, begin, end)}", f"{file} {function}")
+gdb.execute("run", to_string=True)
+
+thread = next((of for of, name in calls if name.endswith(" " + FAULT)), None)
+whole, step, before = [], [], []
+for of, name in calls:
+    if of != thread:
+        # The program's main thread begins, the run goes on in one of its own.
+        if not whole and not step and name not in before:
+            before.append(name)
+        continue
+    if name.endswith(" " + STEP):
+        whole, step = max(whole, step, key=len), [name]
+    elif step:
+        step += [name] if name not in step else []
+    elif name not in before:
+        before.append(name)
+whole = max(whole, step, key=len)
+order = [name for name in before if name not in whole] + whole
+json.dump(order, open(os.environ["OCTANT_WALK"], "w"))
