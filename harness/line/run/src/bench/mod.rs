@@ -12,7 +12,6 @@ pub mod faulted;
 pub mod host;
 pub mod interfere;
 pub mod kept;
-pub(crate) mod measured;
 pub mod plan;
 pub mod recording;
 pub(crate) mod records;

@@ -3,7 +3,6 @@
 use super::attended::Attended;
 use super::ended::{Ended, RunError, over};
 use super::faulted::{Faulted, occurrence_event};
-use super::measured::Measured;
 use super::steps::{Clean, InStep, Keeps};
 use super::unit;
 use crate::observers::Observers;
@@ -13,7 +12,7 @@ use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_recorder::{EpochFrame, Extra, Recorder, RecorderError};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{Output, Truth};
+use octant_sample::{Innovation, NavigationCovariance, Output, Truth};
 use octant_scenario::resolve::DrawnValues;
 use octant_source::{Epoch, Source};
 use std::sync::LazyLock;
@@ -44,6 +43,25 @@ pub struct Records<'a> {
     pub(super) revision: u32,
     /// Person who attends to the run; then `look_every` is 1.
     pub(crate) attended: Option<Attended<'a>>,
+}
+
+/// Innovation of a measurement, and the covariance of the solution after it; `None` without a
+/// measurement, and from a core that answers with outputs alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Measured {
+    pub(crate) innovation: Option<Innovation>,
+    pub(crate) covariance: Option<NavigationCovariance>,
+}
+
+impl Measured {
+    /// Asks the endpoint, whose last output this is.
+    #[inline(always)]
+    pub(crate) fn of<E: Endpoint + ?Sized>(endpoint: &E, output: &Output) -> Self {
+        if !output.nis.is_finite() {
+            return Self::default();
+        }
+        Self { innovation: endpoint.innovation(), covariance: endpoint.navigation_covariance() }
+    }
 }
 
 /// An answer of the unit.

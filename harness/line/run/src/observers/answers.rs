@@ -46,7 +46,7 @@ impl Answers {
     /// Notes a violation of a real-time limit at a time of the source: later answers aren't judged.
     #[cold]
     pub fn bench_broke(&mut self, at_ns: u64, reason: String) {
-        self.bench_broke.get_or_insert_with(|| BenchBroke { at_s: at_ns as f64 * 1e-9, reason });
+        self.bench_broke.get_or_insert(BenchBroke { at_s: at_ns as f64 * 1e-9, reason });
     }
 
     /// True if nothing more is judged.

@@ -1,8 +1,7 @@
 //! Findings besides requirements that affect the verdict of a run: errors of unit and bench, and
 //! missing evidence.
 
-use super::method::MethodRun;
-use super::planned::planned_of;
+use super::method::{MethodRun, planned_of};
 use crate::bench::ended::Ended;
 use octant_base::number;
 use octant_calibration::config::{Estimator, SwayNoise};

@@ -1,18 +1,19 @@
 //! The result of one method: a run that ended, scored.
 
 use super::aligned::{self, uncertainty_of};
-use super::planned::{estimator_name, planned_of};
 use crate::bench::closed::Closed;
 use crate::bench::ended::{Ended, RunError};
 use crate::bench::error::MethodError;
 use crate::bench::kept::BenchEnd;
 use crate::observers::Observers;
 use crate::observers::filtered::FilteredSeries;
+use octant_calibration::config::Estimator;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
 use octant_recorder::{Event, RecorderError, RecorderSummary, concluded};
+use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_sample::{Mode, Parameters};
-use octant_scenario::{Method, Scenario};
+use octant_scenario::{CalibrationSpec, Method, Scenario};
 use octant_score::parameters::{nees, score, score_further, worst_normalized_error};
 use octant_score::summary::{
     AlignmentResult, CalibrationScore, HeightChannel, NavigationScore, SolutionScore,
@@ -156,5 +157,26 @@ impl MethodRun {
             twin: None,
             observed: observers,
         })
+    }
+}
+
+/// Lists the parameters that a calibration is to estimate, where the plan names them.
+#[must_use]
+pub fn planned_of(plan: &CalibrationSpec) -> Vec<&'static str> {
+    match &plan.estimator {
+        Estimator::Kalman(_) => (0..NAMES.len())
+            .filter(|i| plan.estimates(ParameterGroup::of(*i)))
+            .map(|i| NAMES[i])
+            .collect(),
+        Estimator::LeastSquares(_) | Estimator::ExternalTurntable(_) => Vec::new(),
+    }
+}
+
+/// Name of an estimator.
+fn estimator_name(estimator: &Estimator) -> &'static str {
+    match estimator {
+        Estimator::Kalman(_) => "kalman",
+        Estimator::LeastSquares(_) => "least-squares",
+        Estimator::ExternalTurntable(_) => "external-turntable",
     }
 }

@@ -5,7 +5,6 @@ pub mod assemble;
 pub mod difference;
 pub mod findings;
 pub(crate) mod method;
-pub(crate) mod planned;
 pub mod raw_counts;
 pub mod refusal;
 pub mod rotation;

@@ -1,6 +1,6 @@
 //! Messages from the real-time thread to the rest of the program about a step.
 
-use crate::bench::measured::Measured;
+use crate::bench::records::Measured;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;

@@ -3,7 +3,7 @@
 use super::entry::{Answer, Broke, Entry};
 use crate::bench::attended::Attended;
 use crate::bench::ended::{Ended, RunError, over};
-use crate::bench::measured::Measured;
+use crate::bench::records::Measured;
 use crate::bench::steps::{Clean, InStep, Keeps, Owed};
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, EndpointError, Sent};
