@@ -1,8 +1,12 @@
 //! Sentences of NMEA 0183 (IEC 61162-1): position, speed and course, and the attitude of PASHR.
 //!
 //! Sentences with the same time of day belong to one point: GGA, GNS, GLL and RMC give the position, RMC and VTG the
-//! velocity, PASHR roll, pitch and heading. Sentences without a time belong to the point before them. The date comes with
-//! RMC and ZDA. A point without a valid position is left out.
+//! velocity, PASHR roll, pitch and heading. Of several that say the same the finest counts. The date comes with RMC and
+//! ZDA; a ZDA begins no point, since some receivers send that of the next second early. A point without a valid position is
+//! left out.
+//!
+//! A VTG has no time. Receivers send it in every cycle at the same place, before the positions of its time or after them.
+//! Which, is learned from the beginning of the file: its velocities are those of the positions around the one or the other.
 //!
 //! Several talkers may give the same quantity at the same time, as the parts of one receiver do. Where they differ by more
 //! than their last digits, they are different instruments, and the file is refused with their names.
@@ -21,12 +25,18 @@ const EARTH_RADIUS_M: f64 = 6.371e6;
 
 /// Lines within which a file has to show what it is.
 const LINES_TO_LOOK_AT: u64 = 10_000;
+/// Fewest velocities that tell to which positions they belong.
+const VELOCITIES_LEAST: u32 = 5;
 
 pub(crate) struct NmeaReader {
     lines: NmeaLines,
-    /// Day of the present point, ns since 1970.
+    /// Day of the last sentence with a time, ns since 1970, and its time of day.
     day_ns: i64,
+    last_of_day_ns: Option<i64>,
     begun: Option<Begun>,
+    /// True if a VTG belongs to the point after it; then the one that waits for it.
+    velocity_leads: bool,
+    waits: Option<Said<2>>,
     heard_ns: Option<i64>,
 }
 
@@ -34,6 +44,7 @@ pub(crate) struct NmeaReader {
 #[derive(Clone, Copy, Debug, Default)]
 struct Begun {
     of_day_ns: i64,
+    day_ns: i64,
     position: Option<Said<2>>,
     height_m: Option<Said<1>>,
     velocity_mps: Option<Said<2>>,
@@ -61,7 +72,7 @@ impl<const N: usize> Said<N> {
         })
     }
 
-    /// Keeps the first that was said of a point.
+    /// Keeps the finest that was said of a point, of equal ones the first.
     ///
     /// # Errors
     /// If two talkers differ; `amount` gives the difference in words.
@@ -77,7 +88,13 @@ impl<const N: usize> Said<N> {
             return Ok(());
         };
         match first.differs(&said) {
-            None => Ok(()),
+            None => {
+                let finer = (0..N).all(|index| said.resolution[index] <= first.resolution[index]);
+                if finer && said.resolution != first.resolution {
+                    *first = said;
+                }
+                Ok(())
+            }
             Some(_) => Err(format!(
                 "talkers {} and {} disagree: their {quantity} at the same time are {} apart, expected one instrument: \
                  write the sentences of each talker into a file of its own, and name the one to use",
@@ -118,7 +135,19 @@ impl NmeaReader {
         let first_day_ns = first_day(&mut lines)?;
         let mut file = lines.file.into_inner();
         file.rewind().map_err(|error| error.to_string())?;
-        Ok(Self { lines: NmeaLines::new(file), day_ns: first_day_ns, begun: None, heard_ns: None })
+        let mut lines = NmeaLines::new(file);
+        let velocity_leads = velocity_leads(&mut lines)?;
+        let mut file = lines.file.into_inner();
+        file.rewind().map_err(|error| error.to_string())?;
+        Ok(Self {
+            lines: NmeaLines::new(file),
+            day_ns: first_day_ns,
+            last_of_day_ns: None,
+            begun: None,
+            velocity_leads,
+            waits: None,
+            heard_ns: None,
+        })
     }
 
     /// Takes a sentence; returns the point that it ends.
@@ -128,20 +157,29 @@ impl NmeaReader {
     fn take(&mut self, sentence: &Sentence) -> Result<Option<TrajectoryPoint>, String> {
         let mut ended = None;
         if let Some(of_day_ns) = sentence.of_day_ns {
-            match self.begun {
-                Some(begun) if begun.of_day_ns == of_day_ns => {}
+            let midnight = |last_ns: i64| of_day_ns + DAY_NS / 2 < last_ns;
+            self.day_ns = match sentence.day_ns {
+                Some(day_ns) => day_ns,
+                None if self.last_of_day_ns.is_some_and(midnight) => self.day_ns + DAY_NS,
+                None => self.day_ns,
+            };
+            self.last_of_day_ns = Some(of_day_ns);
+            self.heard_ns = self.heard_ns.max(Some(self.day_ns + of_day_ns));
+            if sentence.is_date_alone {
+                return Ok(None);
+            }
+            let day_ns = self.day_ns;
+            match &mut self.begun {
+                Some(begun) if begun.of_day_ns == of_day_ns => begun.day_ns = day_ns,
                 begun => {
-                    ended = begun.and_then(|begun| self.point(&begun));
-                    if begun.is_some_and(|begun| of_day_ns + DAY_NS / 2 < begun.of_day_ns) {
-                        self.day_ns += DAY_NS;
-                    }
-                    self.begun = Some(Begun { of_day_ns, ..Begun::default() });
+                    ended = begun.take().and_then(|begun| begun.point());
+                    let velocity_mps = self.waits.take();
+                    *begun = Some(Begun { of_day_ns, day_ns, velocity_mps, ..Begun::default() });
                 }
             }
-            if let Some(day_ns) = sentence.day_ns {
-                self.day_ns = day_ns;
-            }
-            self.heard_ns = self.heard_ns.max(Some(self.day_ns + of_day_ns));
+        } else if self.velocity_leads {
+            self.waits = sentence.velocity_mps;
+            return Ok(None);
         }
         if let Some(begun) = &mut self.begun {
             Said::keep(&mut begun.position, sentence.position, "positions", |one, other| {
@@ -165,16 +203,19 @@ impl NmeaReader {
         }
         Ok(ended)
     }
+}
 
-    fn point(&self, begun: &Begun) -> Option<TrajectoryPoint> {
-        let [latitude_rad, longitude_rad] = begun.position?.value;
+impl Begun {
+    /// The point, where it has a position.
+    fn point(&self) -> Option<TrajectoryPoint> {
+        let [latitude_rad, longitude_rad] = self.position?.value;
         Some(TrajectoryPoint {
-            time_ns: self.day_ns + begun.of_day_ns,
+            time_ns: self.day_ns + self.of_day_ns,
             latitude_rad,
             longitude_rad,
-            height_m: begun.height_m.map_or(0.0, |height| height.value[0]),
-            velocity_mps: begun.velocity_mps.map(|velocity| velocity.value),
-            attitude_rad: begun.attitude_rad,
+            height_m: self.height_m.map_or(0.0, |height| height.value[0]),
+            velocity_mps: self.velocity_mps.map(|velocity| velocity.value),
+            attitude_rad: self.attitude_rad,
         })
     }
 }
@@ -183,8 +224,7 @@ impl Points for NmeaReader {
     fn next(&mut self) -> Result<Option<TrajectoryPoint>, String> {
         loop {
             if !self.lines.advance()? {
-                let begun = self.begun.take();
-                return Ok(begun.and_then(|begun| self.point(&begun)));
+                return Ok(self.begun.take().and_then(|begun| begun.point()));
             }
             let text = std::mem::take(&mut self.lines.text);
             let ended = match Sentence::of(&text) {
@@ -235,11 +275,53 @@ fn first_day(lines: &mut NmeaLines) -> Result<i64, String> {
     })
 }
 
+/// Learns whether the velocities without a time belong to the positions after them: those of the positions before and after
+/// each tell.
+fn velocity_leads(lines: &mut NmeaLines) -> Result<bool, String> {
+    let mut points: Vec<(i64, [f64; 2])> = Vec::new();
+    // Velocities with the number of points before them.
+    let mut velocities: Vec<(usize, [f64; 2])> = Vec::new();
+    while lines.advance()? && lines.line <= LINES_TO_LOOK_AT {
+        let Some(sentence) = Sentence::of(&lines.text) else { continue };
+        match (sentence.of_day_ns, sentence.position, sentence.velocity_mps) {
+            (Some(at_ns), Some(position), _)
+                if points.last().is_none_or(|(last_ns, _)| *last_ns != at_ns) =>
+            {
+                points.push((at_ns, position.value));
+            }
+            (None, _, Some(velocity)) => velocities.push((points.len(), velocity.value)),
+            _ => {}
+        }
+    }
+    let moved = |point: usize| {
+        let ((from_ns, from), (to_ns, to)) =
+            (points.get(point.checked_sub(1)?)?, points.get(point + 1)?);
+        let elapsed_s = (to_ns - from_ns) as f64 / SECOND_NS as f64;
+        let north_mps = (to[0] - from[0]) * EARTH_RADIUS_M / elapsed_s;
+        let east_mps = (to[1] - from[1]) * libm::cos(from[0]) * EARTH_RADIUS_M / elapsed_s;
+        (elapsed_s > 0.0).then_some([north_mps, east_mps])
+    };
+    let (mut before, mut after, mut compared) = (0.0, 0.0, 0);
+    for (points_before, velocity) in &velocities {
+        let Some(last) = points_before.checked_sub(1) else { continue };
+        let (Some(of_last), Some(of_next)) = (moved(last), moved(last + 1)) else { continue };
+        let off = |moved: [f64; 2]| {
+            let [north, east] = [0, 1].map(|axis| velocity[axis] - moved[axis]);
+            north * north + east * east
+        };
+        (before, after, compared) = (before + off(of_last), after + off(of_next), compared + 1);
+    }
+    // Without a change of velocity the two say the same.
+    Ok(compared >= VELOCITIES_LEAST && after < 0.5 * before)
+}
+
 /// What a sentence says.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sentence {
     of_day_ns: Option<i64>,
     day_ns: Option<i64>,
+    /// True for a ZDA.
+    is_date_alone: bool,
     position: Option<Said<2>>,
     height_m: Option<Said<1>>,
     velocity_mps: Option<Said<2>>,
@@ -313,7 +395,7 @@ impl Sentence {
             "ZDA" => {
                 let day = |index: usize| field(index).parse::<i64>().ok();
                 let day_ns = date(day(3)?, day(2)?, day(1)?);
-                Self { of_day_ns: of_day_ns(0), day_ns, ..none }
+                Self { of_day_ns: of_day_ns(0), day_ns, is_date_alone: true, ..none }
             }
             "VTG" => {
                 let valid = !matches!(field(8), "N");

@@ -322,3 +322,114 @@ fn a_week_of_gps_ends() {
     let gps = TimeScale::GpsWeek;
     assert_eq!(gps.offset_to(gps, 10, 10 + 3 * WEEK_NS), Some(3 * WEEK_NS));
 }
+
+/// Sentences of a ship that turns through a circle in a minute, at 1 Hz: positions, velocities and dates of each second.
+struct Circle;
+
+impl Circle {
+    const RADIUS_M: f64 = 500.0;
+    const TURNS_RADPS: f64 = std::f64::consts::TAU / 60.0;
+
+    fn sum(body: &str) -> String {
+        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+        format!("${body}*{sum:02X}\r\n")
+    }
+
+    fn velocity_mps(second: u32) -> [f64; 2] {
+        let angle = Self::TURNS_RADPS * f64::from(second);
+        [-angle.sin(), angle.cos()].map(|part| part * Self::RADIUS_M * Self::TURNS_RADPS)
+    }
+
+    fn latitude_min(second: u32) -> f64 {
+        let north_m = Self::RADIUS_M * (Self::TURNS_RADPS * f64::from(second)).cos();
+        (north_m / 6.371e6).to_degrees() * 60.0
+    }
+
+    fn longitude_min(second: u32) -> f64 {
+        let east_m = Self::RADIUS_M * (Self::TURNS_RADPS * f64::from(second)).sin();
+        let latitude_rad = (30.0 + (10.0 + Self::latitude_min(second)) / 60.0).to_radians();
+        (east_m / 6.371e6 / latitude_rad.cos()).to_degrees() * 60.0
+    }
+
+    fn time(second: u32) -> String {
+        format!("12{:02}{:02}.00", second / 60, second % 60)
+    }
+
+    fn position(second: u32, digits: usize) -> String {
+        let width = digits + 3;
+        let (north, east) = (10.0 + Self::latitude_min(second), 10.0 + Self::longitude_min(second));
+        format!("30{north:0width$.digits$},N,030{east:0width$.digits$},E")
+    }
+
+    fn gga(second: u32) -> String {
+        let (time, position) = (Self::time(second), Self::position(second, 7));
+        Self::sum(&format!("GPGGA,{time},{position},1,08,1.0,0.0,M,0.0,M,,"))
+    }
+
+    fn vtg(second: u32) -> String {
+        let [north, east] = Self::velocity_mps(second);
+        let course_deg = east.atan2(north).to_degrees().rem_euclid(360.0);
+        let knots = north.hypot(east) * 3600.0 / 1852.0;
+        Self::sum(&format!("GPVTG,{course_deg:.4},T,,M,{knots:.4},N,,K,A"))
+    }
+
+    fn zda(second: u32) -> String {
+        Self::sum(&format!("GPZDA,{},01,01,2026,00,00", Self::time(second)))
+    }
+
+    /// A recommended minimum without velocity, with few digits.
+    fn rmc(second: u32) -> String {
+        let (time, position) = (Self::time(second), Self::position(second, 2));
+        Self::sum(&format!("GPRMC,{time},A,{position},,,010126,,,A"))
+    }
+}
+
+#[test]
+fn velocities_go_to_their_own_positions_in_any_order_of_the_cycle() {
+    let folder = tempfile::tempdir().unwrap();
+    type Cycle = fn(u32) -> String;
+    let cycles: [(&str, Cycle); 5] = [
+        ("after", |s| Circle::zda(s) + &Circle::gga(s) + &Circle::vtg(s)),
+        ("before", |s| Circle::zda(s) + &Circle::vtg(s) + &Circle::gga(s)),
+        ("first", |s| Circle::vtg(s) + &Circle::gga(s) + &Circle::zda(s)),
+        ("early date", |s| Circle::gga(s) + &Circle::zda(s + 1) + &Circle::vtg(s)),
+        ("coarse", |s| Circle::rmc(s) + &Circle::gga(s) + &Circle::vtg(s)),
+    ];
+    for (name, cycle) in cycles {
+        let text: String = (0..40).map(cycle).collect();
+        let points = all(&file(folder.path(), "a.nmea", text), &TrajectoryFormat::Nmea).unwrap();
+        assert_eq!(points.len(), 40, "{name}");
+        for (second, point) in (0..).zip(&points) {
+            let found = point.velocity_mps.unwrap_or_else(|| panic!("{name}: {second}"));
+            let expected = Circle::velocity_mps(second);
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-3, "{name} {second}: {found} {expected}");
+            }
+            // To seven digits of a minute, whatever else gave the position.
+            let north_rad = (30.0 + (10.0 + Circle::latitude_min(second)) / 60.0).to_radians();
+            assert!((point.latitude_rad - north_rad).abs() < 2e-11, "{name} {second}");
+            assert_eq!(point.time_ns % (60 * SECOND_NS), i64::from(second % 60) * SECOND_NS);
+        }
+    }
+}
+
+#[test]
+fn midnight_passes_once_with_and_without_a_date() {
+    let folder = tempfile::tempdir().unwrap();
+    let gga = |time: &str| {
+        Circle::sum(&format!("GPGGA,{time},3010.0000000,N,03010.0000000,E,1,08,1.0,0.0,M,0.0,M,,"))
+    };
+    let zda = |time: &str, day: u32| Circle::sum(&format!("GPZDA,{time},{day:02},01,2026,00,00"));
+    for dates in [true, false] {
+        let mut text = zda("235958.00", 1);
+        for (time, day) in [("235958.00", 1), ("235959.00", 1), ("000000.00", 2), ("000001.00", 2)]
+        {
+            // The date of the next second comes early.
+            text += &if dates { zda(time, day) } else { String::new() };
+            text += &gga(time);
+        }
+        let points = all(&file(folder.path(), "m.nmea", text), &TrajectoryFormat::Nmea).unwrap();
+        let steps: Vec<i64> = points.windows(2).map(|p| p[1].time_ns - p[0].time_ns).collect();
+        assert_eq!(steps, [SECOND_NS; 3], "{dates}");
+    }
+}

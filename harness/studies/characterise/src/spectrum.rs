@@ -2,8 +2,10 @@
 //!
 //! Segments have 2ᵏ samples, their mean and slope are taken off, and they have a Hann window. They don't overlap, so
 //! that the mean of K periodograms of white noise is Γ-distributed with K degrees of freedom exactly (Welch, IEEE Trans.
-//! Audio Electroacoust. 15, 1967). A bin is part of a line if it is above the level that white noise reaches in any of
-//! the bins of a channel with a probability of [`FALSE_ALARM`], against the median of its neighbours.
+//! Audio Electroacoust. 15, 1967). A bin is part of a line if it is above the level that noise without lines reaches in
+//! any of the bins of a channel with a probability of [`FALSE_ALARM`]. That noise has a power law over the neighbours of a
+//! bin, as white, flicker, walking and quantization noise and their sums have: its exponent and its level there come from
+//! their medians, and the fewer there are, and the further the bin is from their middle, the less certain the level.
 //!
 //! The transform is a radix-2 one of 60 lines: a segment is transformed once in its length, which is no hot path, and
 //! a crate for it would be the only reason for its packages.
@@ -13,7 +15,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::f64::consts::PI;
 
-/// Probability of a false line in a channel of white noise.
+/// Probability of a false line in a channel of noise without lines.
 pub const FALSE_ALARM: f64 = 0.01;
 /// Longest segment, in samples.
 const SEGMENT_MAX: u64 = 1 << 15;
@@ -22,8 +24,10 @@ const SEGMENTS_MIN: u64 = 8;
 /// Neighbours on each side that tell the level; those next to the bin are left out.
 const NEIGHBOURS: usize = 48;
 const GUARD: usize = 3;
-/// Noise bandwidth of a Hann window, in bins.
-const BANDWIDTH: f64 = 1.5;
+/// Farthest neighbours, as a ratio of frequencies: within it a spectrum of several noises has about a power law.
+const FARTHEST: usize = 3;
+/// Passes that find the exponent of the noise.
+const EXPONENT_PASSES: usize = 4;
 /// Efficiency of the median of correlated neighbours, as independent ones.
 const EFFICIENCY: f64 = 0.4;
 /// Lowest bin that is looked at: below is drift.
@@ -38,7 +42,7 @@ pub struct SpectrumLine {
     pub resolution_hz: f64,
     /// Amplitude of the sinusoid in the rates, rad/s or m/s².
     pub amplitude: f64,
-    /// Probability that white noise alone has a bin as high in this channel.
+    /// Probability that noise without lines has a bin as high in this channel.
     pub false_alarm: f64,
     /// Harmonic of the mains that it fits, folded or not: "50 Hz", "3 × 60 Hz".
     pub mains: Option<String>,
@@ -139,16 +143,17 @@ impl WelchSpectrum {
             return Vec::new();
         }
         let k = 2.0 * self.segments as f64;
-        let neighbours = 2.0 * NEIGHBOURS as f64 * EFFICIENCY;
-        let Ok(ratio) = FisherSnedecor::new(k, k * neighbours) else { return Vec::new() };
-        let level: Vec<f64> = (0..density.len()).map(|bin| background(&density, bin, k)).collect();
-        let chance = |bin: usize| bins as f64 * ratio.sf(density[bin] / level[bin]);
         let mut lines: Vec<SpectrumLine> = Vec::new();
         for bin in LOWEST..density.len() - 1 {
             let is_peak = density[bin] >= density[bin - 1] && density[bin] >= density[bin + 1];
-            let chance = if is_peak { chance(bin) } else { 1.0 };
+            let Some(background) = is_peak.then(|| Background::of(&density, bin, k)).flatten()
+            else {
+                continue;
+            };
+            let Ok(ratio) = FisherSnedecor::new(k, background.freedom) else { continue };
+            let chance = bins as f64 * ratio.sf(density[bin] / background.level);
             if chance < FALSE_ALARM {
-                lines.push(self.line(&density, level[bin], (bin, chance)));
+                lines.push(self.line(&density, background.level, bin, chance));
             }
         }
         // Side lobes of a strong line are lower and near.
@@ -163,7 +168,7 @@ impl WelchSpectrum {
         lines
     }
 
-    fn line(&self, density: &[f64], level: f64, (bin, chance): (usize, f64)) -> SpectrumLine {
+    fn line(&self, density: &[f64], level: f64, bin: usize, chance: f64) -> SpectrumLine {
         let above = |bin: usize| (density[bin] - level).max(0.0);
         let (left, middle, right) = (above(bin - 1), above(bin), above(bin + 1));
         // Power of the main lobe; its centre of gravity by amplitudes of a Hann window.
@@ -183,38 +188,80 @@ impl WelchSpectrum {
             resolution_hz: self.bin_hz(),
             amplitude: libm::sqrt(2.0 * power),
             false_alarm: chance.min(1.0),
-            mains: mains(frequency_hz, BANDWIDTH * self.bin_hz(), 1.0 / self.period_s),
+            mains: mains(frequency_hz, self.bin_hz(), 1.0 / self.period_s),
         }
     }
 }
 
-/// Level around a bin, from the median of its neighbours.
-fn background(density: &[f64], bin: usize, freedom: f64) -> f64 {
-    let low = bin.saturating_sub(NEIGHBOURS + GUARD).max(LOWEST / 2);
-    // At the ends the neighbourhood keeps its size on the other side.
-    let high = (low + 2 * (NEIGHBOURS + GUARD) + 1).min(density.len() - 1);
-    let low = high.saturating_sub(2 * (NEIGHBOURS + GUARD) + 1).max(LOWEST / 2);
-    let mut around: Vec<f64> = (low..high)
-        .filter(|other| other.abs_diff(bin) > GUARD)
-        .map(|other| density[other])
-        .collect();
-    around.sort_unstable_by(f64::total_cmp);
-    let median = around.get(around.len() / 2).copied().unwrap_or(f64::INFINITY);
-    // Median of χ² against its mean.
-    let part = 1.0 - 2.0 / (9.0 * freedom);
-    median / (part * part * part)
+/// Level of the noise at a bin.
+struct Background {
+    level: f64,
+    /// Degrees of freedom of the level.
+    freedom: f64,
+}
+
+impl Background {
+    /// Takes the level from the neighbours of a bin; `freedom` is that of each. `None` where there are too few.
+    fn of(density: &[f64], bin: usize, freedom: f64) -> Option<Self> {
+        let last = density.len().checked_sub(2)?;
+        let reach = NEIGHBOURS + GUARD;
+        let high = (bin + reach).min(FARTHEST * bin).min(last);
+        // At the ends the neighbourhood keeps its size on the other side.
+        let low = high.saturating_sub(2 * reach).max(bin.div_ceil(FARTHEST)).max(LOWEST / 2);
+        let high = (low + 2 * reach).min(FARTHEST * bin).min(last);
+        let around: Vec<[f64; 2]> = (low..=high)
+            .filter(|other| other.abs_diff(bin) > GUARD && density[*other] > 0.0)
+            .map(|other| [libm::log(other as f64), libm::log(density[other])])
+            .collect();
+        if around.len() < 8 {
+            return None;
+        }
+        let n = around.len() as f64;
+        let (lower, upper) = around.split_at(around.len() / 2);
+        let [from, to] = [lower, upper].map(|half| mean(half.iter().map(|[x, _]| *x)));
+        let at = libm::log(bin as f64);
+        // A median of logarithms along a steep law is drawn to one side; of what the last exponent leaves it isn't.
+        let mut exponent = 0.0;
+        for _ in 0..EXPONENT_PASSES {
+            let left = |half: &[[f64; 2]]| median(half.iter().map(|[x, y]| y - exponent * x));
+            exponent += (left(upper)? - left(lower)?) / (to - from);
+        }
+        let level = median(around.iter().map(|[x, y]| y + exponent * (at - x)))?;
+        // Median of χ² against its mean.
+        let part = 1.0 - 2.0 / (9.0 * freedom);
+        // The level away from the middle of the neighbours is as uncertain as the exponent makes it.
+        let off = (at - 0.5 * (from + to)) / (to - from);
+        Some(Self {
+            level: libm::exp(level) / (part * part * part),
+            freedom: freedom * n * EFFICIENCY / (1.0 + 4.0 * off * off),
+        })
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// Names the harmonic of the mains that a frequency fits.
-fn mains(frequency_hz: f64, within_hz: f64, rate_hz: f64) -> Option<String> {
+fn mains(frequency_hz: f64, resolution_hz: f64, rate_hz: f64) -> Option<String> {
     for base in [50.0, 60.0] {
         for harmonic in 1..=12 {
             let true_hz = base * f64::from(harmonic);
             let folded = (true_hz - rate_hz * (true_hz / rate_hz).round()).abs();
-            // The mains themselves are off by a tenth of a percent.
-            if (folded - frequency_hz).abs() < within_hz + 1e-3 * true_hz {
+            let is_folded = true_hz > 0.5 * rate_hz;
+            // The mains themselves are off by a tenth of a percent. Folded harmonics lie all over the spectrum: with that
+            // much room, some would fit anything.
+            let off_hz = if is_folded { 0.0 } else { 1e-3 * true_hz };
+            if (folded - frequency_hz).abs() <= resolution_hz + off_hz {
                 let name = if harmonic == 1 { String::new() } else { format!("{harmonic} × ") };
-                let seen = if true_hz > 0.5 * rate_hz { ", folded" } else { "" };
+                let seen = if is_folded { ", folded" } else { "" };
                 return Some(format!("{name}{base} Hz{seen}"));
             }
         }

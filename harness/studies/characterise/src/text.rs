@@ -31,6 +31,12 @@ pub fn unit(term: Option<RandomTerm>, is_gyro: bool) -> (&'static str, f64) {
     (dimension.unit, one.map_or(1.0, |quantity| quantity.si))
 }
 
+/// Unit in which the rates of a channel are shown, that of its bias, and its size in SI units.
+#[must_use]
+pub fn rate_unit(channel: &ChannelAnalysis) -> (&'static str, f64) {
+    unit(Some(RandomTerm::BiasInstability), channel.name.starts_with("gyro"))
+}
+
 /// Title of a term.
 #[must_use]
 pub const fn title(term: RandomTerm) -> &'static str {
@@ -157,6 +163,7 @@ fn lines(out: &mut String, result: &Characterisation) {
     for channel in &result.analysis.channels {
         for line in &channel.lines {
             none = false;
+            let (unit, size) = rate_unit(channel);
             let mains =
                 line.mains.as_ref().map_or_else(String::new, |name| format!(", mains {name}"));
             let _ = writeln!(
@@ -165,8 +172,8 @@ fn lines(out: &mut String, result: &Characterisation) {
                 result.names_in_file.channel(channel.name),
                 plain(line.frequency_hz, 6),
                 significant(line.resolution_hz, 2),
-                significant(line.amplitude, 3),
-                channel.unit
+                significant(line.amplitude / size, 3),
+                unit
             );
         }
     }

@@ -50,20 +50,119 @@ fn lines_have_their_frequency_and_amplitude() {
     assert!(spectrum.lines(1).is_empty());
 }
 
-#[test]
-fn false_alarms_hold_on_white_noise() {
+/// Counts the channels with a line that isn't there.
+fn alarms(of: &Coefficients, seeds: std::ops::Range<u64>) -> (usize, usize) {
     let (mut alarms, mut channels) = (0, 0);
-    for seed in 0..200 {
+    for seed in seeds {
         let mut spectrum = WelchSpectrum::new(DT, 1 << 13);
-        stream(100 + seed, &white(), DT, 1 << 13, |rate| spectrum.push(rate));
+        stream(100 + seed, of, DT, 1 << 13, |rate| spectrum.push(rate));
         for channel in 0..6 {
             alarms += usize::from(!spectrum.lines(channel).is_empty());
             channels += 1;
         }
     }
-    // 1200 channels at 1 %: 12 expected, above 23 by chance in one of a thousand.
+    (alarms, channels)
+}
+
+/// Noises of every slope, alone and together.
+fn noises() -> [(&'static str, Coefficients); 6] {
+    let none = Coefficients::default();
+    let flicker = Coefficients { bias_instability: 1e-4, ..none };
+    let walk = Coefficients { rate_random_walk: 1e-4, ..none };
+    let quantization = Coefficients { quantization: 1e-6, ..none };
+    [
+        ("white", white()),
+        ("flicker", flicker),
+        ("rate random walk", walk),
+        ("quantization", quantization),
+        ("white and flicker", Coefficients { bias_instability: 1e-4, ..white() }),
+        (
+            "all",
+            Coefficients {
+                bias_instability: 1e-4,
+                rate_random_walk: 1e-4,
+                quantization: 1e-6,
+                ..white()
+            },
+        ),
+    ]
+}
+
+fn hold(of: &str, (alarms, channels): (usize, usize)) {
+    println!("{of}: {alarms} of {channels} channels have a line");
+    let expected = FALSE_ALARM * channels as f64;
+    // Above it by chance once in a thousand.
     assert!(
-        alarms <= 23,
-        "{alarms} of {channels} channels, expected {FALSE_ALARM} of them at most"
+        alarms as f64 <= expected + 3.1 * expected.sqrt(),
+        "{of}: {alarms} of {channels} channels, expected {FALSE_ALARM} of them at most"
     );
+}
+
+#[test]
+fn false_alarms_hold_on_white_noise() {
+    hold("white", alarms(&white(), 0..200));
+}
+
+#[test]
+fn false_alarms_hold_on_noise_of_any_slope() {
+    for (name, of) in &noises()[1..] {
+        hold(name, alarms(of, 0..30));
+    }
+}
+
+/// A thousand streams of each noise: the figures of docs/characterise.md.
+#[test]
+#[ignore = "minutes: run by hand"]
+fn a_thousand_streams_of_each_noise() {
+    for (name, of) in &noises() {
+        hold(name, alarms(of, 0..1000));
+    }
+}
+
+#[test]
+fn a_line_on_a_slope_is_found() {
+    for (name, of) in &noises() {
+        let mut spectrum = WelchSpectrum::new(DT, 1 << 13);
+        let mut clean = WelchSpectrum::new(DT, 1 << 13);
+        stream(7, of, DT, 1 << 13, |rate| clean.push(rate));
+        let density = clean.density(0);
+        let bin = 40;
+        let frequency_hz = bin as f64 * clean.bin_hz();
+        // Power of fifteen bins of the noise there.
+        let amplitude = (2.0 * 15.0 * density[bin - 4..bin + 5].iter().sum::<f64>() / 9.0
+            * clean.bin_hz())
+        .sqrt();
+        let mut sample = 0.0;
+        stream(7, of, DT, 1 << 13, |rate| {
+            let mut rate = *rate;
+            rate[0] += amplitude * (TAU * frequency_hz * sample * DT).sin();
+            sample += 1.0;
+            spectrum.push(&rate);
+        });
+        let found = spectrum.lines(0);
+        assert!(
+            found.iter().any(|line| (line.frequency_hz - frequency_hz).abs() < line.resolution_hz),
+            "{name}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn a_line_beside_a_folded_harmonic_has_no_name() {
+    // At 200 Hz, 3 × 60 Hz is seen at 20 Hz.
+    for (frequency_hz, mains) in
+        [(20.0, Some("3 × 60 Hz, folded")), (20.3, None), (49.96, Some("50 Hz")), (50.5, None)]
+    {
+        let mut spectrum = WelchSpectrum::new(DT, 1 << 15);
+        let mut sample = 0.0;
+        stream(9, &white(), DT, 1 << 15, |rate| {
+            let mut rate = *rate;
+            rate[0] += 1e-3 * (TAU * frequency_hz * sample * DT).sin();
+            sample += 1.0;
+            spectrum.push(&rate);
+        });
+        let found = spectrum.lines(0);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].mains.as_deref(), mains, "{found:?}");
+    }
 }
