@@ -1,11 +1,11 @@
 //! Renders the page of a kind of fault in Markdown, and its picture.
 
 use crate::failure::Failure;
-use crate::fault_picture::{Window, picture as draw};
 use crate::fault_words::{acts, lasts};
 use octant_faults::catalogue::{Acts, FaultKind};
 use octant_faults::station::World;
-use octant_run::side_by_side::{SideBySide, side_by_side};
+use octant_report::fault_picture::{PictureRuns, PictureStep, PictureWindow, picture as draw};
+use octant_run::side_by_side::{SideBySide, Step, side_by_side};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{Output, Truth};
 use octant_scenario::{Scenario, fault_example, fault_parameters};
@@ -103,6 +103,18 @@ impl World for Nothing {
     }
 }
 
+/// Returns what a picture shows of two runs.
+fn shown(runs: &SideBySide) -> PictureRuns<'_> {
+    PictureRuns {
+        clean: runs.clean.iter().map(shown_step).collect(),
+        faulted: runs.faulted.iter().map(shown_step).collect(),
+    }
+}
+
+fn shown_step(step: &Step) -> PictureStep<'_> {
+    PictureStep { command: step.command, delivered: &step.delivered, output: step.output.as_ref() }
+}
+
 /// Draws the picture of a kind: its example, simulated.
 pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
     if !has_picture(kind) {
@@ -132,12 +144,12 @@ pub(super) fn picture(kind: &'static FaultKind) -> Result<String, Failure> {
         let shown_s = (1.4 * lasts_s).clamp(10.0 * period_s, SHOWN_MAX_S);
         let after = (shown_s / period_s).round() as u64;
         let before = after * 3 / 10;
-        let window = Window {
+        let window = PictureWindow {
             from: onset.saturating_sub(before).max(1),
             onset,
             to: (onset + after).min(steps),
         };
-        if let Some(svg) = draw(kind, &runs, window, period_s) {
+        if let Some(svg) = draw(kind, &shown(&runs), window, period_s) {
             return Ok(svg);
         }
     }

@@ -4,6 +4,7 @@
 //! - [`compare`] renders `compare.html` and the plain text of `octant compare`
 //! - [`chart`] draws lines as inline SVG in the colours of the page; `script/` draws them again for the
 //!   reader's width and range, with one cursor for all of them
+//! - [`fault_picture`] draws what a kind of fault does to a run, as one SVG
 //! - [`page`] is the frame of every page: style, script, contents
 //! - [`filtered`], [`innovations`] and [`marks`] have what the page of a run derives for its plots: scales,
 //!   statistics, moves and stops
@@ -18,6 +19,7 @@ pub mod counterfactual;
 mod data;
 pub mod discrepancies;
 mod drift;
+pub mod fault_picture;
 pub mod filtered;
 mod gimbals;
 pub mod innovations;

@@ -1,15 +1,18 @@
 //! Draws the effect of a fault: the quantity that it changes most, with and without the fault, and
 //! the difference. One self-contained SVG that adapts to light and dark.
 
+mod quantities;
+
+use super::chart::{multiples_of, nice_ticks, round, span, thinned};
 use maud::{Markup, PreEscaped, html};
 use octant_base::number;
 use octant_faults::catalogue::{Acts, Family, FaultKind};
-use octant_report::chart::{multiples_of, nice_ticks, round, span, thinned};
-use octant_run::side_by_side::{SideBySide, Step};
-use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
-use octant_sample::{Aiding, Epoch, Reference};
+use octant_sample::Reference;
+pub use quantities::PictureStep;
+use quantities::{
+    ANSWERS, CHANNELS, COMMANDS, ENCODERS, Quantity, REFERENCE, STAMPS, STATUS, View, aiding,
+};
 
-const DEG: f64 = std::f64::consts::PI / 180.0;
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 78.0;
 const RIGHT: f64 = 744.0;
@@ -21,181 +24,18 @@ const HEIGHT: f64 = 446.0;
 /// the gaps between them, such as data once a second.
 const DOTS_MAX: usize = 80;
 
-/// One quantity of a step; NaN where the step doesn't have it.
-struct Quantity {
-    name: &'static str,
-    /// Value of a step of the source by its number from 1, SI.
-    of: fn(&Step, &View) -> f64,
-    /// Unit, in SI, from the largest first.
-    units: &'static [(&'static str, f64)],
-    /// Resolution, SI: a smaller difference counts as zero.
-    resolution: f64,
+/// Both runs, step by step from the start.
+#[derive(Clone, Debug)]
+pub struct PictureRuns<'a> {
+    /// Steps without the fault.
+    pub clean: Vec<PictureStep<'a>>,
+    /// Steps with the fault.
+    pub faulted: Vec<PictureStep<'a>>,
 }
-
-/// References of the quantities.
-struct View {
-    period_s: f64,
-    /// Number of the step.
-    number: u64,
-    /// Position of the reference at the start: positions are shown as offsets from it.
-    origin: Option<[f64; 3]>,
-}
-
-const RATES: &[(&str, f64)] = &[("°/s", DEG), ("°/h", DEG / 3600.0)];
-const ACCELERATIONS: &[(&str, f64)] = &[("m/s²", 1.0), ("mg", 9.80665e-3), ("µg", 9.80665e-6)];
-const ANGLES: &[(&str, f64)] = &[("°", DEG), ("″", DEG / 3600.0)];
-const TIMES: &[(&str, f64)] = &[("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)];
-const VELOCITIES: &[(&str, f64)] = &[("m/s", 1.0), ("mm/s", 1e-3), ("µm/s", 1e-6)];
-const LENGTHS: &[(&str, f64)] = &[("m", 1.0), ("mm", 1e-3)];
-const COUNT: &[(&str, f64)] = &[("", 1.0)];
-
-fn last(step: &Step) -> Option<&Epoch> {
-    step.delivered.last()
-}
-
-fn rate(step: &Step, view: &View, axis: usize) -> f64 {
-    last(step).map_or(f64::NAN, |e| {
-        f64::from(e.sample.delta_theta[axis]) * DELTA_THETA_LSB_RAD / view.period_s
-    })
-}
-
-fn force(step: &Step, view: &View, axis: usize) -> f64 {
-    last(step).map_or(f64::NAN, |e| {
-        f64::from(e.sample.delta_velocity[axis]) * DELTA_VELOCITY_LSB_MPS / view.period_s
-    })
-}
-
-fn aiding(step: &Step) -> Option<&Aiding> {
-    step.delivered.iter().rev().find_map(|e| e.aiding.as_ref())
-}
-
-fn velocity(step: &Step, axis: usize) -> f64 {
-    match aiding(step).map(|a| a.reference) {
-        Some(Reference::Velocity(v)) => v[axis],
-        _ => f64::NAN,
-    }
-}
-
-fn position(step: &Step, view: &View, axis: usize) -> f64 {
-    // A spherical Earth is enough for a picture.
-    const RADIUS_M: f64 = 6_371_000.0;
-    match (aiding(step).map(|a| a.reference), view.origin) {
-        (Some(Reference::Position { latitude_rad, longitude_rad, height_m }), Some(o)) => {
-            match axis {
-                0 => (latitude_rad - o[0]) * RADIUS_M,
-                1 => (longitude_rad - o[1]) * RADIUS_M * libm::cos(o[0]),
-                _ => o[2] - height_m,
-            }
-        }
-        _ => f64::NAN,
-    }
-}
-
-fn stamp_error(ns: u64, view: &View) -> f64 {
-    // In whole nanoseconds: a correct stamp gives zero to the last bit.
-    let right_ns = view.number as f64 * (view.period_s * 1e9).round();
-    (ns as f64 - right_ns) * 1e-9
-}
-
-macro_rules! quantity {
-    ($name:literal, $of:expr, $units:expr, $resolution:expr) => {
-        Quantity { name: $name, of: $of, units: $units, resolution: $resolution }
-    };
-}
-
-const RATE: f64 = DELTA_THETA_LSB_RAD / 0.005;
-const FORCE: f64 = DELTA_VELOCITY_LSB_MPS / 0.005;
-
-static CHANNELS: [Quantity; 6] = [
-    quantity!("gyro x", |s, v| rate(s, v, 0), RATES, RATE),
-    quantity!("gyro y", |s, v| rate(s, v, 1), RATES, RATE),
-    quantity!("gyro z", |s, v| rate(s, v, 2), RATES, RATE),
-    quantity!("accelerometer x", |s, v| force(s, v, 0), ACCELERATIONS, FORCE),
-    quantity!("accelerometer y", |s, v| force(s, v, 1), ACCELERATIONS, FORCE),
-    quantity!("accelerometer z", |s, v| force(s, v, 2), ACCELERATIONS, FORCE),
-];
-static ENCODERS: [Quantity; 2] = [
-    quantity!(
-        "encoder, azimuth",
-        |s, _| last(s).map_or(f64::NAN, |e| e.sample.gimbal.azimuth_rad()),
-        ANGLES,
-        GIMBAL_LSB_RAD
-    ),
-    quantity!(
-        "encoder, roll",
-        |s, _| last(s).map_or(f64::NAN, |e| e.sample.gimbal.roll_rad()),
-        ANGLES,
-        GIMBAL_LSB_RAD
-    ),
-];
-static COMMANDS: [Quantity; 2] = [
-    quantity!("set point, azimuth", |s, _| s.command.target.azimuth_rad(), ANGLES, GIMBAL_LSB_RAD),
-    quantity!("set point, roll", |s, _| s.command.target.roll_rad(), ANGLES, GIMBAL_LSB_RAD),
-];
-static STAMPS: [Quantity; 2] = [
-    quantity!(
-        "stamp of the sample, less its time",
-        |s, v| last(s).map_or(f64::NAN, |e| stamp_error(e.sample.device_time.ns, v)),
-        TIMES,
-        1e-9
-    ),
-    quantity!(
-        "number of the sample, less that of its step",
-        |s, v| last(s).map_or(f64::NAN, |e| e.sample.sequence as f64 - v.number as f64),
-        COUNT,
-        1.0
-    ),
-];
-static STATUS: [Quantity; 1] = [quantity!(
-    "status of the sample",
-    |s, _| last(s).map_or(f64::NAN, |e| f64::from(e.sample.status.bits())),
-    COUNT,
-    1.0
-)];
-static REFERENCE: [Quantity; 7] = [
-    quantity!("reference velocity, north", |s, _| velocity(s, 0), VELOCITIES, 1e-12),
-    quantity!("reference velocity, east", |s, _| velocity(s, 1), VELOCITIES, 1e-12),
-    quantity!("reference velocity, down", |s, _| velocity(s, 2), VELOCITIES, 1e-12),
-    quantity!("reference position, north", |s, v| position(s, v, 0), LENGTHS, 1e-6),
-    quantity!("reference position, east", |s, v| position(s, v, 1), LENGTHS, 1e-6),
-    quantity!("reference position, down", |s, v| position(s, v, 2), LENGTHS, 1e-6),
-    quantity!(
-        "stamp of the reference, less its time",
-        |s, v| aiding(s).map_or(f64::NAN, |a| stamp_error(a.device_time.ns, v)),
-        TIMES,
-        1e-9
-    ),
-];
-static ANSWERS: [Quantity; 4] = [
-    quantity!(
-        "position of the procedure, as the core says",
-        |s, _| s.output.map_or(f64::NAN, |o| f64::from(o.stop) + 1.0),
-        COUNT,
-        1.0
-    ),
-    quantity!(
-        "velocity north, as the core says",
-        |s, _| s.output.map_or(f64::NAN, |o| o.navigation.velocity_mps[0]),
-        VELOCITIES,
-        1e-9
-    ),
-    quantity!(
-        "velocity east, as the core says",
-        |s, _| s.output.map_or(f64::NAN, |o| o.navigation.velocity_mps[1]),
-        VELOCITIES,
-        1e-9
-    ),
-    quantity!(
-        "velocity down, as the core says",
-        |s, _| s.output.map_or(f64::NAN, |o| o.navigation.velocity_mps[2]),
-        VELOCITIES,
-        1e-9
-    ),
-];
 
 /// Part of the run that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Window {
+pub struct PictureWindow {
     /// First step, from 1.
     pub from: u64,
     /// Step of the fault's onset.
@@ -212,8 +52,8 @@ struct Series {
 }
 
 impl Series {
-    fn of(quantity: &'static Quantity, runs: &SideBySide, view: &Frame) -> Self {
-        let one = |steps: &[Step]| {
+    fn of(quantity: &'static Quantity, runs: &PictureRuns<'_>, view: &Frame) -> Self {
+        let one = |steps: &[PictureStep<'_>]| {
             (view.window.from..=view.window.to)
                 .map(|number| {
                     let t = (number as f64 - view.window.onset as f64) * view.period_s;
@@ -247,17 +87,17 @@ impl Series {
 }
 
 struct Frame {
-    window: Window,
+    window: PictureWindow,
     period_s: f64,
     origin: Option<[f64; 3]>,
 }
 
 /// Draws the effect of a kind of fault; `None` if nothing differs.
 #[must_use]
-pub(crate) fn picture(
+pub fn picture(
     kind: &FaultKind,
-    runs: &SideBySide,
-    window: Window,
+    runs: &PictureRuns<'_>,
+    window: PictureWindow,
     period_s: f64,
 ) -> Option<String> {
     let origin = runs.clean.iter().find_map(|step| match aiding(step)?.reference {
@@ -291,13 +131,13 @@ pub(crate) fn picture(
 }
 
 /// Draws the numbers of the samples that arrive, and their count.
-fn delivery(kind: &FaultKind, runs: &SideBySide, frame: &Frame) -> Markup {
+fn delivery(kind: &FaultKind, runs: &PictureRuns<'_>, frame: &Frame) -> Markup {
     let (mut numbers, mut counts) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     for (side, steps) in [&runs.clean, &runs.faulted].into_iter().enumerate() {
         for number in frame.window.from..=frame.window.to {
             let t = (number as f64 - frame.window.onset as f64) * frame.period_s;
             let Some(step) = steps.get(number as usize - 1) else { continue };
-            for epoch in &step.delivered {
+            for epoch in step.delivered {
                 let relative = epoch.sample.sequence as f64 - frame.window.onset as f64;
                 numbers[side].push([t, relative]);
             }
