@@ -14,6 +14,7 @@ mod exports;
 mod plant;
 mod plant_table;
 mod quantities;
+mod scenario_config;
 mod tables;
 mod token;
 mod tunable;

@@ -3,3 +3,5 @@
 
 mod answer;
 mod fmu;
+mod fmu_bits;
+mod fmu_plant;

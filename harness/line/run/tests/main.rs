@@ -2,12 +2,17 @@
 #![allow(clippy::unwrap_used)]
 
 mod at_rest;
+mod branches;
+mod faults_any;
+mod faults_compared;
+mod faults_suite;
 mod findings;
 mod follow;
 mod minimise;
 mod moments;
 mod observers;
 mod passes;
+mod real_recording;
 mod refusal;
 mod rotation;
 mod unit;

@@ -600,3 +600,38 @@ fn the_program_says_what_a_fault_did() {
     assert_eq!(unknown.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("did you mean \"spike\"?"));
 }
+
+/// Twelve seconds of calibration with one move, and three of navigation.
+const SHORT: &str = "schema = 1\n\
+    [procedure.calibration]\nduration = \"12 s\"\n\
+    stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]\n\
+    [procedure.navigation]\nduration = \"3 s\"\n[record]\nsamples = \"full\"\n";
+
+/// A fault that waits for a jerk of the mooring sets in after it, and not in its middle.
+#[test]
+fn what_follows_a_jerk_sets_in_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let faults = "[[faults]]\nid = \"jerk\"\nkind = \"mooring-jerk\"\n\
+        displacement = [\"0.3 m\", \"0 m\", \"0 m\"]\nlength = \"5 s\"\ntrigger = { at = \"2 s\" }\n\
+        [[faults]]\nid = \"spike\"\nkind = \"spike\"\nchannels = \"gyro x\"\namplitude = \"1000 deg/h\"\n\
+        duration = \"3 samples\"\ntrigger = { after_fault = \"jerk\", after = \"1 s\" }\n";
+    let text = format!("{SHORT}{faults}");
+    std::fs::write(folder.path().join("jerk.toml"), text).unwrap();
+    let output = octant_in(folder.path(), &["run", "jerk.toml", "--out", "run"]);
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        told.contains("fault jerk (mooring-jerk): fired once, 1000 samples from 401 to 1400"),
+        "{told}"
+    );
+    assert!(
+        told.contains("fault spike (spike): fired once, 3 samples from 1601 to 1603"),
+        "{told}"
+    );
+    let summary = std::fs::read_to_string(folder.path().join("run/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["altered_streams"]["first_sample"], 401);
+    let x = &summary["faults"][0]["largest_change"]["delta_velocity"][0];
+    // At most 24/L² of the displacement, over a sample of 5 ms, in counts of 2⁻³⁰ m/s.
+    let largest = 24.0 * 0.3 / 25.0 * 0.005 * 2f64.powi(30);
+    assert!((x.as_f64().unwrap() / largest - 1.0).abs() < 1e-4, "{x} {largest}");
+}

@@ -6,4 +6,5 @@ mod filtered;
 mod innovations;
 mod marks;
 mod page;
+mod run;
 mod units;

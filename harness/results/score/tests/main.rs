@@ -7,6 +7,7 @@ mod attitude;
 mod claim;
 mod compare;
 mod counterfactual;
+mod drift;
 mod equipment;
 mod health;
 mod junit;

@@ -7,16 +7,16 @@ use octant_fmu_host::instance::{
 use std::collections::BTreeMap;
 
 /// Numbers of a toy, by value reference.
-pub type Numbers = BTreeMap<u32, f64>;
+pub(super) type Numbers = BTreeMap<u32, f64>;
 
 /// Step of a toy: its numbers, the time and the length.
-pub type Law = Box<dyn FnMut(&mut Numbers, f64, f64) -> Stepped + Send>;
+pub(super) type Law = Box<dyn FnMut(&mut Numbers, f64, f64) -> Stepped + Send>;
 
 /// Calculation at every access: outputs with direct feedthrough.
-pub type Algebra = fn(&mut Numbers);
+pub(super) type Algebra = fn(&mut Numbers);
 
 /// FMU for tests.
-pub struct Toy {
+pub(super) struct Toy {
     description: Description,
     numbers: Numbers,
     texts: BTreeMap<u32, String>,
@@ -31,18 +31,18 @@ pub struct Toy {
 }
 
 /// Returns a step that was done.
-pub fn done(time_s: f64, step_s: f64) -> Stepped {
+pub(super) fn done(time_s: f64, step_s: f64) -> Stepped {
     Stepped { time_s: time_s + step_s, outcome: StepOutcome::Done, event: false, terminate: false }
 }
 
 /// Returns a step that was refused after a part of it.
-pub fn refused(reached_s: f64) -> Stepped {
+pub(super) fn refused(reached_s: f64) -> Stepped {
     Stepped { time_s: reached_s, outcome: StepOutcome::Discarded, event: false, terminate: false }
 }
 
 /// Builds a description of FMI 2.0: inputs and outputs (`name:unit`, `name` for plain numbers),
 /// with value references counted from 1, and the dependencies of each output.
-pub fn describe(
+pub(super) fn describe(
     model: &str,
     inputs: &[&str],
     outputs: &[(&str, Option<&[usize]>)],
@@ -91,7 +91,7 @@ pub fn describe(
 }
 
 impl Toy {
-    pub fn new(description: Description, start: &[(u32, f64)], law: Law, algebra: Algebra) -> Self {
+    pub(super) fn new(description: Description, start: &[(u32, f64)], law: Law, algebra: Algebra) -> Self {
         let mut numbers: Numbers =
             description.variables.iter().map(|variable| (variable.reference, 0.0)).collect();
         numbers.extend(start.iter().copied());

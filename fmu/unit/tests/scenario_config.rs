@@ -12,7 +12,7 @@ use octant_scenario::{Method, Scenario};
 use std::path::PathBuf;
 
 fn files() -> Vec<PathBuf> {
-    let scenarios = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/scenarios");
+    let scenarios = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenarios");
     let mut files = Vec::new();
     for folder in [scenarios.to_owned(), format!("{scenarios}/faults")] {
         files.extend(std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));

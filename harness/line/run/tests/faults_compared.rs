@@ -2,7 +2,6 @@
 //! without it. The comparison is made here, from the messages of the files alone.
 
 use super::faults_any::{draw, scenario};
-use crate::common::program::octant_in;
 use octant_base::control::Control;
 use octant_faults::catalogue::{Acts, FaultKind};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
@@ -267,33 +266,4 @@ fn the_receipt_of_each_kind_is_what_two_recordings_show() {
         inside += u32::from(kind.acts == Acts::Plant);
     }
     assert_eq!(inside, 15, "kinds inside the plant");
-}
-
-/// A fault that waits for a jerk of the mooring sets in after it, and not in its middle.
-#[test]
-fn what_follows_a_jerk_sets_in_after_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let faults = "[[faults]]\nid = \"jerk\"\nkind = \"mooring-jerk\"\n\
-        displacement = [\"0.3 m\", \"0 m\", \"0 m\"]\nlength = \"5 s\"\ntrigger = { at = \"2 s\" }\n\
-        [[faults]]\nid = \"spike\"\nkind = \"spike\"\nchannels = \"gyro x\"\namplitude = \"1000 deg/h\"\n\
-        duration = \"3 samples\"\ntrigger = { after_fault = \"jerk\", after = \"1 s\" }\n";
-    let text = format!("{}{faults}", super::faults_any::SCENARIO);
-    std::fs::write(folder.path().join("jerk.toml"), text).unwrap();
-    let output = octant_in(folder.path(), &["run", "jerk.toml", "--out", "run"]);
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        told.contains("fault jerk (mooring-jerk): fired once, 1000 samples from 401 to 1400"),
-        "{told}"
-    );
-    assert!(
-        told.contains("fault spike (spike): fired once, 3 samples from 1601 to 1603"),
-        "{told}"
-    );
-    let summary = std::fs::read_to_string(folder.path().join("run/summary.json")).unwrap();
-    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
-    assert_eq!(summary["altered_streams"]["first_sample"], 401);
-    let x = &summary["faults"][0]["largest_change"]["delta_velocity"][0];
-    // At most 24/L² of the displacement, over a sample of 5 ms, in counts of 2⁻³⁰ m/s.
-    let largest = 24.0 * 0.3 / 25.0 * 0.005 * 2f64.powi(30);
-    assert!((x.as_f64().unwrap() / largest - 1.0).abs() < 1e-4, "{x} {largest}");
 }
