@@ -183,3 +183,10 @@ fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
         Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
     }
 }
+
+// The tests name the crate as its users do. They are a part of its one test program.
+#[cfg(test)]
+extern crate self as octant_source;
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

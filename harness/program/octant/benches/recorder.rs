@@ -1,14 +1,17 @@
 //! Cost of recording: on the run loop's thread, and in total.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-#[path = "../tests/common/epochs.rs"]
-#[allow(dead_code, unreachable_pub, reason = "the tests use more of it")]
+#[path = "../../../results/recorder/tests/common/epochs.rs"]
+#[allow(dead_code, reason = "the tests use more of it")]
 mod epochs;
+#[path = "../../../results/recorder/tests/common/stream.rs"]
+mod stream;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use epochs::{PERIOD_NS, Step, push, stream};
+use epochs::{PERIOD_NS, Step, push};
 use octant_recorder::{EpochFrame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use std::hint::black_box;
+use stream::stream;
 
 const EPOCHS: u64 = 200 * 600;
 

@@ -1,7 +1,8 @@
 //! `octant diff`: equal runs are equal, and the first difference of others is told.
 
-use crate::common::epochs::{Step, push, stream};
+use crate::common::epochs::{Step, push};
 use crate::common::program::{ended, octant_in};
+use crate::common::stream::stream;
 use octant_campaign::table::{ColumnKind, ColumnValue as Cell, ExistingTable};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use serde_json::Value;

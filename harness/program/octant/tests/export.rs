@@ -1,7 +1,8 @@
 //! `octant export`: every number of a recording in every format, and what it refuses.
 
-use crate::common::epochs::{Step, push, stream};
+use crate::common::epochs::{Step, push};
 use crate::common::program::{ended, json, octant_in};
+use crate::common::stream::stream;
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use parquet::file::reader::{FileReader, SerializedFileReader};

@@ -16,8 +16,6 @@ mod campaign_objects;
 mod campaign_report;
 mod campaign_scale;
 mod campaign_selection;
-#[cfg(all(unix, feature = "can"))]
-mod can_source;
 #[cfg(unix)]
 mod capture;
 mod case_progress;
@@ -94,14 +92,10 @@ mod rare;
 mod real_chain;
 mod realtime;
 mod recorded_topics;
-mod recording;
 #[cfg(unix)]
 mod recording_killed;
-mod recording_other_readers;
 mod reference_columns;
-mod reference_rows;
 mod rejudge;
-mod replay;
 mod requirements_convert;
 mod rotation_reference;
 mod scenario_errors;
@@ -125,7 +119,6 @@ mod trace_verdicts;
 mod turntable;
 #[cfg(unix)]
 mod turntable_panic;
-mod verdict;
 mod verdict_algebra;
 mod verdict_edges;
 mod watch;

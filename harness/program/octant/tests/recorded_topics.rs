@@ -1,7 +1,8 @@
 //! Topics for other tools in recordings: they are those of an export, and change nothing else.
 
-use crate::common::epochs::{PERIOD_NS, record, stream};
+use crate::common::epochs::{PERIOD_NS, record};
 use crate::common::program::{ended, json, octant_in};
+use crate::common::stream::stream;
 use octant_recorder::message::Topic;
 use octant_recorder::reader::{Epochs, Item, Recording, read_bytes};
 use octant_recorder::{Policy, RecorderOptions, Samples};

@@ -1,8 +1,9 @@
 //! A recorder that is killed at any moment leaves all but the last second of wall time, and the
 //! killed program leaves a part of its run that is the same to the bit.
 
-use crate::common::epochs::{push, stream};
+use crate::common::epochs::push;
 use crate::common::program::{ended, octant, program, test_as_process};
+use crate::common::stream::stream;
 use octant_recorder::reader::{Epochs, Recording, contents};
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use octant_test_processes::start;

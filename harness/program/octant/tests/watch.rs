@@ -1,7 +1,8 @@
 //! Watching: a growing recording, a run in another process, and the picture on the terminal.
 
-use crate::common::epochs::{push, record, stream};
+use crate::common::epochs::{push, record};
 use crate::common::program::{ended, octant_in, program};
+use crate::common::stream::stream;
 use octant_evidence::{Existing, RunFolder};
 use octant_recorder::event::Pace;
 use octant_recorder::reader::{Item, Recording};

@@ -1,7 +1,11 @@
 //! Tests of evidence, in one program.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../../score/tests/common/mod.rs"]
+mod common;
+
 mod attestation;
+mod discrepancies;
 mod disposition;
 mod folder;
 mod inside;

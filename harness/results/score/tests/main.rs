@@ -1,6 +1,8 @@
 //! Tests of scores, in one program.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 mod alignment;
 mod allan;
 mod attitude;
@@ -16,5 +18,5 @@ mod parameters;
 mod run_series;
 mod series;
 mod trace;
-mod verdict;
+mod verdicts;
 mod work;

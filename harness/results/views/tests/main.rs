@@ -3,6 +3,8 @@
 
 mod boundary;
 mod layouts;
+mod recording;
+mod recordings;
 mod ros;
 mod series;
 mod solution;

@@ -3,6 +3,7 @@
 pub mod allocations;
 #[cfg(target_os = "linux")]
 pub mod attended;
+#[path = "../../../../results/recorder/tests/common/epochs.rs"]
 pub mod epochs;
 pub mod foreign;
 pub mod program;
@@ -10,5 +11,7 @@ pub mod readers;
 pub mod results;
 #[cfg(target_os = "linux")]
 pub mod running;
+#[path = "../../../../results/recorder/tests/common/stream.rs"]
+pub mod stream;
 #[cfg(unix)]
 pub mod table;

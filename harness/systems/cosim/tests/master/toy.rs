@@ -91,7 +91,12 @@ pub(super) fn describe(
 }
 
 impl Toy {
-    pub(super) fn new(description: Description, start: &[(u32, f64)], law: Law, algebra: Algebra) -> Self {
+    pub(super) fn new(
+        description: Description,
+        start: &[(u32, f64)],
+        law: Law,
+        algebra: Algebra,
+    ) -> Self {
         let mut numbers: Numbers =
             description.variables.iter().map(|variable| (variable.reference, 0.0)).collect();
         numbers.extend(start.iter().copied());

@@ -1,6 +1,7 @@
 //! Replay: a full recording gives every epoch again; others are refused or mapped.
 
-use crate::common::epochs::{push, record, stream, truth_of};
+use super::common::epochs::{push, record, truth_of};
+use super::common::stream::stream;
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};

@@ -1,98 +1,13 @@
 //! Verdicts, the form of the summary, JUnit.
 
-use octant_base::control::Control;
-use octant_evidence::discrepancy::of_run;
-use octant_requirements::measures;
-use octant_requirements::verdict::LimitCheck;
+use crate::common::{judged, requirement, silent, summary};
 use octant_requirements::{Comparison, Verdict};
-use octant_run::{StreamKeeping, assemble, run_method};
-use octant_scenario::{Method, Scenario};
 use octant_score::judge::{Finding, FindingSubject, NO_REQUIREMENT, derive, judge, judge_by};
 use octant_score::junit::junit;
-use octant_score::summary::{
-    CalibrationScore, ErrorScore, FaultResult, HealthCounts, HeightChannel, NavigationScore,
-    RadialScore, SCHEMA, Summary, SummaryError,
-};
-use octant_score::verdict::{evaluate, measure};
+use octant_score::summary::{Summary, SummaryError};
+use octant_score::verdict::{MeasureError, evaluate, measure};
 use octant_score::work::Work;
 use proptest::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
-
-fn summary() -> Summary {
-    let score = ErrorScore {
-        max: 0.75,
-        rms: 0.4,
-        r#final: -0.6,
-        slope_per_day: None,
-        schuler_amplitude: None,
-    };
-    Summary {
-        schema: SCHEMA,
-        octant: "0.1.0".to_owned(),
-        numerics: None,
-        scenario: "dock <&> quay".to_owned(),
-        seed: 7,
-        verdict: Verdict::Pass,
-        reasons: vec![],
-        requirements: vec![],
-        findings: Vec::new(),
-        decision: None,
-        planned: None,
-        done: None,
-        faults: vec![],
-        method: "eight".to_owned(),
-        calibration: Some(CalibrationScore {
-            reference: None,
-            solution: None,
-            positions: "eight".to_owned(),
-            estimator: "kalman".to_owned(),
-            duration_h: 4.0,
-            parameters: BTreeMap::new(),
-            further: BTreeMap::new(),
-            nis_mean: Some(3.01),
-            nis_expected: None,
-            nees: BTreeMap::new(),
-            worst_normalized_error: None,
-            refused: None,
-            refusal_explained: Vec::new(),
-            health: HealthCounts::default(),
-            sigma_hours: Vec::new(),
-        }),
-        navigation: Some(NavigationScore {
-            duration_h: 1.0,
-            height: HeightChannel::Held,
-            latitude_error_arcmin: score,
-            longitude_error_arcmin: score,
-            radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
-            heading_error_arcmin: None,
-            pitch_error_arcmin: None,
-            roll_error_arcmin: None,
-            velocity_north_error_mps: None,
-            velocity_east_error_mps: None,
-            slope_window: None,
-            marks: BTreeMap::new(),
-            series_hours: vec![[0.0, 0.0, 0.0], [1.0, 0.1, -0.6]],
-        }),
-        baseline: None,
-        reference: None,
-        altered_streams: None,
-        alignment: None,
-        counterfactual: None,
-        allan_deviation: None,
-        pacing: None,
-        stream_hash: "00".to_owned(),
-    }
-}
-
-fn requirement(measure: &str, comparison: Comparison, limit: f64) -> LimitCheck {
-    LimitCheck { id: "NAV-1".to_owned(), measure: measure.to_owned(), comparison, limit }
-}
-
-fn judged(requirements: &[LimitCheck], findings: &[Finding]) -> Summary {
-    let mut summary = summary();
-    judge(&mut summary, requirements, findings).unwrap();
-    summary
-}
 
 #[test]
 fn exit_codes_are_those_of_the_contract() {
@@ -339,65 +254,6 @@ fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
     assert_eq!(silent.verdict, Verdict::Inconclusive);
 }
 
-/// Makes the result of a fault that never fired.
-fn silent() -> FaultResult {
-    FaultResult {
-        id: "spike".to_owned(),
-        kind: "spike".to_owned(),
-        armed: true,
-        fired: false,
-        first_sample: None,
-        last_sample: None,
-        samples_altered: 0,
-        firings: 0,
-        clean_crc32: None,
-        faulted_crc32: None,
-        largest_change: None,
-    }
-}
-
-/// Everything that isn't a pass is found, exactly once; and the same run has the same ids.
-#[test]
-fn discrepancies_of_a_run_are_its_reasons() {
-    let mut told = summary();
-    told.calibration.as_mut().unwrap().refused = Some("mean NIS 40 is above 9".to_owned());
-    told.faults.push(FaultResult { id: "spike-1".to_owned(), ..silent() });
-    let asked = [
-        requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, 0.5),
-        requirement("navigation.nothing", Comparison::AtMost, 0.5),
-        requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
-    ];
-    let late = Finding::of_run("7 overruns".to_owned());
-    judge(&mut told, &asked, &[late]).unwrap();
-    let found = of_run(&told);
-    let mut whats: Vec<&str> = found.iter().map(|found| found.what.as_str()).collect();
-    let mut reasons: Vec<&str> = told.reasons.iter().map(String::as_str).collect();
-    whats.sort_unstable();
-    reasons.sort_unstable();
-    assert_eq!((whats.len(), &whats), (5, &reasons));
-    let kinds: Vec<_> = found.iter().map(|found| (found.kind, found.verdict)).collect();
-    let (fail, open) = (Verdict::Fail, Verdict::Inconclusive);
-    let expected = [
-        ("requirement", fail),
-        ("requirement", open),
-        ("refused", fail),
-        ("fault", open),
-        ("run", open),
-    ];
-    assert_eq!(kinds, expected);
-    let ids: BTreeSet<&str> = found.iter().map(|found| found.id.as_str()).collect();
-    assert_eq!(ids.len(), 5);
-    assert_eq!(of_run(&told), found);
-    told.seed += 1;
-    assert!(of_run(&told).iter().all(|found| !ids.contains(found.id.as_str())));
-
-    // A failed bench is the only discrepancy; a run that passes has none.
-    let gone = Finding::of_bench(Verdict::Error, "the device went away".to_owned());
-    let found = of_run(&judged(&[], &[gone]));
-    assert_eq!((found.len(), found[0].verdict, found[0].kind), (1, Verdict::Error, "run"));
-    assert_eq!(of_run(&judged(&[], &[])), []);
-}
-
 #[test]
 fn a_summary_survives_its_file_and_a_newer_schema_is_refused() {
     let mut summary = judged(&[requirement("seed", Comparison::AtLeast, 1.0)], &[]);
@@ -444,41 +300,6 @@ fn junit_names_what_each_case_verifies_and_passes_nothing_inconclusive() {
     assert_eq!(verifies, ["NAV-1"; 3]);
 }
 
-/// Lists every number of a real summary by its path.
-fn numbers(path: &str, value: &serde_json::Value, all: &mut Vec<String>) {
-    match value {
-        serde_json::Value::Number(_) => all.push(path.to_owned()),
-        serde_json::Value::Object(map) => {
-            for (key, value) in map {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                numbers(&path, value, all);
-            }
-        }
-        _ => {}
-    }
-}
-
-#[test]
-fn every_number_of_a_run_can_be_required() {
-    let text = "schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n\
-                [procedure.navigation]\nduration = \"2 h\"\n[baseline]\ng_states = false\n";
-    let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
-    let run = |method| {
-        run_method(&scenario, method, 1, StreamKeeping::None, &Control::default()).unwrap()
-    };
-    let (primary, baseline) = (run(Method::Primary), run(Method::Baseline));
-    let run = assemble(&scenario, 1, primary, Some(baseline)).unwrap();
-    let mut all = Vec::new();
-    numbers("", &serde_json::to_value(&run.summary).unwrap(), &mut all);
-    let refused: Vec<&String> = all.iter().filter(|path| measures::check(path).is_err()).collect();
-    assert_eq!(
-        refused,
-        ["numerics", "schema", "seed"],
-        "the form and what was put in are no results"
-    );
-    assert!(all.len() > 300, "{}", all.len());
-}
-
 #[test]
 fn figures_are_short_unless_they_look_alike() {
     let found = |value: f64, limit| {
@@ -488,4 +309,15 @@ fn figures_are_short_unless_they_look_alike() {
     let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
     assert_eq!(found(0.180_326_271_973_461_98, 0.01), pair("0.180326", "0.01"));
     assert_eq!(found(3.000_000_001, 3.0), pair("3.000000001", "3"));
+}
+
+/// Paths that lead nowhere in a summary.
+#[test]
+fn names_that_are_left_out_are_counted() {
+    let told = |more: usize| {
+        let (place, key, there) = ("a".to_owned(), "b".to_owned(), vec!["c".to_owned()]);
+        MeasureError::Missing { place, key, there, more }.to_string()
+    };
+    assert_eq!(told(0), "a has no `b`; it has c");
+    assert_eq!(told(3), "a has no `b`; it has c and 3 more");
 }

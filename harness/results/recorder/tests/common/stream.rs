@@ -1,32 +1,15 @@
-//! Epochs for the tests of recordings.
+//! A stream for the tests of recordings.
 
-use octant_plant::Truth;
-use octant_recorder::{EpochFrame, Extra, Recorder, RecorderOptions, RecorderSummary};
+use super::epochs::{PERIOD_NS, Step};
 use octant_sample::parameters::ParameterEstimate;
-use octant_sample::time::SimulatedTime;
 use octant_sample::{
-    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
-    Reference, Sample, Status,
+    Aiding, DeviceTime, Epoch, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output,
+    Parameters, Reference, Sample, Status,
 };
-use octant_source::Epoch;
-use std::io::{self, Write};
-use std::sync::{Arc, Mutex};
-
-/// Data of one epoch in the run loop.
-#[derive(Clone, Debug)]
-pub struct Step {
-    pub clean: Epoch,
-    pub faulted: Epoch,
-    pub output: Output,
-    pub parameters: Option<ParameterEstimate>,
-}
-
-/// Period of the test streams: 200 Hz.
-pub const PERIOD_NS: u64 = 5_000_000;
 
 /// Makes a stream that looks like a run: noisy counts, aiding and parameters at 1 Hz, a change of
 /// mode half way.
-pub fn stream(epochs: u64) -> Vec<Step> {
+pub(crate) fn stream(epochs: u64) -> Vec<Step> {
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     let mut noise = move |scale: i64| {
         // xorshift64*, only for bits that don't compress.
@@ -86,56 +69,4 @@ pub fn stream(epochs: u64) -> Vec<Step> {
             Step { clean: epoch, faulted: epoch, output, parameters }
         })
         .collect()
-}
-
-/// Returns the truth at the stamp of a step.
-pub fn truth_of(step: &Step) -> Truth {
-    Truth {
-        time: SimulatedTime::from_ns(step.clean.sample.device_time.ns),
-        latitude_rad: 0.53,
-        q_nb: [1.0, -0.0, 0.0, 1e-9],
-        ..Truth::default()
-    }
-}
-
-/// Pushes one step as the run loop does.
-pub fn push(recorder: &mut Recorder, step: &Step) -> Result<(), octant_recorder::RecorderError> {
-    recorder.push(EpochFrame {
-        clean: &step.clean,
-        faulted: &step.faulted,
-        output: &step.output,
-    })?;
-    if recorder.truth_due() {
-        recorder.extra(&Extra::Truth(truth_of(step)));
-    }
-    if recorder.parameters_due() {
-        recorder.extra(&Extra::Parameters(step.parameters.unwrap()));
-    }
-    Ok(())
-}
-
-/// Bytes in memory that outlive their writer.
-#[derive(Clone, Default)]
-pub struct Memory(pub Arc<Mutex<Vec<u8>>>);
-
-impl Write for Memory {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.lock().unwrap().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Records steps into memory.
-pub fn record(steps: &[Step], options: &RecorderOptions) -> (Vec<u8>, RecorderSummary) {
-    let memory = Memory::default();
-    let mut recorder = Recorder::to_writer(memory.clone(), options).unwrap();
-    for step in steps {
-        push(&mut recorder, step).unwrap();
-    }
-    let summary = recorder.finish().unwrap();
-    let bytes = std::mem::take(&mut *memory.0.lock().unwrap());
-    (bytes, summary)
 }

@@ -1,7 +1,8 @@
 //! Recordings are read by other MCAP readers: `tests/rigs/mcap_reader.py`, when `OCTANT_PYTHON`
 //! names a Python that has the packages of `tests/rigs/requirements.txt`.
 
-use crate::common::epochs::{push, stream};
+use crate::common::epochs::push;
+use crate::common::stream::stream;
 use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use octant_test_processes::command;
 use std::path::Path;

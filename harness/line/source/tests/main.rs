@@ -1,0 +1,12 @@
+//! Tests of sources from outside, in the one test program of the crate.
+
+#[path = "../../../results/recorder/tests/common"]
+mod common {
+    pub(super) mod epochs;
+    pub(super) mod stream;
+}
+
+#[cfg(all(unix, feature = "can"))]
+mod can_source;
+mod reference_rows;
+mod replay;
