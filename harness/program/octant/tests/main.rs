@@ -39,7 +39,6 @@ mod export;
 mod extending;
 mod faults_host;
 mod faults_run;
-mod faults_scenario;
 mod faults_search;
 mod faults_tools;
 mod fmu_build;
@@ -98,9 +97,6 @@ mod reference_columns;
 mod rejudge;
 mod requirements_convert;
 mod rotation_reference;
-mod scenario_errors;
-mod scenario_files;
-mod scenario_schema;
 mod score_solution;
 mod selftest;
 #[cfg(unix)]
@@ -119,7 +115,6 @@ mod trace_verdicts;
 mod turntable;
 #[cfg(unix)]
 mod turntable_panic;
-mod verdict_algebra;
 mod verdict_edges;
 mod watch;
 mod workflows;

@@ -53,3 +53,10 @@ pub use read::faults::connection::{ConnectionFault, Given, connection_faults, te
 pub use read::system::{SystemRequirement, system_requirements};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};
+
+// The tests name the crate as its users do. They are a part of its one test program.
+#[cfg(test)]
+extern crate self as octant_scenario;
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

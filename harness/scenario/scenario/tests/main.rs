@@ -1,0 +1,6 @@
+//! Tests of scenarios from outside, in the one test program of the crate.
+
+mod errors;
+mod faults;
+mod json_schema;
+mod shipped;
