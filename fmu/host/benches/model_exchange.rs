@@ -6,8 +6,8 @@
 //!   starts again.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-#[allow(dead_code, unreachable_pub, reason = "a module of the tests, which use all of it")]
-#[path = "../../../harness/program/octant/tests/common/foreign.rs"]
+#[allow(dead_code, reason = "a module of the tests, which use all of it")]
+#[path = "../tests/common/foreign.rs"]
 mod foreign;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

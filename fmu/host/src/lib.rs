@@ -21,3 +21,10 @@ pub mod process;
 
 pub use instance::open::{FmuOpenError, open, open_archive};
 pub use opened::OpenedFmu;
+
+// The tests name the crate as its users do. They are a part of its one test program.
+#[cfg(test)]
+extern crate self as octant_fmu_host;
+#[cfg(test)]
+#[path = "../tests/main.rs"]
+mod tests;

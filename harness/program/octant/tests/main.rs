@@ -44,11 +44,10 @@ mod faults_tools;
 mod fmu_build;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod fmu_check;
-mod fmu_exchange;
-mod fmu_instance;
 mod fmu_once;
 #[cfg(target_os = "linux")]
 mod fmu_process;
+mod fmu_run;
 #[cfg(target_os = "linux")]
 mod fmu_scheduled;
 mod fmu_source;

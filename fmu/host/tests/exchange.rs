@@ -1,6 +1,6 @@
 //! Model exchange compared with closed forms, and with another method.
 
-use crate::common::foreign;
+use super::foreign;
 use octant_fmu_host::instance::{
     Instance, InstanceError, OpenOptions, ProcessPlace, StepOutcome, VariableGroup,
 };

@@ -1,7 +1,7 @@
 //! Foreign FMUs in this process: their inputs, their outputs, and the order of calls. The FMUs are
 //! strict: they fail if the order is wrong.
 
-use crate::common::foreign;
+use super::foreign::{self, copy, without_clocks};
 use std::path::{Path, PathBuf};
 
 use octant_fmu_host::FmuOpenError;
@@ -230,16 +230,6 @@ fn calls_out_of_order_do_not_reach_the_fmu() {
     signals.step(0.0, 0.1).unwrap();
 }
 
-/// Copies `signals_fmi3` without its clocks: then it may be run without event mode.
-fn without_clocks() -> tempfile::TempDir {
-    copy("signals_fmi3", |text| {
-        let lines = text.lines().filter(|line| !line.contains("<Clock "));
-        let text = lines.collect::<Vec<_>>().join("\n");
-        let text = text.replace(" clocks=\"41\"", "").replace(" clocks=\"43\"", "");
-        text.replace("<Output valueReference=\"41\"/>", "")
-    })
-}
-
 /// Name, values of the right length, and the output one event later.
 const SIGNALS: [(&str, &[f64]); 11] = [
     ("f32", &[0.5, -1.25, 3e38_f32 as f64, 0.0]),
@@ -290,53 +280,6 @@ fn fmi3_takes_and_gives_every_type() {
 }
 
 /// A compiled FMU: texts and bytes that were set come back, between quotes and as digits.
-#[test]
-fn texts_and_bytes_are_rows_of_a_run() {
-    let folder = without_clocks();
-    let out = folder.path().join("out.csv");
-    let arguments = [
-        "fmu",
-        "run",
-        folder.path().to_str().unwrap(),
-        "--set",
-        "string=\"größer, \\\"als\\\"\"",
-        "--stop",
-        "0.2",
-        "--output",
-        "string_out",
-        "--output",
-        "binary_out",
-        "--output",
-        "i8_out",
-        "--out",
-        out.to_str().unwrap(),
-    ];
-    crate::common::program::ends(&arguments, 0);
-    let text = std::fs::read_to_string(&out).unwrap();
-    let last = text.lines().last().unwrap();
-    assert_eq!(last, "0.2,\"größer, \"\"als\"\"\",\"\",0", "{text}");
-}
-
-#[test]
-fn a_clock_ticks_by_a_column_of_a_run() {
-    let folder = tempfile::tempdir().unwrap();
-    let (input, out) = (folder.path().join("in.csv"), folder.path().join("out.csv"));
-    std::fs::write(&input, "time,kick\n0,1\n0.2,0\n0.3,1\n").unwrap();
-    let fmu = foreign::fmu("signals_fmi3");
-    let paths = [&fmu, &input, &out].map(|path| path.to_str().unwrap());
-    for process in ["own", "shared"] {
-        let [fmu, input, out] = paths;
-        let arguments =
-            ["fmu", "run", fmu, "--input", input, "--stop", "0.5", "--process", process];
-        let named = ["--output", "kicked", "--out", out, "--force"];
-        crate::common::program::ends(&[&arguments[..], &named[..]].concat(), 0);
-        let text = std::fs::read_to_string(paths[2]).unwrap();
-        let kicked: Vec<&str> =
-            text.lines().skip(1).map(|line| line.split_once(',').unwrap().1).collect();
-        assert_eq!(kicked, ["0", "1", "1", "1", "2", "2"], "{text}");
-    }
-}
-
 #[test]
 fn arrays_have_the_size_of_their_structural_parameter() {
     let mut signals = open("signals_fmi3");
@@ -573,22 +516,6 @@ fn an_exchange_stops_where_a_get_fails() {
         error.to_string().starts_with("fmi2GetReal of trouble_fmi2.fmu answered error"),
         "{error}"
     );
-}
-
-/// Makes a copy of a foreign FMU's folder, with another description.
-fn copy(name: &str, change: impl Fn(&str) -> String) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let from = foreign::unpacked(name);
-    let text = std::fs::read_to_string(from.join("modelDescription.xml")).unwrap();
-    std::fs::write(folder.path().join("modelDescription.xml"), change(&text)).unwrap();
-    let platform = std::fs::read_dir(from.join("binaries")).unwrap().next().unwrap().unwrap();
-    let binaries = folder.path().join("binaries").join(platform.file_name());
-    std::fs::create_dir_all(&binaries).unwrap();
-    for file in std::fs::read_dir(platform.path()).unwrap() {
-        let file = file.unwrap();
-        std::fs::copy(file.path(), binaries.join(file.file_name())).unwrap();
-    }
-    folder
 }
 
 /// Returns the only file of its library.

@@ -1,0 +1,8 @@
+//! Tests of foreign FMUs from outside, in the one test program of the crate.
+
+#[path = "common/foreign.rs"]
+mod foreign;
+
+#[cfg(feature = "model-exchange")]
+mod exchange;
+mod instance;
