@@ -1,8 +1,8 @@
 //! The dashboard on a terminal of 80 columns and 24 lines: no word is cut.
 
+use crate::common::known::shows;
 use crate::common::program::octant_in;
-use crate::dashboard::screen;
-use crate::watch::shows;
+use crate::common::screen::screen;
 use octant_base::number::fixed;
 use octant_recorder::Event;
 use octant_recorder::event::Pace;

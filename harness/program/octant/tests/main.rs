@@ -26,8 +26,6 @@ mod compare_refused;
 mod completions;
 mod crate_targets;
 #[cfg(feature = "dashboard")]
-mod dashboard;
-#[cfg(feature = "dashboard")]
 mod dashboard_small;
 mod described_source;
 mod design;

@@ -1,19 +1,12 @@
 //! The picture of a run on the terminal.
 
-use crate::watch::{known, shows};
+use crate::known::{known, shows};
+use crate::screen::screen;
 use octant_evidence::{Existing, RunFolder};
-use octant_watch::dashboard::{self, Page};
+use octant_watch::dashboard::Page;
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::place::RunPlace;
 use octant_watch::plain;
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
-
-pub fn screen(follow: &Follow, page: Page, width: u16, height: u16) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| dashboard::draw(frame, follow, page)).unwrap();
-    terminal.backend().to_string()
-}
 
 #[test]
 fn the_dashboard_shows_a_known_state() {
