@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Returns the folder of real recordings: by default one beside the repository.
 fn recordings() -> PathBuf {
     std::env::var_os("OCTANT_RECORDINGS").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings"),
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/recordings"),
         PathBuf::from,
     )
 }

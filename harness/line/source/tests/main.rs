@@ -10,3 +10,4 @@ mod common {
 mod can_source;
 mod reference_rows;
 mod replay;
+mod text;

@@ -106,7 +106,6 @@ mod storage_lies;
 mod system_foreign;
 mod terminal;
 mod text_gaps;
-mod text_source;
 mod trace_verdicts;
 #[cfg(unix)]
 mod turntable;

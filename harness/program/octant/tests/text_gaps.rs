@@ -1,4 +1,5 @@
-//! Text of rates with missing rows: a calibration at rest publishes what it publishes without the gaps.
+//! Text of rates with missing rows: a calibration at rest publishes what it publishes without the gaps. Text without
+//! times: all who read the run are told.
 
 use crate::common::program::{ends, json};
 use std::fmt::Write;
@@ -114,4 +115,69 @@ fn four_gaps_of_a_second_move_no_parameter() {
     }
     let (_, bias, sigma) = gaps.iter().find(|(name, ..)| name == "gyro_bias_x").unwrap();
     assert!((bias / sigma).abs() < 4.0, "{bias} ± {sigma} deg/h, true 0");
+}
+
+/// Rows without a time.
+const UNTIMED: &str = "schema = 1
+[imu]
+rate = \"50 Hz\"
+[procedure.alignment]
+method = \"given\"
+[procedure.navigation]
+duration = \"1 s\"
+rotation = \"none\"
+[source]
+uri = \"text:unit.txt\"
+[source.text]
+time_column = \"none\"
+rate = \"50 Hz\"
+[source.text.gyro]
+x = 1
+y = 2
+z = 3
+[source.text.accelerometer]
+x = 4
+y = 5
+z = 6
+";
+
+#[test]
+fn rows_without_a_time_have_their_number_over_the_rate_and_all_who_read_it_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scenario, out) = (folder.path().join("s.toml"), folder.path().join("out"));
+    std::fs::write(folder.path().join("unit.txt"), "1e-5 0 0 0 0 9.81\n".repeat(60)).unwrap();
+    let run = ["run", scenario.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    std::fs::write(&scenario, UNTIMED).unwrap();
+    ends(&run, 0);
+    let expected =
+        "no time stamps: the time is assumed, not measured, the row\u{2019}s number over 50 Hz"
+            .replace('\u{2019}', "'");
+    let manifest = json(&out.join("manifest.json"));
+    assert_eq!(manifest["inputs"][0]["time"], expected.as_str(), "{manifest}");
+    let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.replace("&#39;", "'").contains(&expected));
+    // The rate has to be written, and a time can't be a measured value.
+    for (from, to, expected) in [
+        (
+            "rate = \"50 Hz\"\n[source.text.gyro]",
+            "[source.text.gyro]",
+            "source.text.rate: missing, expected the rate of the rows: time_column is \"none\", and the time of a \
+             row is its number over the rate",
+        ),
+        (
+            "time_column = \"none\"\n",
+            "",
+            "source.text.time_column: found a column of a gyro or accelerometer, expected one of times, or \"none\" with \
+             source.text.rate",
+        ),
+        (
+            "time_column = \"none\"\n",
+            "time_column = 5\n",
+            "source.text.time_column: found a column of a gyro or accelerometer",
+        ),
+    ] {
+        std::fs::write(&scenario, UNTIMED.replacen(from, to, 1)).unwrap();
+        let (_, said) = ends(&run, 2);
+        assert!(said.contains(expected), "{said}");
+    }
 }
