@@ -6,7 +6,8 @@ mod common {
     pub(super) mod stream;
 }
 
-#[cfg(all(unix, feature = "can"))]
+#[cfg(unix)]
+#[cfg(feature = "can")]
 mod can_source;
 mod reference_rows;
 mod replay;
