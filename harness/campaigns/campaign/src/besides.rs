@@ -1,8 +1,8 @@
 //! Verdict of a case except for its requirements.
 
 use crate::case::CaseResult;
-use octant_requirements::Verdict;
 use octant_score::judge;
+use octant_verdict::Verdict;
 
 /// Returns whether a refusal is the only problem of a case, except for its requirements. If each of
 /// these is a probability, the refusal counts there, as a run that didn't pass, and not a second

@@ -7,13 +7,13 @@ use super::plan::{Case, PlanError, PlannedScenario};
 use super::store::error::ResultPlace;
 use octant_base::control::Control;
 use octant_base::not_finite;
-use octant_requirements::{Comparison, Verdict};
 use octant_run::MethodError;
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::Method;
 use octant_score::rederive;
 use octant_score::summary::{self, Summary};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::{Comparison, Verdict};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use super::in_plan_order::{FACTS_AT_ONCE, read_in_order};
 use super::plan::{Case, Plan};
 use super::store::CampaignResults;
 use super::stream_key::StreamKey;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 /// State of a case that has run: what is counted of it.
 #[derive(Clone, Debug, PartialEq, Eq)]

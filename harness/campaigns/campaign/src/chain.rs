@@ -12,8 +12,8 @@ use super::spill::SpilledRows;
 use super::store::CampaignResults;
 use super::table::{ColumnKind, ColumnValue, TableError};
 use super::table_rows::{CaseColumn, CaseTable};
-use octant_requirements::{Comparison, Verdict};
 use octant_score::rederive::stands;
+use octant_verdict::{Comparison, Verdict};
 use std::path::PathBuf;
 
 /// Checks the tables at `paths`, named as by a merge, against the results of their folder, or for

@@ -5,7 +5,7 @@ use super::process::TRIES;
 use super::status::StatusError;
 use super::store::error::{PartError, ResultPlace};
 use octant_base::failing::{Failing, FailureKind};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 /// Event of an execution.

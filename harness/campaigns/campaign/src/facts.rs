@@ -4,9 +4,9 @@ use super::besides::{besides, is_refused_alone};
 use super::case::{CaseResult, ResultClaim, ResultError};
 use super::plan::{Case, PlannedScenario};
 use super::store::error::ResultPlace;
-use octant_requirements::Verdict;
 use octant_score::rederive::stands;
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// Facts of a result. They are stored beside it, and follow from it alone.

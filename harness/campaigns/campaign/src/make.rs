@@ -7,9 +7,9 @@ use super::plan::{CASES_MAX, Case, Plan, PlanError, PlannedScenario, SCHEMA, Sto
 use super::requirements::{self, Planned};
 use super::shared::{SharedText, SharedTexts};
 use super::shared_cases::SharedParts;
-use octant_requirements::verdict::LimitCheck;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::{Campaign, FactorSpec, Levels, Member};
+use octant_verdict::verdict::LimitCheck;
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};

@@ -12,7 +12,7 @@ use super::table::{
 };
 use super::table_rows::{CaseColumn, CaseRows, CaseTable};
 use octant_base::failing::{Failing, FailureKind};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

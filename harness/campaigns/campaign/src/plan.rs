@@ -9,9 +9,9 @@ pub(crate) use super::plan_error::system;
 pub use super::planned::{Case, INPUTS, PlannedFile, PlannedScenario};
 
 use super::requirements::Planned;
-use octant_requirements::requirement::EnsembleRequirement;
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
 use octant_statistics::proportion::Demand;
+use octant_verdict::requirement::EnsembleRequirement;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

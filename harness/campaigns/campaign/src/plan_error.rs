@@ -1,8 +1,8 @@
 //! Reasons why there is no plan.
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_requirements::RequirementsError;
 use octant_scenario::ScenarioError;
+use octant_verdict::RequirementsError;
 use std::path::{Path, PathBuf};
 
 /// Reasons why there is no plan.

@@ -75,7 +75,7 @@ pub fn end_with(parent: u32) -> std::io::Result<()> {
 /// Ends this process if its parent is gone.
 pub fn end_if_left(parent: u32) {
     if std::os::unix::process::parent_id() != parent && !is_there(parent) {
-        std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
+        std::process::exit(i32::from(octant_verdict::Verdict::Error.exit_code()));
     }
 }
 

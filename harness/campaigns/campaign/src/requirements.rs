@@ -1,13 +1,11 @@
 //! Requirements of a campaign: read from their file and put into its cases.
 
-use octant_requirements::file::{Checker, read};
-use octant_requirements::requirement::{
-    Check, EnsembleRequirement, Limit, Requirement, Requirements,
-};
-use octant_requirements::signed;
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{RequirementsError, RequirementsProblem};
 use octant_scenario::read::requirement::{MeasureTextError, limit_of, path_of};
+use octant_verdict::file::{Checker, read};
+use octant_verdict::requirement::{Check, EnsembleRequirement, Limit, Requirement, Requirements};
+use octant_verdict::signed;
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{RequirementsError, RequirementsProblem};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -21,7 +19,7 @@ pub struct Planned {
     pub ensemble: Option<EnsembleRequirement>,
 }
 
-/// Provides the measures of a summary, and their units.
+/// Provides the measures of a summary, and their units; formatted texts are those of ReqIF.
 #[derive(Clone, Copy, Debug)]
 pub struct Measures;
 
@@ -32,6 +30,10 @@ impl Checker for Measures {
 
     fn limit(&self, measure: &str, limit: &Limit) -> Result<(), String> {
         number(measure, limit).map(|_| ()).map_err(|error| error.to_string())
+    }
+
+    fn formatted(&self, xhtml: &str) -> Result<(), String> {
+        octant_requirements::xhtml::check(xhtml).map_err(|error| error.to_string())
     }
 }
 

@@ -4,7 +4,7 @@ use super::case;
 use super::factor_values::FactorValue;
 use super::plan::{Case, Plan};
 use super::store::CampaignResults;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -6,10 +6,10 @@ use super::plan::{Case, Plan, PlanError};
 use super::requirements;
 use super::store::CampaignResults;
 use super::stream_key::StreamKey;
-use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
-use octant_requirements::trace::{CampaignTrace, GrowingTrace, TracedCase, TracedResult as Traced};
-use octant_requirements::{Comparison, Verdict};
 use octant_scenario::campaign::Campaign;
+use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
+use octant_verdict::trace::{CampaignTrace, GrowingTrace, TracedCase, TracedResult as Traced};
+use octant_verdict::{Comparison, Verdict};
 use std::path::Path;
 
 /// Reads the requirements of the campaign of a plan; empty if it names no file of them.

@@ -10,7 +10,7 @@ use super::store::writer::PartWriter;
 use super::store::{StoreOutcome, keep_in};
 use octant_base::child::SEPARATOR;
 use octant_base::control::Control;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};

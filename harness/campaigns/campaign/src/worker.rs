@@ -13,7 +13,7 @@ use super::store::{CampaignResults, StoreOutcome, has_at, keep_in};
 use super::work::{CaseJob, RecordAt, WORDS, WorkReply, said};
 use octant_base::child::{AskedChild, AskedReply, ChildEnded};
 use octant_base::memory::OUT_OF_MEMORY;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 use std::process::ExitStatus;
 use std::sync::atomic::AtomicBool;

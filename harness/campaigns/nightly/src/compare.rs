@@ -15,11 +15,11 @@ pub use super::change::{Change, ChangeThresholds, Tested, tested};
 use super::night::{CampaignNight, Night, Program};
 use super::results::{CaseRow, SCORED_LATER};
 use super::suite::SuiteResult;
-use octant_requirements::Verdict;
 use octant_score::numerics::in_words;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::PassPairs;
 use octant_statistics::power;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

@@ -3,9 +3,9 @@
 use octant_campaign::factors::parts;
 use octant_campaign::merge::merged;
 use octant_campaign::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
-use octant_requirements::{Comparison, Verdict};
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_score::rederive::stands;
+use octant_verdict::{Comparison, Verdict};
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs,
 use minisign::KeyPair;
 use octant_campaign::case::ResultError;
 use octant_campaign::store::{CampaignResults, keep};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 
 const BIAS_STEP: &str = include_str!("../../../../fixtures/selftest/bias-step.toml");
 const DROPPED: &str = include_str!("../../../../fixtures/selftest/dropped.toml");

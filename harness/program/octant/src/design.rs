@@ -19,7 +19,7 @@ use files::{States, write_scenario};
 use octant_design::DesignSetup;
 use octant_design::report::SCHEMA;
 use octant_design::search::SearchProblem;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use options::{limits, measure, refuse_to_replace, rotations, threads};
 use outcome::{Outcome, Report};
 use searched::{DesignWork, design, failed};

@@ -5,7 +5,7 @@ use crate::terminal::{note, print, print_json, write};
 use clap::Args;
 use octant_diff::side::DiffSide;
 use octant_diff::{CampaignDiff, is_campaign, page, runs, text};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

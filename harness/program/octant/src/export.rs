@@ -6,8 +6,8 @@ use crate::score::{scenario_of, true_parameters};
 use crate::terminal::{note, print};
 use clap::Args;
 use octant_export::{ExportChoice, ExportFormat, ExportTable, export};
-use octant_requirements::Verdict;
 use octant_scenario::resolve::{DrawnValues, Seeded};
+use octant_verdict::Verdict;
 use octant_watch::place::RunPlace;
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use octant_base::failing::{Failing, FailureKind};
 use octant_operator::mailbox::{self, DeskReply, DeskRequest};
 use octant_operator::{OperatorAct, journal};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use octant_watch::place::RunPlace;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -130,7 +130,7 @@ pub(super) fn watch_interrupts() {
     let _ = interrupt::watch(|| {
         octant_turntable::stop_all("the program was interrupted");
         octant_power::write_all_ends();
-        std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
+        std::process::exit(i32::from(octant_verdict::Verdict::Error.exit_code()));
     });
 }
 

@@ -16,9 +16,9 @@ use octant_rare_runs::journal::{RARE_JOURNAL_SCHEMA, RareIdentity};
 use octant_rare_runs::outcome::RareSubject;
 use octant_rare_runs::protection::{RISK, parameters, protection};
 use octant_rare_runs::runs::{RareRuns, SeverityOf};
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_score::numerics::NUMERICS;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

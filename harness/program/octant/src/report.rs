@@ -16,7 +16,6 @@ use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
 use octant_recorder::reader::{Epochs, Recording};
 use octant_report::{ReportData, ReportProvenance, SolutionSeries};
-use octant_requirements::Verdict;
 use octant_run::observers::done::PlannedWork;
 use octant_run::observers::filtered::FilteredSeries;
 use octant_run::{Observers, unit};
@@ -28,6 +27,7 @@ use octant_score::numerics::differs;
 use octant_score::rederive;
 use octant_score::summary::Summary;
 use octant_source::Epoch;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 /// Recording of the baseline, in the folder of a run.

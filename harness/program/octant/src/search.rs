@@ -12,7 +12,6 @@ use octant_base::failing::Failing;
 use octant_base::names::suggestion;
 use octant_base::pool::processors;
 use octant_faults::catalogue::FaultKind;
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_search::bench::SearchBench;
 use octant_search::derived::{RunTimes, derived, searchable};
@@ -25,6 +24,7 @@ use octant_search::search::{SearchPlan, SearchStrategy, search};
 use octant_search::space::SearchSpace;
 use octant_search::space_file;
 use octant_search::trial::{FaultTrial, TrialEffect, TrialResult};
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

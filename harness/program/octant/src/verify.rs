@@ -15,7 +15,7 @@ use octant_evidence::files;
 use octant_evidence::inside::{self, Inside};
 use octant_evidence::manifest::{self, FolderDifference, Manifest};
 use octant_evidence::signature;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde::Serialize;
 use sha2::Digest;
 use std::path::{Path, PathBuf};

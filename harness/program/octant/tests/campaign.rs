@@ -11,7 +11,7 @@ use octant_campaign::selection::CaseSelection;
 use octant_campaign::store::{CampaignResults, StoreOutcome, keep};
 use octant_campaign::table::{ColumnValue, ExistingTable};
 use octant_campaign::{results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -2,7 +2,7 @@
 //! self-test verifies one, and the trace is up to date.
 
 use octant_campaign::requirements::load;
-use octant_requirements::requirement::{Requirement, Requirements, Verification};
+use octant_verdict::requirement::{Requirement, Requirements, Verification};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

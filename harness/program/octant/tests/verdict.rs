@@ -2,9 +2,6 @@
 
 use octant_base::control::Control;
 use octant_evidence::discrepancy::of_run;
-use octant_requirements::measures;
-use octant_requirements::verdict::LimitCheck;
-use octant_requirements::{Comparison, Verdict};
 use octant_run::{StreamKeeping, assemble, run_method};
 use octant_scenario::{Method, Scenario};
 use octant_score::judge::{Finding, FindingSubject, NO_REQUIREMENT, derive, judge, judge_by};
@@ -15,6 +12,9 @@ use octant_score::summary::{
 };
 use octant_score::verdict::{evaluate, measure};
 use octant_score::work::Work;
+use octant_verdict::measures;
+use octant_verdict::verdict::LimitCheck;
+use octant_verdict::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

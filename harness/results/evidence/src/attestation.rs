@@ -5,7 +5,7 @@
 
 use super::inside::Inside;
 use super::manifest::{FILE_NAME, Manifest};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 
 /// Returns the result of a test in the predicate's terms. A verdict without evidence is never a

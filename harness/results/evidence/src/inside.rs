@@ -7,14 +7,14 @@
 use super::files;
 use super::manifest::Manifest;
 use octant_recorder::reader::{Recording, stream_hash};
-use octant_requirements::Verdict;
-use octant_requirements::equipment::{Day, DayError};
 use octant_scenario::Scenario;
 use octant_score::equipment;
 use octant_score::judge::{Finding, derive};
 use octant_score::numerics::{differs, in_words};
 use octant_score::rederive;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
+use octant_verdict::equipment::{Day, DayError};
 use serde_json::Value;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use octant_evidence::inside::{Inside, SUMMARY, of_run};
 use octant_evidence::{Manifest, RunFacts};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::Value;
 use serde_json::json;
 use std::time::{Duration, SystemTime};

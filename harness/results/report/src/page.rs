@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use octant_base::printable::printable;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::borrow::Cow;
 
 /// Parts of the script, in the order in which they need each other.

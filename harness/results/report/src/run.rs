@@ -16,9 +16,9 @@ use maud::{Markup, html};
 use octant_base::display::{DisplayUnits, ShownUnit};
 use octant_base::number;
 use octant_evidence::discrepancy;
-use octant_requirements::Verdict;
 use octant_score::summary::{CalibrationScore, HeightChannel, Summary};
 use octant_score::work::duration;
+use octant_verdict::Verdict;
 
 /// Renders the report as one HTML file.
 #[must_use]

@@ -10,9 +10,9 @@ use octant_base::number::{counted, fixed, plain, significant};
 use octant_rare::estimate::{PlainCount, RareEstimate, RarePlan, estimate};
 use octant_rare::point::{RareSample, RareStage};
 use octant_rare::subset::{SubsetGoal, SubsetLevel};
-use octant_requirements::Verdict;
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{RequirementSpec, Scenario};
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,7 +1,6 @@
 //! One run, and what it says.
 
 use octant_base::control::Control;
-use octant_requirements::Verdict;
 use octant_run::Ended;
 use octant_run::assemble::assemble;
 use octant_run::many::judge_many;
@@ -11,6 +10,7 @@ use octant_scenario::{Method, Scenario};
 use octant_score::health::name;
 use octant_score::judge::unfired;
 use octant_score::summary::Summary;
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Mutex;

@@ -10,11 +10,11 @@ use octant_base::number::{counted, fixed, significant};
 use octant_rare::estimate::{RareEstimate, RarePlan, estimate};
 use octant_rare::point::RareStage;
 use octant_rare::subset::SubsetGoal;
-use octant_requirements::Verdict;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::Scenario;
 use octant_statistics::normal;
 use octant_statistics::sample::mean;
+use octant_verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -8,9 +8,9 @@ use octant_rare_runs::failure::{RareFailure, failure, requirement};
 use octant_rare_runs::outcome::RareSubject;
 use octant_rare_runs::protection::{ProtectionLevels, protection};
 use octant_rare_runs::runs::{RareRuns, SeverityOf};
-use octant_requirements::Verdict;
 use octant_scenario::Scenario;
 use octant_statistics::normal;
+use octant_verdict::Verdict;
 use std::path::Path;
 
 /// Two minutes at 10 Hz. The g-dependent biases are not estimated: their errors are minus the drawn values.

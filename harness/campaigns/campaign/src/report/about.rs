@@ -2,8 +2,8 @@
 
 use crate::plan::Plan;
 use crate::trace::requirements_of;
-use octant_requirements::Comparison;
-use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
+use octant_verdict::Comparison;
+use octant_verdict::requirement::{Check, Limit, Requirement, Requirements, Verification};
 
 /// Collects the requirements that the cases of a plan check, with notes about missing texts.
 pub(super) fn requirements(plan: &Plan) -> (Requirements, Vec<String>) {

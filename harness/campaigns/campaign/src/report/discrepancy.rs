@@ -6,7 +6,7 @@ use super::rows::{ReportRow, ReportRows, RowOutcome};
 use crate::plan::Plan;
 use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 
 /// Lists everything that isn't a pass. `notes` are other problems, as text.

@@ -3,9 +3,9 @@
 use super::curves::{Curve, CurveWriter, StoredCurve};
 use crate::besides::besides;
 use crate::case::CaseResult;
-use octant_requirements::Verdict;
 use octant_score::summary::{NavigationScore, Summary};
 use octant_score::verdict::RequirementResult;
+use octant_verdict::Verdict;
 use std::collections::BTreeMap;
 use std::io;
 

@@ -13,7 +13,7 @@ use crate::independence;
 use crate::plan::{Case, Plan};
 use crate::store::CampaignResults;
 use crate::stream_key::StreamKey;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -10,7 +10,7 @@ use octant_campaign::merge::{self, MergeError};
 use octant_campaign::plan::Plan;
 use octant_campaign::results;
 use octant_campaign::store::CampaignResults;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 
 impl From<MergeError> for Failure {

@@ -19,8 +19,8 @@ use octant_campaign::plan::{Case, FILE_NAME, Plan, PlanError, PlanWritten};
 use octant_campaign::status;
 use octant_campaign::store::CampaignResults;
 use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
-use octant_requirements::Verdict;
-use octant_requirements::trace::{TraceRow, UnknownRequirement};
+use octant_verdict::Verdict;
+use octant_verdict::trace::{TraceRow, UnknownRequirement};
 use planned::read;
 use std::path::{Path, PathBuf};
 

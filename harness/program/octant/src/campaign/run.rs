@@ -18,7 +18,7 @@ use octant_campaign::selection::CaseSelection;
 use octant_campaign::stop::StopDecision;
 use octant_campaign::store::CampaignResults;
 use octant_campaign::{merge, results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -8,7 +8,7 @@ use octant_fmu_check::rules::Severity;
 use octant_fmu_check::{CheckReport, check, show};
 use octant_fmu_host::archive::ArchiveError;
 use octant_fmu_host::instance::OpenOptions;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

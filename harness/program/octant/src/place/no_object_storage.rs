@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::BundleContents;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use std::path::Path;
 use std::time::Duration;
 

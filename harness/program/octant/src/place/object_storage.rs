@@ -10,12 +10,12 @@ use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::BundleContents;
 use octant_dispatch::bundle::write::write;
-use octant_requirements::Verdict;
 use octant_storage::layout::BUNDLE;
 use octant_storage::{
     PutOutcome, SegmentUploads, Storage, StorageAddress, StorageError, StorageOptions,
     UploadLimits, WorkFolder, WorkScope,
 };
+use octant_verdict::Verdict;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -5,7 +5,7 @@ use super::bench::{Bench, SCENARIO, check};
 use octant_campaign::plan::{Case, Plan};
 use octant_campaign::stop::StopDecision;
 use octant_campaign::{merge, results, status};
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

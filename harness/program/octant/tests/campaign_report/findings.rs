@@ -5,7 +5,7 @@ use crate::common::results;
 use octant_campaign::plan::Plan;
 use octant_campaign::report::CampaignReport;
 use octant_evidence::discrepancy::Discrepancy;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! JUnit XML, in the flavour of nextest that CI systems read.
 
 use octant_base::printable::printable;
-use octant_requirements::Verdict;
+use octant_verdict::Verdict;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, Event};
 use std::io;

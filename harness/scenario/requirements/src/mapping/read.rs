@@ -20,8 +20,9 @@
 //! ```
 
 use super::{Mapping, Named, Names, RequirementPart};
-use crate::document::{Lines, Problems, Reader, describe};
-use crate::error::RequirementsError;
+use octant_base::names::suggestion;
+use octant_verdict::RequirementsError;
+use octant_verdict::table::{Lines, Problems, Reader, describe};
 use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::DeValue;
@@ -39,7 +40,7 @@ pub fn read(text: &str, file: &str) -> Result<Mapping, RequirementsError> {
     let root = Reader::new(table.get_ref(), 0, "", &problems);
     let mut found = Mapping { file: file.to_owned(), ..Mapping::default() };
     // A newer schema may have other keys: unknown ones in it are not reported.
-    if crate::document::schema(&root, SCHEMA) {
+    if octant_verdict::table::schema(&root, SCHEMA) {
         root.known(&["schema", "attributes", "values", "types", "informative"]);
         found.all = names(&root);
         types(&root, &mut found);
@@ -58,7 +59,10 @@ fn part(table: &Reader<'_>, key: &str) -> Option<RequirementPart> {
     let part = RequirementPart::ALL.into_iter().find(|part| part.name() == key);
     if part.is_none() {
         let known = RequirementPart::ALL.map(RequirementPart::name);
-        table.problem(key, format!("unknown key, {}", crate::error::suggestion(key, &known)));
+        table.problem(
+            key,
+            format!("unknown key, {}", suggestion(key, known.iter().copied(), "known")),
+        );
     }
     part
 }

@@ -18,8 +18,8 @@ use crate::model::MotionComponent;
 use crate::quantity::UnitDimension;
 use octant_base::display::{AttitudeUnit, PositionUnit, VelocityUnit};
 use octant_earth::units::DEG;
-use octant_requirements::Comparison;
-use octant_requirements::decision::DecisionRule;
+use octant_verdict::Comparison;
+use octant_verdict::decision::DecisionRule;
 
 keys! {
     /// A scenario.

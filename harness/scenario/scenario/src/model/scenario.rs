@@ -75,9 +75,9 @@ pub struct Scenario {
     /// Limits that the results have to keep.
     pub requirements: Vec<RequirementSpec>,
     /// Decision rule for values near a limit.
-    pub decision: octant_requirements::decision::Decision,
+    pub decision: octant_verdict::decision::Decision,
     /// Equipment of the bench.
-    pub equipment: Vec<octant_requirements::equipment::Equipment>,
+    pub equipment: Vec<octant_verdict::equipment::Equipment>,
     /// Recording.
     pub record: RecordSpec,
     /// Source of the samples.
@@ -115,7 +115,7 @@ pub enum ParameterDistribution {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementSpec {
     /// Check of the limit.
-    pub check: octant_requirements::verdict::LimitCheck,
+    pub check: octant_verdict::verdict::LimitCheck,
     /// Statement of the requirement, a sentence.
     pub text: String,
     /// Limit as written.

@@ -1,6 +1,6 @@
 //! Values of attributes of another tool.
 
-use octant_requirements::requirement::AttributeKind;
+use octant_verdict::requirement::AttributeKind;
 
 #[test]
 fn an_attribute_of_one_value_has_exactly_one_that_fits() {
@@ -12,7 +12,7 @@ fn an_attribute_of_one_value_has_exactly_one_that_fits() {
     ] {
         let misfit = |values: &[&str]| {
             let values: Vec<String> = values.iter().map(|value| (*value).to_owned()).collect();
-            octant_requirements::file::misfit(&kind, &values)
+            octant_verdict::file::misfit(&kind, &values)
         };
         assert_eq!(misfit(&[good]), None, "{kind:?}");
         assert!(misfit(&[bad]).is_some(), "{kind:?}");

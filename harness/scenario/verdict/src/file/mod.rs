@@ -25,7 +25,8 @@ use crate::requirement::Limit;
 /// Version of the file's schema.
 pub const SCHEMA: i64 = 1;
 
-/// Checker of measures and limits, which knows the units. Errors are in plain words.
+/// Checker of what the file has from elsewhere: measures, limits, which have units, and formatted texts, which are
+/// XHTML. Errors are in plain words.
 pub trait Checker {
     /// Checks that a run can have this measure.
     ///
@@ -38,18 +39,10 @@ pub trait Checker {
     /// # Errors
     /// Limit found and limit expected.
     fn limit(&self, measure: &str, limit: &Limit) -> Result<(), String>;
-}
 
-/// Accepts every measure and every limit: for moving requirements between formats.
-#[derive(Clone, Copy, Debug)]
-pub struct Anything;
-
-impl Checker for Anything {
-    fn measure(&self, _: &str) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn limit(&self, _: &str, _: &Limit) -> Result<(), String> {
-        Ok(())
-    }
+    /// Checks that this is a formatted text.
+    ///
+    /// # Errors
+    /// Reason why it is none.
+    fn formatted(&self, xhtml: &str) -> Result<(), String>;
 }

@@ -5,24 +5,32 @@ use crate::requirement::{
 };
 use crate::verdict::Comparison;
 
-pub(crate) const MEASURE: &str = "MEASURE";
-pub(crate) const COMPARISON: &str = "COMPARISON";
-pub(crate) const LIMIT: &str = "LIMIT";
-pub(crate) const PASS: &str = "PASS";
-pub(crate) const CONFIDENCE: &str = "CONFIDENCE";
-pub(crate) const VERIFICATION: &str = "VERIFICATION";
+/// The measure.
+pub const MEASURE: &str = "MEASURE";
+/// Sign of the comparison.
+pub const COMPARISON: &str = "COMPARISON";
+/// The limit.
+pub const LIMIT: &str = "LIMIT";
+/// Required probability that a run passes.
+pub const PASS: &str = "PASS";
+/// Confidence with which it is shown.
+pub const CONFIDENCE: &str = "CONFIDENCE";
+/// Verification, by its name.
+pub const VERIFICATION: &str = "VERIFICATION";
 /// Names of tests, separated by `; `.
-pub(crate) const TESTS: &str = "TESTS";
-pub(crate) const CLAUSE: &str = "CLAUSE";
-pub(crate) const RATIONALE: &str = "RATIONALE";
+pub const TESTS: &str = "TESTS";
+/// Document and clause of the origin.
+pub const CLAUSE: &str = "CLAUSE";
+/// The reason.
+pub const RATIONALE: &str = "RATIONALE";
 /// Fields that every format names in its own way.
-pub(crate) const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
+pub const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
 /// All fields, in the order of writing.
-pub(crate) const ALL: [&str; 9] =
+pub const ALL: [&str; 9] =
     [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS, CLAUSE, RATIONALE];
 
 /// Fields of a requirement beside id, title and text, as names and values.
-pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
+pub fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
     let mut fields = Vec::new();
     match &requirement.verification {
         Verification::Test(Check { measure, comparison, limit, ensemble }) => {
@@ -49,7 +57,7 @@ pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String
 }
 
 /// Reason why these can't be names of tests.
-pub(crate) fn misnamed(tests: &[String]) -> Option<String> {
+pub fn misnamed(tests: &[String]) -> Option<String> {
     if tests.is_empty() {
         return Some("found no test, expected at least one".to_owned());
     }
@@ -60,16 +68,16 @@ pub(crate) fn misnamed(tests: &[String]) -> Option<String> {
 }
 
 /// Function that finds the line and value of a field.
-pub(crate) type Lookup<'a> = dyn Fn(&str) -> Option<(usize, &'a str)> + 'a;
+pub type Lookup<'a> = dyn Fn(&str) -> Option<(usize, &'a str)> + 'a;
 
 /// A verification, and the fields that describe it.
-pub(crate) type Said = (Verification, Vec<&'static str>);
+pub type Said = (Verification, Vec<&'static str>);
 
 /// Verification of a requirement, and the fields that describe it; `None`: there are none.
 ///
 /// # Errors
 /// Line and reason, if the fields are incomplete or invalid.
-pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
+pub fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
     if let Some((line, measure)) = of(MEASURE) {
         let limit = of(LIMIT).ok_or_else(|| (line, format!("{MEASURE} without {LIMIT}")))?;
         let comparison = match of(COMPARISON) {

@@ -1,15 +1,14 @@
 //! Trace in both directions, and that nothing passes that wasn't shown.
 
-use octant_requirements::Comparison;
-use octant_requirements::Verdict;
-use octant_requirements::requirement::{
+use octant_statistics::cluster::DrawCounts;
+use octant_verdict::Comparison;
+use octant_verdict::Verdict;
+use octant_verdict::requirement::{
     Check, EnsembleRequirement, Limit, Requirement, Requirements, Verification,
 };
-use octant_requirements::strictdoc;
-use octant_requirements::trace::{
+use octant_verdict::trace::{
     CampaignTrace, GrowingTrace, TracedCase, TracedResult, VerdictCounts, judge,
 };
-use octant_statistics::cluster::DrawCounts;
 use proptest::prelude::*;
 
 fn tested(id: &str, ensemble: Option<EnsembleRequirement>) -> Requirement {
@@ -226,31 +225,4 @@ proptest! {
         prop_assert!(CampaignTrace::new(&requirements, &more).verdict() >= trace.verdict().max(Verdict::Pass)
             || ensemble.is_some());
     }
-}
-
-#[test]
-fn a_campaign_as_a_project_of_strictdoc() {
-    let requirements = document(vec![tested("A", None), tested("B", None)]);
-    let cases = [
-        case("c1", &[("A", Verdict::Pass), ("B", Verdict::Inconclusive)]),
-        TracedCase { id: "c2".to_owned(), verifies: vec!["A".to_owned()], draw: 2, result: None },
-    ];
-    let trace = CampaignTrace::new(&requirements, &cases);
-    let files = strictdoc::folder(&requirements, &trace, "Night & day").unwrap();
-    let text = |path: &str| files.iter().find(|(p, _)| p == path).unwrap().1.as_str();
-    assert_eq!(text("cases/c1.toml"), "# @relation(A, B, scope=file)\ncase = \"c1\"\n");
-    let report = text("campaign.lit.junit.xml");
-    assert!(report.contains("tests=\"2\" failures=\"1\" skipped=\"1\" errors=\"0\""), "{report}");
-    assert!(
-        report.contains("<failure type=\"inconclusive\" message=\"A: pass; B: inconclusive\"/>"),
-        "{report}"
-    );
-    assert!(report.contains("<property name=\"verifies\" value=\"A, B\"/>"), "{report}");
-    let results = text("results.sdoc");
-    assert!(
-        results.contains("UID: c1\nSTATUS: inconclusive\nRECORDING: runs/c1/recording.mcap\n"),
-        "{results}"
-    );
-    let outside = CampaignTrace::new(&requirements, &[case("../c1", &[("A", Verdict::Pass)])]);
-    assert!(strictdoc::folder(&requirements, &outside, "T").is_err());
 }

@@ -1,6 +1,6 @@
 //! Guard bands of decisions.
 
-use octant_requirements::decision::{
+use octant_verdict::decision::{
     Decision, DecisionRule, NavigationContext, TimeDoubt, Uncertainty, in_band,
 };
 

@@ -1,6 +1,6 @@
 //! Days of certificates.
 
-use octant_requirements::equipment::Day;
+use octant_verdict::equipment::Day;
 
 #[test]
 fn a_day_is_one_that_the_calendar_has() {

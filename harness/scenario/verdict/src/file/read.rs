@@ -1,15 +1,15 @@
 //! Reads `requirements.toml`.
 
 use super::{Checker, SCHEMA};
-use crate::document::{Lines, Problems, Reader, describe, schema};
 use crate::error::RequirementsError;
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
     Parent, Requirement, Requirements, Verification, probability,
 };
+use crate::table::{Lines, Problems, Reader, describe, schema};
 use crate::verdict::Comparison;
-use crate::xhtml;
+use octant_base::names::suggestion;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use toml::de::DeValue;
@@ -140,7 +140,7 @@ fn definition(table: &Reader<'_>) -> Option<Definition> {
         "choice" => AttributeKind::Choice(options),
         "choices" => AttributeKind::Choices(options),
         other => {
-            let known = crate::error::suggestion(other, &KINDS);
+            let known = suggestion(other, KINDS.into_iter(), "known");
             table.problem("type", format!("found {other:?}, {known}"));
             return None;
         }
@@ -191,18 +191,18 @@ fn requirement(
             read.attributes.push(ForeignAttribute { name: name.to_owned(), values });
         }
     }
-    read.formatted = formatted(table);
+    read.formatted = formatted(table, checker);
     Some(read)
 }
 
-fn formatted(table: &Reader<'_>) -> Vec<FormattedText> {
+fn formatted(table: &Reader<'_>, checker: &dyn Checker) -> Vec<FormattedText> {
     let Some(table) = table.table("formatted") else { return Vec::new() };
     let mut all = Vec::new();
     for (name, value) in table.entries() {
         let Some(xhtml) = table.text_of(name, value) else { continue };
-        match xhtml::plain(&xhtml) {
-            Ok(_) => all.push(FormattedText { name: name.to_owned(), xhtml }),
-            Err(error) => table.problem(name, error.to_string()),
+        match checker.formatted(&xhtml) {
+            Ok(()) => all.push(FormattedText { name: name.to_owned(), xhtml }),
+            Err(message) => table.problem(name, message),
         }
     }
     all
@@ -291,7 +291,7 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
         Some("inspection") => Some(Verification::Inspection),
         Some(other) => {
             let known =
-                crate::error::suggestion(other, &["test", "analysis", "inspection", "open"]);
+                suggestion(other, ["test", "analysis", "inspection", "open"].into_iter(), "known");
             table.problem("verification", format!("found {other:?}, {known}"));
             return None;
         }

@@ -1,8 +1,8 @@
 //! Measures with a sign.
 
-use octant_requirements::Comparison;
-use octant_requirements::measures::is_signed;
-use octant_requirements::signed::one_sided;
+use octant_verdict::Comparison;
+use octant_verdict::measures::is_signed;
+use octant_verdict::signed::one_sided;
 
 #[test]
 fn signs_are_known() {

@@ -1,6 +1,6 @@
 //! The list of measures, and the check of paths.
 
-use octant_requirements::measures::{MeasureNeed, all, check};
+use octant_verdict::measures::{MeasureNeed, all, check};
 use std::collections::BTreeSet;
 
 /// Every path that the check accepts, found by asking it for the keys of each place.
