@@ -1,12 +1,12 @@
 //! Limits of an estimate's claims, and the distribution of its chains.
 
-use crate::coverage::Closed;
+use super::coverage::Closed;
 use octant_random::draws::Draws;
-use octant_rare::estimate::{PlainCount, RareDoubt, RareEstimate, RarePlan, estimate};
-use octant_rare::mixture::NormalMixture;
-use octant_rare::point::RarePoint;
-use octant_rare::slope::slope;
-use octant_rare::subset::{SubsetGoal, SubsetPlan, subset};
+use octant_rare::estimators::estimate::{PlainCount, RareDoubt, RareEstimate, RarePlan, estimate};
+use octant_rare::estimators::mixture::NormalMixture;
+use octant_rare::estimators::point::RarePoint;
+use octant_rare::estimators::slope::slope;
+use octant_rare::estimators::subset::{SubsetGoal, SubsetPlan, subset};
 use octant_statistics::normal;
 
 fn estimated(dimension: usize, runs: usize, severity: impl Fn(&RarePoint) -> f64) -> RareEstimate {

@@ -1,9 +1,9 @@
 //! Intervals of probabilities whose true value is known.
 
 use octant_random::draws::Draws;
-use octant_rare::estimate::{RareEstimate, RarePlan, estimate};
-use octant_rare::point::{RareBench, RarePoint, RareStage};
-use octant_rare::subset::SubsetGoal;
+use octant_rare::estimators::estimate::{RareEstimate, RarePlan, estimate};
+use octant_rare::estimators::point::{RareBench, RarePoint, RareStage};
+use octant_rare::estimators::subset::SubsetGoal;
 use octant_statistics::normal;
 use std::convert::Infallible;
 

@@ -1,8 +1,8 @@
 //! The probability of a rare failure: subset simulation finds where failures are, weighted samples say how probable.
 //!
-//! 1. Independent replicates of [subset simulation](mod@crate::subset) end with samples of the failures.
-//! 2. A [mixture of normal distributions](mod@crate::mixture) is fitted to them, and a pilot of weighted samples chooses
-//!    the [proposal](mod@crate::proposal).
+//! 1. Independent replicates of [subset simulation](mod@crate::estimators::subset) end with samples of the failures.
+//! 2. A [mixture of normal distributions](mod@crate::estimators::mixture) is fitted to them, and a pilot of weighted samples chooses
+//!    the [proposal](mod@crate::estimators::proposal).
 //! 3. The estimate is the mean of weight × failure over new samples of that proposal, which is fixed by then: it is
 //!    unbiased, and its variance is that of the terms over their number. The interval is that of the logarithm, by the
 //!    delta method. Neither the pilot nor the chains enter it.
@@ -12,10 +12,10 @@
 //! The interval knows nothing of a region of failures that no sample met. [Doubts](RareDoubt) check the estimate against
 //! the failures of the chains and of the plain samples. With one of them nothing is shown.
 
-use crate::mixture::NormalMixture;
-use crate::point::{RareBench, RarePoint, RareSample, RareStage};
-use crate::proposal::{Explored, WeightedSample, chosen};
-use crate::subset::{Stepped, SubsetFound, SubsetGoal, SubsetPlan, run, subset, worse};
+use crate::estimators::mixture::NormalMixture;
+use crate::estimators::point::{RareBench, RarePoint, RareSample, RareStage};
+use crate::estimators::proposal::{Explored, WeightedSample, chosen};
+use crate::estimators::subset::{Stepped, SubsetFound, SubsetGoal, SubsetPlan, run, subset, worse};
 use octant_statistics::normal;
 use octant_statistics::proportion::{success_lower_bound, success_upper_bound};
 use octant_statistics::sample::{deviation, mean};

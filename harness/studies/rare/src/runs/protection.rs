@@ -1,15 +1,15 @@
 //! Protection levels: the error that a published parameter exceeds unnoticed with a small probability at most.
 
-use crate::error::RareError;
-use crate::failure::{RARE_SCHEMA, RareReplicate, replicates};
-use crate::outcome::RareOutcome;
-use crate::runs::{RareRuns, SeverityOf, StageCounts};
-use crate::words;
+use crate::estimators::estimate::{RareEstimate, RarePlan, estimate};
+use crate::estimators::point::RareStage;
+use crate::estimators::subset::SubsetGoal;
+use crate::runs::error::RareError;
+use crate::runs::failure::{RARE_SCHEMA, RareReplicate, replicates};
+use crate::runs::many::{RareRuns, SeverityOf, StageCounts};
+use crate::runs::outcome::RareOutcome;
+use crate::runs::words;
 use octant_base::names::suggestion;
 use octant_base::number::{counted, fixed, significant};
-use octant_rare::estimate::{RareEstimate, RarePlan, estimate};
-use octant_rare::point::RareStage;
-use octant_rare::subset::SubsetGoal;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::Scenario;
 use octant_statistics::normal;

@@ -1,13 +1,13 @@
 //! The same bytes on any number of threads and after an interruption; an edited journal is refused.
 
-use crate::known::{SHORT, g_zz, scenario};
+use super::known::{SHORT, g_zz, scenario};
 use octant_base::control::Control;
-use octant_rare::estimate::RarePlan;
-use octant_rare_runs::error::RareError;
-use octant_rare_runs::failure::{failure, requirement};
-use octant_rare_runs::journal::{RARE_JOURNAL_SCHEMA, RareIdentity};
-use octant_rare_runs::outcome::RareSubject;
-use octant_rare_runs::runs::{RareRuns, SeverityOf};
+use octant_rare::estimators::estimate::RarePlan;
+use octant_rare::runs::error::RareError;
+use octant_rare::runs::failure::{failure, requirement};
+use octant_rare::runs::journal::{RARE_JOURNAL_SCHEMA, RareIdentity};
+use octant_rare::runs::many::{RareRuns, SeverityOf};
+use octant_rare::runs::outcome::RareSubject;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -19,7 +19,7 @@
 //! stays. For two different points of L the flow φν(x) K(x, x′) 1(x in L) 1(x′ in L) is the same in both directions:
 //! detailed balance with φν restricted to L, which therefore is the chain's stationary distribution, whatever q and ρ.
 
-use crate::point::{RareBench, RarePoint, RareSample, RareStage, noise_seed};
+use crate::estimators::point::{RareBench, RarePoint, RareSample, RareStage, noise_seed};
 use octant_random::draws::Draws;
 use serde::{Deserialize, Serialize};
 

@@ -3,11 +3,11 @@
 //! It has [chained lines](octant_base::chained_lines) of JSON: the first names the estimate, each further one is a run.
 //! Runs are known by a digest of their point.
 
-use crate::error::RareError;
-use crate::outcome::RareOutcome;
+use crate::estimators::point::RarePoint;
+use crate::runs::error::RareError;
+use crate::runs::outcome::RareOutcome;
 use octant_base::chained_lines::ChainedLines;
 use octant_base::not_finite;
-use octant_rare::point::RarePoint;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,15 +1,15 @@
 //! The probability that a requirement fails.
 
-use crate::error::RareError;
-use crate::input::InputValue;
-use crate::outcome::RareOutcome;
-use crate::runs::{RareRuns, SeverityOf, StageCounts};
-use crate::words;
+use crate::estimators::estimate::{PlainCount, RareEstimate, RarePlan, estimate};
+use crate::estimators::point::{RareSample, RareStage};
+use crate::estimators::subset::{SubsetGoal, SubsetLevel};
+use crate::runs::error::RareError;
+use crate::runs::input::InputValue;
+use crate::runs::many::{RareRuns, SeverityOf, StageCounts};
+use crate::runs::outcome::RareOutcome;
+use crate::runs::words;
 use octant_base::names::suggestion;
 use octant_base::number::{counted, fixed, plain, significant};
-use octant_rare::estimate::{PlainCount, RareEstimate, RarePlan, estimate};
-use octant_rare::point::{RareSample, RareStage};
-use octant_rare::subset::{SubsetGoal, SubsetLevel};
 use octant_scenario::resolve::{DrawnValues, Seeded};
 use octant_scenario::{RequirementSpec, Scenario};
 use octant_verdict::Verdict;

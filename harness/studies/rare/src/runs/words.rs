@@ -1,9 +1,9 @@
 //! Doubts and counts in words.
 
-use crate::runs::StageCounts;
+use crate::estimators::estimate::{EFFECTIVE_MIN, RareDoubt};
+use crate::estimators::point::RareStage;
+use crate::runs::many::StageCounts;
 use octant_base::number::{counted, fixed, significant};
-use octant_rare::estimate::{EFFECTIVE_MIN, RareDoubt};
-use octant_rare::point::RareStage;
 use std::collections::BTreeMap;
 
 /// A doubt as a sentence.

@@ -1,8 +1,8 @@
 //! The choice of the distribution that the weighted samples are drawn from.
 
-use crate::mixture::{NormalMixture, Weighted};
-use crate::point::RareSample;
-use crate::subset::{Stepped, SubsetFound};
+use crate::estimators::mixture::{NormalMixture, Weighted};
+use crate::estimators::point::RareSample;
+use crate::estimators::subset::{Stepped, SubsetFound};
 use octant_statistics::sample::mean;
 
 /// Components that are tried.

@@ -1,6 +1,6 @@
 //! The random inputs of a scenario as standard normal components.
 
-use octant_rare::point::RarePoint;
+use crate::estimators::point::RarePoint;
 use octant_sample::parameters::{NAMES, ParameterGroup};
 use octant_scenario::{ParameterDistribution, Scenario};
 use octant_statistics::normal;

@@ -4,8 +4,8 @@
 //! bound at its edges, and where the noise decides, far from its centre, failures still occur. Wider ones guard against
 //! directions that no chain met, where there are few components.
 
-use crate::point::RarePoint;
-use crate::slope::slope;
+use crate::estimators::point::RarePoint;
+use crate::estimators::slope::slope;
 use octant_random::draws::Draws;
 
 /// Rounds of expectation and maximization.

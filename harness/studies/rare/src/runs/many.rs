@@ -1,14 +1,14 @@
 //! Runs points of a scenario, on several threads, with the journal.
 
-use crate::error::RareError;
-use crate::input::RareInputs;
-use crate::journal::{PointDigest, RareIdentity, RareJournal, digest};
-use crate::outcome::{RareOutcome, RareSubject, outcome};
+use crate::estimators::estimate::RarePlan;
+use crate::estimators::point::{RareBench, RarePoint, RareStage};
+use crate::estimators::subset::beginning;
+use crate::runs::error::RareError;
+use crate::runs::input::RareInputs;
+use crate::runs::journal::{PointDigest, RareIdentity, RareJournal, digest};
+use crate::runs::outcome::{RareOutcome, RareSubject, outcome};
 use octant_base::control::Control;
 use octant_base::pool::in_order;
-use octant_rare::estimate::RarePlan;
-use octant_rare::point::{RareBench, RarePoint, RareStage};
-use octant_rare::subset::beginning;
 use octant_scenario::{Scenario, SourceSpec};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};

@@ -1,13 +1,13 @@
 //! Probabilities and levels of real runs against closed forms and plain Monte Carlo.
 
 use octant_base::control::Control;
-use octant_rare::estimate::RarePlan;
-use octant_rare::point::{RareBench, RarePoint, RareStage};
-use octant_rare_runs::error::RareError;
-use octant_rare_runs::failure::{RareFailure, failure, requirement};
-use octant_rare_runs::outcome::RareSubject;
-use octant_rare_runs::protection::{ProtectionLevels, protection};
-use octant_rare_runs::runs::{RareRuns, SeverityOf};
+use octant_rare::estimators::estimate::RarePlan;
+use octant_rare::estimators::point::{RareBench, RarePoint, RareStage};
+use octant_rare::runs::error::RareError;
+use octant_rare::runs::failure::{RareFailure, failure, requirement};
+use octant_rare::runs::many::{RareRuns, SeverityOf};
+use octant_rare::runs::outcome::RareSubject;
+use octant_rare::runs::protection::{ProtectionLevels, protection};
 use octant_scenario::Scenario;
 use octant_statistics::normal;
 use octant_verdict::Verdict;
