@@ -1,7 +1,8 @@
 //! Writes a bundle.
 
 use super::collect::Collected;
-use super::contents::{BundleContents, BundledFile, FILE_NAME};
+use super::contents::{BundleContents, BundledFile};
+use super::entry_name::LIST;
 use super::error::BundleError;
 use octant_campaign::plan::{FILE_NAME as PLAN, Plan};
 use octant_campaign::planned::hash_of_file;
@@ -49,7 +50,7 @@ pub fn write(plan: Plan, out: &Path) -> Result<BundleContents, BundleError> {
     let wrong = |error: ZipError| BundleError::system("write", out)(error.into());
     let mut archive = ZipWriter::new(BufWriter::new(new.as_file()));
     // The list comes first, so that it is found without reading the rest.
-    put(&mut archive, FILE_NAME, contents.to_json().as_bytes()).map_err(wrong)?;
+    put(&mut archive, LIST, contents.to_json().as_bytes()).map_err(wrong)?;
     put(&mut archive, PLAN, text.as_bytes()).map_err(wrong)?;
     for (path, collected) in &files {
         let mut source =

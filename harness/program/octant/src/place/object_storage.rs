@@ -10,8 +10,8 @@ use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_dispatch::bundle::contents::BundleContents;
 use octant_dispatch::bundle::write::write;
-use octant_storage::layout::BUNDLE;
-use octant_storage::{
+use octant_dispatch::storage::layout::BUNDLE;
+use octant_dispatch::storage::{
     PutOutcome, SegmentUploads, Storage, StorageAddress, StorageError, StorageOptions,
     UploadLimits, WorkFolder, WorkScope,
 };

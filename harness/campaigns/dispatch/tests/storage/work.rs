@@ -1,10 +1,12 @@
 //! Working folders: made from objects, used again, and put back.
 
-use crate::bench::{bundle, fetched, put, shard, stored};
+use super::bench::{bundle, fetched, put, shard, stored};
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;
 use octant_campaign::store::CampaignResults;
-use octant_storage::{SegmentUploads, Storage, StorageError, UploadLimits, WorkFolder, WorkScope};
+use octant_dispatch::storage::{
+    SegmentUploads, Storage, StorageError, UploadLimits, WorkFolder, WorkScope,
+};
 
 fn uploaded(storage: &Storage, work: &WorkFolder, shard: Shard) -> (usize, usize) {
     let mut uploads = SegmentUploads::of(storage, work, shard, UploadLimits::default()).unwrap();

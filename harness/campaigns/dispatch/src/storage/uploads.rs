@@ -7,7 +7,7 @@
 
 use super::error::StorageError;
 use super::layout::SegmentName;
-use super::storage::{PutOutcome, Storage};
+use super::objects::{PutOutcome, Storage};
 use super::work_folder::{WorkFolder, write};
 use octant_campaign::execute::Shard;
 use octant_campaign::store::segment::SegmentSource;

@@ -1,8 +1,8 @@
 //! Addresses, and names of objects.
 
-use crate::bench::shard;
-use octant_storage::StorageAddress;
-use octant_storage::layout::{SegmentName, may_share};
+use super::bench::shard;
+use octant_dispatch::storage::StorageAddress;
+use octant_dispatch::storage::layout::{SegmentName, may_share};
 
 #[test]
 fn addresses_name_a_bucket_or_a_folder() {

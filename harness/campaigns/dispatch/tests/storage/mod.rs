@@ -1,5 +1,4 @@
 //! Campaigns on object storage, without a service: in memory and in folders.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 mod bench;
 mod names;

@@ -1,6 +1,6 @@
 //! Objects are written once, or over another, and an interrupt ends reading.
 
-use octant_storage::{PutOutcome, Storage, StorageAddress, StorageError, StorageOptions};
+use octant_dispatch::storage::{PutOutcome, Storage, StorageAddress, StorageError, StorageOptions};
 use octant_test_processes::command;
 use std::collections::BTreeMap;
 use std::path::Path;

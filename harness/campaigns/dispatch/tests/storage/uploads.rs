@@ -1,9 +1,9 @@
 //! Segments: what a worker has stored is uploaded once, and two workers of a shard keep each other's.
 
-use crate::bench::{fetched, put, put_text, shard, stored};
+use super::bench::{fetched, put, put_text, shard, stored};
 use octant_campaign::execute::Shard;
 use octant_campaign::store::CampaignResults;
-use octant_storage::{
+use octant_dispatch::storage::{
     SegmentUploads, Storage, StorageAddress, StorageError, StorageOptions, UploadLimits,
     WorkFolder, WorkScope,
 };
@@ -167,7 +167,7 @@ fn a_worker_whose_results_cannot_be_uploaded_is_stopped() {
     let address = StorageAddress::parse(&format!("file://{}", folder.path().display())).unwrap();
     let options = StorageOptions { retry: Duration::ZERO, cancel: None };
     let storage = Storage::open(&address, options).unwrap();
-    let (bundle, ids) = crate::bench::bundle(1);
+    let (bundle, ids) = super::bench::bundle(1);
     storage.put_new("bundle.zip", &bundle).unwrap();
     let work = fetched(&storage, Shard::WHOLE);
     put(work.path(), Shard::WHOLE, &ids[0], 100);

@@ -1,35 +1,21 @@
 //! A planned campaign on object storage, and results that a worker could have stored.
 
+use crate::planned::planned;
 use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::{FILE_NAME, Plan};
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{StoreOutcome, keep_in};
 use octant_dispatch::bundle::write::write;
-use octant_storage::layout::BUNDLE;
-use octant_storage::{PutOutcome, Storage, WorkFolder, WorkScope};
+use octant_dispatch::storage::layout::BUNDLE;
+use octant_dispatch::storage::{PutOutcome, Storage, WorkFolder, WorkScope};
 use std::path::Path;
-
-const SCENARIO: &str = "schema = 1
-title = \"short\"
-[procedure.calibration]
-duration = \"20 s\"
-stops = [{ azimuth = \"0 deg\", roll = \"0 deg\" }, { azimuth = \"0 deg\", roll = \"45 deg\" }]
-[procedure.navigation]
-duration = \"5 s\"
-";
 
 /// Bytes of the bundle of a campaign with so many cases, and their ids.
 pub(crate) fn bundle(cases: usize) -> (Vec<u8>, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    std::fs::write(at("short.toml"), SCENARIO).unwrap();
-    let campaign = format!(
-        "schema = 1\ntitle = \"stored\"\nreplicates = {cases}\n[[scenarios]]\nid = \"short\"\nfile = \"short.toml\"\n"
-    );
-    std::fs::write(at("campaign.toml"), campaign).unwrap();
-    let plan = Plan::of(&at("campaign.toml")).unwrap();
-    plan.write(&at("planned"), false).unwrap();
+    planned(folder.path(), "stored", cases).write(&at("planned"), false).unwrap();
     let plan = Plan::read(&at("planned").join(FILE_NAME)).unwrap();
     let ids = plan.cases.iter().map(|case| case.id.to_string()).collect();
     write(plan, &at("bundle.zip")).unwrap();

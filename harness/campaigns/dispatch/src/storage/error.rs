@@ -1,7 +1,7 @@
 //! Reasons why objects can't be read or written.
 
+use crate::bundle::error::BundleError;
 use octant_campaign::store::error::PartError;
-use octant_dispatch::bundle::error::BundleError;
 use std::path::{Path, PathBuf};
 
 /// Reasons why a campaign on object storage can't be read or written. The text fits after "failed to".

@@ -2,12 +2,13 @@
 
 use super::error::StorageError;
 use super::layout::{BUNDLE, RESULTS, SegmentName, may_share};
-use super::storage::Storage;
+use super::objects::Storage;
+use crate::bundle::contents::BundleContents;
+use crate::bundle::entry_name::LIST;
+use crate::bundle::error::BundleError;
+use crate::bundle::unpack::unpack;
 use octant_campaign::execute::Shard;
 use octant_campaign::store::segment::shards;
-use octant_dispatch::bundle::contents::{BundleContents, FILE_NAME as LIST};
-use octant_dispatch::bundle::error::BundleError;
-use octant_dispatch::bundle::unpack::unpack;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
