@@ -131,7 +131,7 @@ fn open(folder: &Path) -> Result<CampaignResults, ExecuteError> {
 /// Removes incomplete results that killed processes of older versions left.
 fn clean(folder: &Path) {
     for part in std::fs::read_dir(folder.join("cases")).into_iter().flatten().flatten() {
-        super::clean(&part.path());
+        octant_base::whole_file::clean(&part.path());
     }
 }
 

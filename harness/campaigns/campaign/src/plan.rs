@@ -214,8 +214,8 @@ impl Plan {
             written = PlanWritten::Extended(self.cases.len() - there.cases.len());
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
-        super::clean(folder);
-        let new = system("create a file in", folder, super::new_file(folder))?;
+        octant_base::whole_file::clean(folder);
+        let new = system("create a file in", folder, octant_base::whole_file::new_file(folder))?;
         let mut file = BufWriter::new(new.as_file());
         system("write", &path, self.write_json(&mut file).and_then(|()| file.flush()))?;
         drop(file);

@@ -212,8 +212,8 @@ pub fn write(path: &Path, text: &str) -> Result<(), FileError> {
     let failed = FileError::of("write", path);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
-    octant_campaign::clean(folder);
-    let new = octant_campaign::new_file(folder).map_err(&failed)?;
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder).map_err(&failed)?;
     std::fs::write(new.path(), text).map_err(&failed)?;
     new.as_file().sync_data().map_err(&failed)?;
     new.persist(path).map_err(|error| failed(error.error))?;

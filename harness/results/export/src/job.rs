@@ -4,6 +4,7 @@ use super::error::ExportFailure;
 use super::rows::{ExportChoice, each_row};
 use super::survey::{Survey, SurveyedTable};
 use super::table::ExportCell;
+use octant_base::whole_file::new_file;
 use octant_recorder::reader::{Info, Recording};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -107,11 +108,7 @@ impl NewFile {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder).map_err(system)?;
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".octant-").suffix(".new");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let new = builder.tempfile_in(folder).map_err(system)?;
+        let new = new_file(folder).map_err(system)?;
         Ok(Self { path: path.to_owned(), new, force })
     }
 

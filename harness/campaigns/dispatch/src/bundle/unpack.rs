@@ -51,7 +51,8 @@ pub fn unpack(bundle: &Path, folder: &Path) -> Result<BundleContents, BundleErro
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty());
     let parent = parent.unwrap_or(Path::new("."));
     std::fs::create_dir_all(parent).map_err(BundleError::system("create", parent))?;
-    let new = new_folder(parent).map_err(BundleError::system("create a folder in", parent))?;
+    let new = octant_base::whole_file::new_folder(parent)
+        .map_err(BundleError::system("create a folder in", parent))?;
     for listed in &contents.files {
         extract(bundle, &mut archive, listed, new.path())?;
     }
@@ -67,16 +68,6 @@ pub fn unpack(bundle: &Path, folder: &Path) -> Result<BundleContents, BundleErro
     // It has another name now.
     let _ = new.keep();
     Ok(contents)
-}
-
-/// Makes a folder with the permissions of any new one; it is removed with everything in it if it isn't
-/// kept.
-fn new_folder(parent: &Path) -> io::Result<tempfile::TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".octant-").suffix(".new");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    builder.tempdir_in(parent)
 }
 
 type Archive = ZipArchive<BufReader<File>>;

@@ -44,8 +44,8 @@ pub fn write(plan: Plan, out: &Path) -> Result<BundleContents, BundleError> {
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(BundleError::system("create", folder))?;
-    octant_campaign::clean(folder);
-    let new = octant_campaign::new_file(folder)
+    octant_base::whole_file::clean(folder);
+    let new = octant_base::whole_file::new_file(folder)
         .map_err(BundleError::system("create a file in", folder))?;
     let wrong = |error: ZipError| BundleError::system("write", out)(error.into());
     let mut archive = ZipWriter::new(BufWriter::new(new.as_file()));

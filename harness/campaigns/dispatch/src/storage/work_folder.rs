@@ -218,7 +218,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(StorageError::system("create", folder))?;
     let write = || -> std::io::Result<()> {
-        let mut new = octant_campaign::new_file(folder)?;
+        let mut new = octant_base::whole_file::new_file(folder)?;
         new.write_all(bytes)?;
         new.persist(path)?;
         Ok(())
