@@ -1,6 +1,6 @@
 //! Reads the results of a campaign's cases from its tables.
 
-use octant_campaign::factors::parts;
+use octant_campaign::merge::factors::parts;
 use octant_campaign::merge::merged;
 use octant_campaign::table::{ColumnValue, ColumnValues, ExistingTable, TableError};
 use octant_sample::parameters::{NAMES, ParameterGroup};

@@ -9,7 +9,7 @@ use super::file::write;
 use octant_base::child::{ChildEnded, finish};
 use octant_base::not_finite;
 use octant_base::pool::in_order;
-use octant_campaign::process::{self, TRIES};
+use octant_campaign::execute::process::{self, TRIES};
 use octant_scenario::suite::{Suite, SuiteCase};
 use octant_score::summary::Summary;
 use octant_verdict::Verdict;

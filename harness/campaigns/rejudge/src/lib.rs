@@ -6,11 +6,11 @@
 //! were never stored.
 
 use octant_base::failing::{Failing, FailureKind};
-use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::{self, CaseResult};
+use octant_campaign::judge::status;
 use octant_campaign::plan::{self, Plan};
 use octant_campaign::report::file_names::STATISTICS;
-use octant_campaign::status;
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{CampaignResults, StoredResult, keep_in};
 use octant_evidence::ended::is_partial;

@@ -7,7 +7,7 @@ use super::error::CaseSetupError;
 use super::judge::{CaseOutcome, Expectation};
 use super::scenarios::{ALWAYS, BELIEVING, MOSTLY, SHORT, SPIKE, campaign, needs, planned};
 use minisign::KeyPair;
-use octant_campaign::case::ResultError;
+use octant_campaign::execute::case::ResultError;
 use octant_campaign::store::{CampaignResults, keep};
 use octant_verdict::Verdict;
 

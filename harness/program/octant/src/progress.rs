@@ -138,5 +138,5 @@ pub(super) fn watch_interrupts() {
 /// which tells the other that there is no result.
 pub(super) fn leave_interrupts_to(parent: u32) -> std::io::Result<()> {
     interrupt::leave();
-    octant_campaign::process::end_with(parent)
+    octant_campaign::execute::process::end_with(parent)
 }

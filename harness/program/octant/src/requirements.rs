@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::terminal::{note, print, print_json};
 use clap::{Args, Subcommand};
 use octant_base::number::counted;
-use octant_campaign::requirements::Measures;
+use octant_campaign::plan::requirements::Measures;
 use octant_requirements::Imported;
 use octant_requirements::exchange::{self, ExchangeError};
 use octant_verdict::Verdict;

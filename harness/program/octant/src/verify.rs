@@ -200,7 +200,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let opened = !found.iter().any(|difference| matches!(difference, FolderDifference::NoFile(..)));
     let inside = match &manifest.campaign {
         _ if !opened => Inside::default(),
-        Some(facts) => campaign::inside::look(folder, facts),
+        Some(facts) => campaign::judge::consistency::look(folder, facts),
         None => inside::of_run(folder, &manifest),
     };
     differences.extend(inside.contradictions.iter().cloned());

@@ -6,7 +6,7 @@
 use crate::common::program::{ended, octant_in};
 use octant_base::display::DisplayUnits;
 use octant_campaign::against::{Against, RUNS_MIN, Selection, against};
-use octant_campaign::case::{self, CaseResult};
+use octant_campaign::execute::case::{self, CaseResult};
 use octant_campaign::plan::Plan;
 use octant_observe::ensemble::{Ensemble, ensemble};
 use octant_random::normal::Ziggurat;

@@ -4,12 +4,14 @@
 
 use crate::common::program::program;
 use octant_calibration::table::CalibrationTable;
-use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::CaseResult;
+use octant_campaign::judge::status;
+use octant_campaign::merge;
 use octant_campaign::plan::Plan;
+use octant_campaign::plan::requirements;
 use octant_campaign::store::{CampaignResults, file};
 use octant_campaign::table::{ColumnKind, ColumnValue, ExistingTable};
-use octant_campaign::{merge, requirements, status};
 use octant_dispatch::bundle::unpack::unpack;
 use octant_evidence::manifest::Manifest;
 use octant_evidence::signature::{self, SigningKey};

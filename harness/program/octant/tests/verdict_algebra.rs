@@ -5,12 +5,13 @@
 //! use.
 
 use octant_base::control::Control;
-use octant_campaign::case::{self, CaseResult};
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::{self, CaseResult};
+use octant_campaign::judge::status;
+use octant_campaign::judge::trace;
+use octant_campaign::plan::requirements::Planned;
 use octant_campaign::plan::{self, Case, CaseLimits, Plan, PlannedScenario};
-use octant_campaign::requirements::Planned;
 use octant_campaign::store::{self, StoreOutcome};
-use octant_campaign::{status, trace};
 use octant_realtime::schedule::{Granted, RequestOutcome};
 use octant_run::TimeKeeping;
 use octant_run::{StreamKeeping, assemble, run_method};

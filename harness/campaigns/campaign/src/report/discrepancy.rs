@@ -3,8 +3,8 @@
 use super::combination::Combination;
 use super::requirement;
 use super::rows::{ReportRow, ReportRows, RowOutcome};
+use crate::judge::status::CampaignStatus;
 use crate::plan::Plan;
-use crate::status::CampaignStatus;
 use octant_evidence::discrepancy::{Discrepancy, Subject};
 use octant_verdict::Verdict;
 use std::collections::BTreeMap;

@@ -4,8 +4,8 @@
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
 use super::rows::{ReportRow, ReportRows, RowOutcome};
+use crate::judge::status::{CampaignStatus, RequirementStatus};
 use crate::plan::Plan;
-use crate::status::{CampaignStatus, RequirementStatus};
 use octant_score::verdict::RequirementResult;
 use octant_statistics::cluster::{DrawCounts, DrawTally};
 use octant_statistics::convergence::{ConvergenceStep, convergence, pass};

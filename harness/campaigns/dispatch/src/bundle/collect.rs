@@ -2,9 +2,9 @@
 
 use super::entry_name::{self, FILES};
 use super::error::BundleError;
+use octant_campaign::plan::planned::hash_of_file;
+use octant_campaign::plan::shared::SharedText;
 use octant_campaign::plan::{BundledCampaign, Plan, PlannedFile, PlannedScenario};
-use octant_campaign::planned::hash_of_file;
-use octant_campaign::shared::SharedText;
 use octant_scenario::Scenario;
 use octant_scenario::campaign::Campaign;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -44,7 +44,7 @@ impl Collected {
                 let campaign = all.plan.campaign.clone();
                 let requirements = Campaign::load(&campaign)?.requirements;
                 // Says so if the requirements aren't the planned ones.
-                octant_campaign::trace::requirements_of(&all.plan)?;
+                octant_campaign::judge::trace::requirements_of(&all.plan)?;
                 BundledCampaign {
                     campaign: all.add(&campaign)?,
                     requirements: requirements.map(|file| all.add(&file)).transpose()?,

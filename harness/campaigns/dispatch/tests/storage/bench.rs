@@ -1,8 +1,8 @@
 //! A planned campaign on object storage, and results that a worker could have stored.
 
 use crate::planned::planned;
-use octant_campaign::case::CaseResult;
 use octant_campaign::execute::Shard;
+use octant_campaign::execute::case::CaseResult;
 use octant_campaign::plan::{FILE_NAME, Plan};
 use octant_campaign::store::writer::PartWriter;
 use octant_campaign::store::{StoreOutcome, keep_in};
