@@ -3,8 +3,8 @@
 use super::error::DiffError;
 use octant_evidence::Manifest;
 use octant_evidence::ended;
-use octant_evidence::inside::SUMMARY;
 use octant_evidence::manifest::FILE_NAME as MANIFEST;
+use octant_evidence::statements::SUMMARY;
 use octant_recorder::reader::{Info, Recording};
 use octant_score::summary::Summary;
 use serde::Serialize;

@@ -5,9 +5,9 @@
 
 use super::error::ManifestError;
 use super::folder::PARTIAL;
-use super::inside::SUMMARY;
 use super::manifest::Manifest;
 use super::names::MANIFEST;
+use super::statements::SUMMARY;
 use octant_score::judge::derive;
 use octant_score::summary::Summary;
 use octant_verdict::Verdict;

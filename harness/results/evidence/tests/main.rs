@@ -4,6 +4,6 @@
 mod attestation;
 mod disposition;
 mod folder;
-mod inside;
 mod manifest;
 mod signature;
+mod statements;

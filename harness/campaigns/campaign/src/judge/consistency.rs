@@ -12,8 +12,8 @@ use crate::report::file_names::STATISTICS;
 use crate::store::CampaignResults;
 use crate::store::in_plan_order::{RESULTS_AT_ONCE, read_in_order};
 use octant_evidence::files;
-use octant_evidence::inside::Inside;
 use octant_evidence::manifest::CampaignFacts;
+use octant_evidence::statements::FolderStatements;
 use octant_score::summary::Summary;
 use octant_verdict::Comparison;
 use octant_verdict::verdict::LimitCheck;
@@ -24,22 +24,26 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Checks the folder of a campaign, and derives its verdict again from its results.
 #[must_use]
-pub fn look(folder: &Path, facts: &CampaignFacts) -> Inside {
-    let mut inside = Inside {
+pub fn look(folder: &Path, facts: &CampaignFacts) -> FolderStatements {
+    let mut stated = FolderStatements {
         title: Some(facts.title.clone()),
         run: Some(facts.plan.clone()),
-        ..Inside::default()
+        ..FolderStatements::default()
     };
-    if let Err(reason) = derive(folder, facts, &mut inside) {
-        inside.contradictions.push(reason);
+    if let Err(reason) = derive(folder, facts, &mut stated) {
+        stated.contradictions.push(reason);
     }
-    inside
+    stated
 }
 
-fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(), String> {
+fn derive(
+    folder: &Path,
+    facts: &CampaignFacts,
+    stated: &mut FolderStatements,
+) -> Result<(), String> {
     let plan = Plan::read(&folder.join(FILE_NAME)).map_err(|error| error.to_string())?;
     if plan.id != facts.plan {
-        inside.contradictions.push(format!(
+        stated.contradictions.push(format!(
             "{FILE_NAME}: its id is {}, that of the manifest {}",
             plan.id, facts.plan
         ));
@@ -47,18 +51,18 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
     let stored = CampaignResults::open(folder).map_err(|error| error.to_string())?;
     let status =
         status::of_results(&plan, &stored, Shard::WHOLE).map_err(|error| error.to_string())?;
-    inside.verdict = Some(status.verdict());
-    inside.numerics = (!status.numerics.is_empty()).then(|| status.numerics.join("; "));
+    stated.verdict = Some(status.verdict());
+    stated.numerics = (!status.numerics.is_empty()).then(|| status.numerics.join("; "));
     let checks = status.requirements.iter().map(|(id, found)| (id.clone(), found.verdict));
-    inside.checks = checks.collect();
-    inside.reasons = status
+    stated.checks = checks.collect();
+    stated.reasons = status
         .requirements
         .iter()
         .map(|(id, found)| format!("{id}: {}: {}", found.verdict.name(), found.reason))
         .collect();
     let mut differs = |file: &str, what: &str, said: &str, now: &str| {
         if said != now {
-            inside
+            stated
                 .contradictions
                 .push(format!("{file}: its {what} is {said}, the results give {now}"));
         }
@@ -87,7 +91,7 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(format!("{STATISTICS}: {error}")),
     }
-    inside.contradictions.extend(limits);
+    stated.contradictions.extend(limits);
     if let Some((_, reason)) = error {
         return Err(reason);
     }

@@ -23,7 +23,7 @@ pub const SUMMARY: &str = "summary.json";
 
 /// Statements of a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inside {
+pub struct FolderStatements {
     /// Title of the scenario, the system or the campaign.
     pub title: Option<String>,
     /// Seed of a run.
@@ -44,76 +44,81 @@ pub struct Inside {
 
 /// Reads the folder of a run. Only regular files are opened.
 #[must_use]
-pub fn of_run(folder: &Path, manifest: &Manifest) -> Inside {
-    let mut inside = Inside { seed: manifest.seed, ..Inside::default() };
+pub fn of_run(folder: &Path, manifest: &Manifest) -> FolderStatements {
+    let mut stated = FolderStatements { seed: manifest.seed, ..FolderStatements::default() };
     let path = folder.join(SUMMARY);
     let text = match files::read(&path).map(String::from_utf8) {
         Ok(Ok(text)) => text,
         Ok(Err(_)) => {
-            inside.contradictions.push(format!("{SUMMARY}: it is no text"));
-            return inside;
+            stated.contradictions.push(format!("{SUMMARY}: it is no text"));
+            return stated;
         }
         Err(error) => {
-            inside.contradictions.push(format!("{SUMMARY}: {error}"));
-            return inside;
+            stated.contradictions.push(format!("{SUMMARY}: {error}"));
+            return stated;
         }
     };
     let document: Value = match serde_json::from_str(&text) {
         Ok(document) => document,
         Err(error) => {
-            inside.contradictions.push(format!("{SUMMARY}: {error}"));
-            return inside;
+            stated.contradictions.push(format!("{SUMMARY}: {error}"));
+            return stated;
         }
     };
     if document.get("system").is_some() {
-        of_system(&document, &mut inside);
+        of_system(&document, &mut stated);
     } else {
         match Summary::from_json(&text) {
             Ok(summary) => {
                 if summary.numerics != manifest.numerics {
-                    inside.contradictions.push(format!(
+                    stated.contradictions.push(format!(
                         "{SUMMARY}: it has {}, manifest.json has {}",
                         in_words(summary.numerics),
                         in_words(manifest.numerics)
                     ));
                 }
-                of_equipment(folder, manifest, &summary, &mut inside);
-                of_summary(folder, summary, &mut inside);
+                of_equipment(folder, manifest, &summary, &mut stated);
+                of_summary(folder, summary, &mut stated);
             }
-            Err(error) => inside.contradictions.push(format!("{SUMMARY}: {error}")),
+            Err(error) => stated.contradictions.push(format!("{SUMMARY}: {error}")),
         }
     }
-    if manifest.seed.is_some() && inside.seed != manifest.seed {
+    if manifest.seed.is_some() && stated.seed != manifest.seed {
         let number = |seed: Option<u64>| seed.map_or("none".to_owned(), |seed| seed.to_string());
-        inside.contradictions.push(format!(
+        stated.contradictions.push(format!(
             "{SUMMARY}: its seed is {}, that of the manifest {}",
-            number(inside.seed),
+            number(stated.seed),
             number(manifest.seed)
         ));
     }
-    inside
+    stated
 }
 
 /// Checks the certificates in a manifest against its own date: the resulting findings must be in
 /// the summary.
-fn of_equipment(folder: &Path, manifest: &Manifest, summary: &Summary, inside: &mut Inside) {
+fn of_equipment(
+    folder: &Path,
+    manifest: &Manifest,
+    summary: &Summary,
+    stated: &mut FolderStatements,
+) {
     let scenario = Scenario::load(&folder.join("scenario.toml"), &[]);
     // A scenario of an older form has no equipment; an unreadable one is reported elsewhere.
     if let Ok(scenario) = scenario
         && scenario.equipment != manifest.equipment
     {
-        inside
+        stated
             .contradictions
             .push("manifest.json: its equipment isn't that of scenario.toml".to_owned());
     }
     match certified(manifest) {
         Ok(expected) => {
             let silent = expected.iter().filter(|finding| !summary.findings.contains(finding));
-            inside.contradictions.extend(
+            stated.contradictions.extend(
                 silent.map(|finding| format!("{SUMMARY}: it doesn't tell that {}", finding.reason)),
             );
         }
-        Err(error) => inside.contradictions.push(error.to_string()),
+        Err(error) => stated.contradictions.push(error.to_string()),
     }
 }
 
@@ -134,10 +139,10 @@ pub fn certified(manifest: &Manifest) -> Result<Vec<Finding>, NoEnd> {
     Ok(equipment::findings(&manifest.equipment, Some(&ended)))
 }
 
-fn of_summary(folder: &Path, summary: Summary, inside: &mut Inside) {
+fn of_summary(folder: &Path, summary: Summary, stated: &mut FolderStatements) {
     let found = rederive::contradictions(&summary);
-    inside.contradictions.extend(found.into_iter().map(|what| format!("{SUMMARY}: {what}")));
-    inside.verdict = Some(derive(&summary).verdict);
+    stated.contradictions.extend(found.into_iter().map(|what| format!("{SUMMARY}: {what}")));
+    stated.verdict = Some(derive(&summary).verdict);
     let baseline = summary.baseline.as_ref().map(|baseline| baseline.stream_hash.as_str());
     for (name, hash) in
         [("recording.mcap", Some(summary.stream_hash.as_str())), ("baseline.mcap", baseline)]
@@ -147,32 +152,32 @@ fn of_summary(folder: &Path, summary: Summary, inside: &mut Inside) {
         let Ok(file) = files::open(&folder.join(name)) else { continue };
         let found = Recording::new(std::io::BufReader::new(file)).and_then(stream_hash);
         match found {
-            Err(error) => inside.contradictions.push(format!("{name}: {error}")),
-            Ok(Some(found)) if found != hash => inside
+            Err(error) => stated.contradictions.push(format!("{name}: {error}")),
+            Ok(Some(found)) if found != hash => stated
                 .contradictions
                 .push(format!("{name}: its stream hash is {found}, that of {SUMMARY} {hash}")),
             Ok(_) => {}
         }
     }
     let checks = summary.requirements.iter().map(|result| (result.id.clone(), result.verdict));
-    inside.checks = checks.collect();
-    inside.numerics = differs(summary.numerics);
-    inside.seed = Some(summary.seed);
-    inside.title = Some(summary.scenario);
-    inside.run = Some(summary.stream_hash);
-    inside.reasons = summary.reasons;
+    stated.checks = checks.collect();
+    stated.numerics = differs(summary.numerics);
+    stated.seed = Some(summary.seed);
+    stated.title = Some(summary.scenario);
+    stated.run = Some(summary.stream_hash);
+    stated.reasons = summary.reasons;
 }
 
 /// Reads the folder of a system of FMUs: its summary has no requirements.
-fn of_system(document: &Value, inside: &mut Inside) {
+fn of_system(document: &Value, stated: &mut FolderStatements) {
     let text = |name: &str| document.get(name).and_then(Value::as_str).map(str::to_owned);
-    (inside.title, inside.run) = (text("system"), text("stream_hash"));
-    inside.seed = document.get("seed").and_then(Value::as_u64);
+    (stated.title, stated.run) = (text("system"), text("stream_hash"));
+    stated.seed = document.get("seed").and_then(Value::as_u64);
     let said = text("verdict");
     let said = Verdict::ALL.into_iter().find(|v| said.as_deref() == Some(v.name()));
     let reasons = document.get("reasons").and_then(Value::as_array);
     let reasons = reasons.into_iter().flatten().filter_map(Value::as_str);
-    inside.reasons = reasons.map(str::to_owned).collect();
+    stated.reasons = reasons.map(str::to_owned).collect();
     let faults = document.get("faults").and_then(Value::as_array);
     let silent = faults.into_iter().flatten().any(|fault| fault["fired"] == Value::Bool(false));
     let least = match document.pointer("/ended/how").and_then(Value::as_str) {
@@ -181,12 +186,12 @@ fn of_system(document: &Value, inside: &mut Inside) {
         _ if silent => Verdict::Inconclusive,
         _ => Verdict::None,
     };
-    inside.verdict = Some(said.unwrap_or(Verdict::Error).worst(least));
-    if inside.verdict != said {
+    stated.verdict = Some(said.unwrap_or(Verdict::Error).worst(least));
+    if stated.verdict != said {
         let said = said.map_or("no verdict", Verdict::name);
-        inside.contradictions.push(format!(
+        stated.contradictions.push(format!(
             "{SUMMARY}: it says {said}, its end and its faults come to {}",
-            inside.verdict.unwrap_or(Verdict::Error).name()
+            stated.verdict.unwrap_or(Verdict::Error).name()
         ));
     }
 }

@@ -1,13 +1,13 @@
 //! Facts that evidence takes from the folder of a system.
 
-use octant_evidence::inside::{Inside, SUMMARY, of_run};
+use octant_evidence::statements::{FolderStatements, SUMMARY, of_run};
 use octant_evidence::{Manifest, RunFacts};
 use octant_verdict::Verdict;
 use serde_json::Value;
 use serde_json::json;
 use std::time::{Duration, SystemTime};
 
-fn read(document: &Value) -> Inside {
+fn read(document: &Value) -> FolderStatements {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(SUMMARY), document.to_string()).unwrap();
     let (began, length) = (SystemTime::UNIX_EPOCH, Duration::from_secs(1));
