@@ -13,12 +13,12 @@ mod worker;
 pub use crate::plan::shard::{Shard, ShardError};
 pub use execution::{CaseDone, ExecuteError, ExecutionEvent, ExecutionSummary};
 
-use super::plan::{Case, Plan};
-use super::store::error::ResultPlace;
-use super::store::writer::PartWriter;
-use super::store::{CampaignResults, forget_errors};
 use crate::judge::status::StatusError;
 use crate::plan::case_places::CasePlaces;
+use crate::plan::{Case, Plan};
+use crate::store::error::ResultPlace;
+use crate::store::writer::PartWriter;
+use crate::store::{CampaignResults, forget_errors};
 use alike::groups;
 use octant_base::pool::in_order_with;
 use process::TRIES;

@@ -5,14 +5,14 @@ pub mod factors;
 pub mod results;
 mod rows;
 
-use super::plan::{Plan, short};
-use super::table::{
-    ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
-};
 use crate::judge::independence::Shown;
 use crate::judge::stop;
 use crate::plan::case_places::CasePlaces;
 use crate::plan::shard::Shard;
+use crate::plan::{Plan, short};
+use crate::table::{
+    ColumnCursor, ColumnKind, ColumnValue, ExistingTable, TableError, write_streamed,
+};
 use octant_base::failing::{Failing, FailureKind};
 use octant_verdict::Verdict;
 use results::{Columns, NUMERICS, TABLES, ordered};

@@ -15,9 +15,8 @@ pub(crate) mod shard;
 pub mod shared;
 mod shared_cases;
 
-pub use error::PlanError;
-pub use error::short;
 pub(crate) use error::system;
+pub use error::{PlanError, short};
 pub use planned::{Case, INPUTS, PlannedFile, PlannedScenario};
 
 use octant_scenario::campaign::{LimitsSpec, StopSpec};
