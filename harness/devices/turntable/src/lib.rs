@@ -22,6 +22,7 @@
 //!
 //! None of this replaces the hardware emergency stop button.
 
+mod axis;
 mod button;
 mod by_hand;
 mod dialect;
@@ -39,8 +40,9 @@ mod supervisor;
 mod table;
 mod track;
 
+pub use axis::{AxisStatus, TableAxis, TableStatus};
 pub use button::{Button, Pressed, press};
-pub use by_hand::{Move, look, move_by_hand};
+pub use by_hand::{Move, look, move_by_hand, stop_by_hand, stop_line};
 pub use dialect::Dialect;
 pub use driver::{Driver, DriverSettings};
 pub use error::Error;
@@ -50,7 +52,7 @@ pub use guard::{FAREWELL, Guard, guard, run_guard};
 pub use limits::{AxisLimits, TableLimits};
 pub use port::{TABLE_PORT, TablePort, check_port, open, port_help};
 pub use shared::{GuestEnd, TableGuest, TableHost};
-pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
+pub use stop::{EmergencyStop, on_panic, on_signals, stop_all};
 pub use supervisor::Supervisor;
-pub use table::{AxisStatus, TableAxis, TableStatus, Turntable};
+pub use table::Turntable;
 pub use track::{Track, TrackPoint};

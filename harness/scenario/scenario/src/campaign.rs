@@ -22,6 +22,7 @@
 
 use crate::document::{self, DocumentNode, DocumentTable, DocumentValue};
 use crate::error::{Problem, ScenarioError};
+pub use crate::keys::Design;
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
 };
@@ -52,16 +53,6 @@ pub struct Campaign {
     pub limits: LimitsSpec,
     /// Early stopping.
     pub stop: Option<StopSpec>,
-}
-
-/// Design of the draws over the replicates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Design {
-    /// Independent draws.
-    MonteCarlo,
-    /// One draw in each of as many strips as there are replicates (McKay, Beckman and Conover,
-    /// 1979).
-    LatinHypercube,
 }
 
 /// A scenario of a campaign.

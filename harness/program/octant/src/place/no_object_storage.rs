@@ -1,6 +1,6 @@
 //! Stand-in for object storage in a program that was built without it.
 
-use super::Needs;
+use super::needs::Needs;
 use crate::failure::Failure;
 use octant_campaign::execute::Shard;
 use octant_campaign::plan::Plan;

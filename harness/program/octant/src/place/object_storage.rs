@@ -1,6 +1,6 @@
 //! Campaigns on object storage.
 
-use super::Needs;
+use super::needs::Needs;
 use crate::failure::Failure;
 use crate::terminal::{note, print};
 use octant_base::control::SetAtEnd;

@@ -5,9 +5,18 @@ use super::table::{
     At, Of, Raw, boolean, choice, form_tables, forms, integer, keys, number, numbers, si, table,
     tables, text,
 };
-use crate::campaign::Design;
 use crate::document::DocumentNode;
 use crate::quantity::UnitDimension;
+
+/// Design of the draws over the replicates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Design {
+    /// Independent draws.
+    MonteCarlo,
+    /// One draw in each of as many strips as there are replicates (McKay, Beckman and Conover,
+    /// 1979).
+    LatinHypercube,
+}
 
 keys! {
     /// A campaign.

@@ -31,6 +31,7 @@ pub(crate) use calibration::{
     Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation,
     SigmaLimitKeys, StopKeys,
 };
+pub use campaign::Design;
 pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
 };
@@ -54,7 +55,7 @@ pub(crate) use link::LinkKeys;
 pub(crate) use power::PowerKeys;
 pub(crate) use run::{
     DecisionKeys, EndpointKeys, EquipmentKeys, MotionKeys, MotionKind, RealtimeKeys, RecordKeys,
-    RequirementKeys, ScenarioKeys,
+    RequirementKeys, SCENARIO, ScenarioKeys,
 };
 pub(crate) use screening::{GateKeys, ScreeningKeys};
 pub(crate) use source::{
@@ -64,6 +65,3 @@ pub(crate) use suite::{CaseKeys, SuiteKeys};
 pub(crate) use system::SystemRequirementsKeys;
 pub(crate) use table::{At, FromTable, Keys, Raw};
 pub(crate) use trajectory::{ReferenceTrajectoryKeys, SolutionKeys, TrajectoryForm};
-
-/// Keys of a scenario.
-pub(crate) const SCENARIO: &Section = ScenarioKeys::SECTION;
