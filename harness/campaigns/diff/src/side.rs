@@ -37,7 +37,7 @@ pub struct SideAbout {
 
 /// One of two runs.
 #[derive(Clone, Debug)]
-pub struct DiffSide {
+pub struct Side {
     /// Origin.
     pub about: SideAbout,
     /// The recording.
@@ -50,7 +50,7 @@ pub struct DiffSide {
     pub summary: Option<Summary>,
 }
 
-impl DiffSide {
+impl Side {
     /// Reads the run in a folder, or a recording alone.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub use dialect::Dialect;
 pub use driver::{Driver, DriverSettings};
 pub use error::Error;
 pub use follow::Follower;
-pub use following::{Following, TablePlan, Told, packed, unpacked};
+pub use following::{Following, TablePlan, TableTraffic, packed, unpacked};
 pub use guard::{FAREWELL, Guard, guard, run_guard};
 pub use limits::{AxisLimits, TableLimits};
 pub use port::{TABLE_PORT, TablePort, check_port, open, port_help};

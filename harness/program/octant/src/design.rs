@@ -16,7 +16,7 @@ use crate::progress::watch_interrupts;
 use crate::terminal::{print, print_json};
 use confirm::{Confirmed, Runs, confirm};
 use files::{States, write_scenario};
-use octant_design::DesignSetup;
+use octant_design::Setup;
 use octant_design::report::SCHEMA;
 use octant_design::search::SearchProblem;
 use octant_verdict::Verdict;
@@ -53,7 +53,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let more: Vec<String> =
         duration.map(|time| format!("procedure.calibration.duration={time}")).into_iter().collect();
     let scenario = load(of_scenario, &more)?;
-    let setup = DesignSetup::of(&scenario).map_err(failed)?;
+    let setup = Setup::of(&scenario).map_err(failed)?;
     let measure = measure(minimise)?;
     let work = DesignWork {
         jobs: threads(*jobs),

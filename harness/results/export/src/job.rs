@@ -1,9 +1,9 @@
 //! One export: its recording as surveyed, its place, and the second reading that fills the files.
 
 use super::error::ExportFailure;
-use super::rows::{ExportChoice, each_row};
+use super::rows::{Choice, each_row};
 use super::survey::{Survey, SurveyedTable};
-use super::table::ExportCell;
+use super::table::Cell;
 use octant_base::whole_file::new_file;
 use octant_recorder::reader::{Info, Recording};
 use serde_json::{Value, json};
@@ -14,11 +14,11 @@ pub const EXPORT_VERSION: u32 = 1;
 
 /// Takes a row of the table with an index.
 pub(crate) type TakesIndexedRow<'a> =
-    dyn FnMut(usize, &[ExportCell]) -> Result<(), ExportFailure> + 'a;
+    dyn FnMut(usize, &[Cell]) -> Result<(), ExportFailure> + 'a;
 
 /// One export.
 pub(crate) struct Job<'a> {
-    pub(crate) choice: &'a ExportChoice,
+    pub(crate) choice: &'a Choice,
     pub(crate) survey: Survey,
     /// Head of the recording.
     pub(crate) info: Info,
@@ -31,7 +31,7 @@ pub(crate) struct Job<'a> {
 impl<'a> Job<'a> {
     /// Surveys the recording.
     pub(crate) fn new(
-        choice: &'a ExportChoice,
+        choice: &'a Choice,
         out: &'a Path,
         force: bool,
     ) -> Result<Self, ExportFailure> {

@@ -131,13 +131,14 @@ pub fn derive(summary: &Summary) -> Derived {
     Derived { verdict, reasons }
 }
 
-type Told = (Verdict, Option<String>);
+/// A verdict with its reason, where it needs one.
+type Reasoned = (Verdict, Option<String>);
 
 /// Verdicts that affect the result: of the unit and the run, and of the bench.
 fn sides(
     summary: &Summary,
     results: &mut dyn Iterator<Item = &RequirementResult>,
-) -> (Vec<Told>, Vec<(Verdict, String)>) {
+) -> (Vec<Reasoned>, Vec<(Verdict, String)>) {
     let (mut unit, mut bench) = (Vec::new(), Vec::new());
     for finding in &summary.findings {
         match finding.about {

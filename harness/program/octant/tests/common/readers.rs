@@ -1,6 +1,6 @@
 //! Every reader of a run's folder: each folder that a test writes has to be readable by all of them.
 
-use octant_diff::side::DiffSide;
+use octant_diff::side::Side;
 use octant_evidence::manifest::Manifest;
 use octant_evidence::{ended, statements};
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub fn read(folder: &Path) {
     if !folder.join("recording.mcap").is_file() {
         return;
     }
-    let side = DiffSide::read(folder).unwrap_or_else(|error| panic!("{shown}: {error}"));
+    let side = Side::read(folder).unwrap_or_else(|error| panic!("{shown}: {error}"));
     let difference = octant_diff::runs(&side, &side).unwrap();
     assert!(difference.equal, "{shown} differs from itself");
 }

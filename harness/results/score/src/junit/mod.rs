@@ -1,8 +1,8 @@
 //! Verdict as `junit.xml` for CI systems.
 
-mod document;
+mod xml;
 
-pub use document::{JunitCase, JunitCases, JunitSuite, document, write_document};
+pub use xml::{JunitCase, JunitCases, JunitSuite, document, write_document};
 
 use super::summary::{FaultResult, Summary};
 use super::verdict::RequirementResult;

@@ -47,7 +47,7 @@ pub(crate) enum CaseValue {
     /// A plain number.
     Number(f64),
     /// Where the value is from, in words.
-    Told(&'static str),
+    Words(&'static str),
 }
 
 /// Cases of a default in words: `CASE: VALUE; CASE: VALUE`.
@@ -55,7 +55,7 @@ pub(crate) fn cases_in_words(cases: &[(&str, CaseValue)]) -> String {
     let words = cases.iter().map(|(case, value)| match value {
         CaseValue::Value(value) => format!("{case}: \"{value}\""),
         CaseValue::Number(value) => format!("{case}: {value}"),
-        CaseValue::Told(words) => format!("{case}: {words}"),
+        CaseValue::Words(words) => format!("{case}: {words}"),
     });
     words.collect::<Vec<_>>().join("; ")
 }
