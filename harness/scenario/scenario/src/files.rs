@@ -1,23 +1,30 @@
 //! Files that a scenario names: listed, and read from other places than those that it names.
 
 use super::document::{DocumentTable, DocumentValue};
+use super::keys::key;
 use super::model::{DescriptionChoice, FileName, Scenario};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+const SOURCE: &str = key!(source.uri);
+const ENDPOINT: &str = key!(endpoint.uri);
+const DIALECT: &str = key!(turntable.drive.dialect);
+const OF_PORT: &str = key!(source.live.description);
+const OF_LOG: &str = key!(source.log.description);
+
 /// Keys whose text is the name of a file, or a URI with one.
 const KEYS: [&str; 11] = [
-    "source.uri",
-    "endpoint.uri",
-    "source.text.gyro.file",
-    "source.text.accelerometer.file",
-    "source.reference.file",
-    "source.live.database",
-    "source.live.mapping",
-    "source.live.description",
-    "source.log.description",
-    "turntable.drive.dialect",
-    "procedure.initial_parameters.table",
+    SOURCE,
+    ENDPOINT,
+    key!(source.text.gyro.file),
+    key!(source.text.accelerometer.file),
+    key!(source.reference.file),
+    key!(source.live.database),
+    key!(source.live.mapping),
+    OF_PORT,
+    OF_LOG,
+    DIALECT,
+    key!(procedure.initial_parameters.table),
 ];
 
 /// Places of files by their names as a scenario writes them: the scenario stays the same text when its
@@ -76,19 +83,17 @@ pub(crate) fn replace(document: &mut DocumentTable, mut place: impl FnMut(&str) 
         let Some(found) = document.at(key).cloned() else { continue };
         let DocumentValue::Text(written) = &found.value else { continue };
         let (scheme, file) = match (key, written.split_once(':')) {
-            ("turntable.drive.dialect", _) if written == octant_turntable::Dialect::BUILT_IN => {
+            (DIALECT, _) if written == octant_turntable::Dialect::BUILT_IN => {
                 continue;
             }
-            ("source.live.description" | "source.log.description", _)
-                if !DescriptionChoice::is_file(written) =>
-            {
+            (OF_PORT | OF_LOG, _) if !DescriptionChoice::is_file(written) => {
                 continue;
             }
-            ("source.uri" | "endpoint.uri", None) => continue,
+            (SOURCE | ENDPOINT, None) => continue,
             // A port, which is no file.
-            ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
-            ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
-            ("source.uri" | "endpoint.uri", Some((scheme, file))) => (Some(scheme), file),
+            (SOURCE, Some(_)) if octant_link::Uri::is_one(written) => continue,
+            (ENDPOINT, Some((scheme, _))) if scheme != "fmu" => continue,
+            (SOURCE | ENDPOINT, Some((scheme, file))) => (Some(scheme), file),
             _ => (None, written.as_str()),
         };
         if file.is_empty() {

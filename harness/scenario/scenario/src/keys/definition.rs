@@ -187,6 +187,14 @@ impl Section {
         self.keys.iter().find(|key| key.name == name)
     }
 
+    /// Key at a dotted path, through tables that have one set of keys.
+    pub(crate) fn at(&self, path: &str) -> Option<&Key> {
+        match path.split_once('.') {
+            None => self.key(path),
+            Some((first, rest)) => self.key(first)?.kind.section()?.at(rest),
+        }
+    }
+
     /// Names of all keys that can be given.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));

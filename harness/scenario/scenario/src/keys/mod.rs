@@ -16,6 +16,7 @@ mod faults;
 mod fmu;
 mod further;
 mod instrument;
+pub(crate) mod key_path;
 mod link;
 mod power;
 mod run;
@@ -51,6 +52,7 @@ pub(crate) use further::{
     ScalePerKelvinUse,
 };
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
+pub(crate) use key_path::{key, keys_of};
 pub(crate) use link::LinkKeys;
 pub(crate) use power::PowerKeys;
 pub(crate) use run::{
