@@ -1,6 +1,5 @@
 //! Defaults that depend on other keys, and keys that have no effect beside others.
 
-use super::document::{DocumentNode, DocumentTable, DocumentValue, join, parse_default};
 use super::error::{Place, Problem};
 use super::keys::{
     Default, EndpointFmuKeys, Keys, LinkKeys, SCENARIO, Section, SourceFmuKeys, SourceLiveKeys,
@@ -10,10 +9,11 @@ use super::quantity::{self, UnitDimension};
 use super::recorded::NO_TIME;
 use crate::choices::DESCRIBED;
 use octant_instruments::grades::GradeSheet;
+use octant_toml_tree::{Node, Table, Value, join, parse_default};
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
 /// kind are left for the check.
-pub(crate) fn derive(document: &mut DocumentTable) {
+pub(crate) fn derive(document: &mut Table) {
     if text(document, key!(motion.kind)) == Some("dockside") {
         let own = keys_of!(motion.ship: roll, pitch, yaw, surge, sway, heave, spectrum)
             .iter()
@@ -64,7 +64,7 @@ pub(crate) fn derive(document: &mut DocumentTable) {
             let rate = text(document, key!(imu.rate)).or(default_of(key!(imu.rate)));
             let Some(rate) = rate.map(str::to_owned) else { continue };
             let split = match document.at(split).map(|node| &node.value) {
-                Some(DocumentValue::Integer(split)) if *split > 1 => *split as f64,
+                Some(Value::Integer(split)) if *split > 1 => *split as f64,
                 _ => 1.0,
             };
             let rate = match quantity::parse(&rate) {
@@ -89,7 +89,7 @@ const SHARED: [[&str; 2]; 6] = [
 ];
 
 /// Adds the layout and the stamps of a recorded reference: those of the samples' text files.
-fn reference(document: &mut DocumentTable) {
+fn reference(document: &mut Table) {
     let position = text(document, key!(source.reference.kind)) == Some("position");
     set(document, key!(source.reference.unit), if position { "deg" } else { "m/s" });
     let as_text = text(document, key!(source.uri)).is_some_and(|uri| uri.starts_with("text:"));
@@ -106,7 +106,7 @@ fn reference(document: &mut DocumentTable) {
             },
         };
         if document.at(path).is_none() && reachable(document, path) {
-            document.set_at(path, DocumentNode { value, place: Place::Default });
+            document.set_at(path, Node { value, place: Place::Default });
         }
     }
 }
@@ -121,7 +121,7 @@ fn default_of(path: &str) -> Option<&'static str> {
 
 /// Adds the values of the instrument that the scenario names, and the σ of its errors as those from which
 /// the filter starts. Other keys keep the defaults of Table 1.
-fn instrument(document: &mut DocumentTable) {
+fn instrument(document: &mut Table) {
     let Some(sheet) = text(document, key!(imu.model)).and_then(GradeSheet::of) else { return };
     for (key, value, _) in sheet.imu {
         set(document, &join(key!(imu), key), value);
@@ -134,12 +134,12 @@ fn instrument(document: &mut DocumentTable) {
 }
 
 /// True if the core is at the other end of a wire.
-fn is_live(document: &DocumentTable) -> bool {
+fn is_live(document: &Table) -> bool {
     text(document, key!(endpoint.uri)).is_some_and(octant_link::Uri::is_one)
 }
 
 /// Adds the defaults of the keys of a table that depend on no other key.
-fn defaults(document: &mut DocumentTable, path: &str, keys: &Section) {
+fn defaults(document: &mut Table, path: &str, keys: &Section) {
     for key in keys.keys {
         if let Default::Value(value) = key.default {
             set(document, &join(path, key.name), value);
@@ -147,7 +147,7 @@ fn defaults(document: &mut DocumentTable, path: &str, keys: &Section) {
     }
 }
 
-fn calibration(document: &mut DocumentTable) {
+fn calibration(document: &mut Table) {
     if document.at(key!(procedure.calibration.stops)).is_none() {
         set(document, key!(procedure.calibration.positions), "eight");
     }
@@ -190,23 +190,22 @@ fn calibration(document: &mut DocumentTable) {
     set(document, key!(procedure.calibration.prior.position), position);
 }
 
-fn text<'a>(document: &'a DocumentTable, path: &str) -> Option<&'a str> {
+fn text<'a>(document: &'a Table, path: &str) -> Option<&'a str> {
     match &document.at(path)?.value {
-        DocumentValue::Text(text) => Some(text),
+        Value::Text(text) => Some(text),
         _ => None,
     }
 }
 
 /// False if something other than a table is in the way.
-fn reachable(document: &DocumentTable, path: &str) -> bool {
+fn reachable(document: &Table, path: &str) -> bool {
     let mut parents = path.match_indices('.').map(|(index, _)| &path[..index]);
-    parents.all(|parent| {
-        document.at(parent).is_none_or(|node| matches!(node.value, DocumentValue::Table(_)))
-    })
+    parents
+        .all(|parent| document.at(parent).is_none_or(|node| matches!(node.value, Value::Table(_))))
 }
 
 /// Sets a default, unless there is a value or something other than a table is in the way.
-fn set(document: &mut DocumentTable, path: &str, value: &str) {
+fn set(document: &mut Table, path: &str, value: &str) {
     if reachable(document, path) && document.at(path).is_none() {
         document.set_at(path, parse_default(value));
     }
@@ -214,7 +213,7 @@ fn set(document: &mut DocumentTable, path: &str, value: &str) {
 
 /// Keys without effect in a completed document, with the reason: refused if the scenario gives them,
 /// and omitted from the resolved scenario.
-pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(&'static str, &'static str)> {
+pub(crate) fn without_effect(document: &Table) -> Vec<(&'static str, &'static str)> {
     let is = |path: &str, value: &str| text(document, path) == Some(value);
     let mut all = Vec::new();
     let mut add = |paths: &[&'static str], reason: &'static str| {
@@ -346,10 +345,7 @@ pub(crate) fn without_effect(document: &DocumentTable) -> Vec<(&'static str, &'s
 }
 
 /// Keys of a reference that another key of it, or the source, leaves without effect.
-fn reference_without_effect(
-    document: &DocumentTable,
-    add: &mut impl FnMut(&[&'static str], &'static str),
-) {
+fn reference_without_effect(document: &Table, add: &mut impl FnMut(&[&'static str], &'static str)) {
     const VELOCITY: &[&str] = &keys_of!(source.reference: north, east, down, up);
     const POSITION: &[&str] = &keys_of!(source.reference: latitude, longitude, height);
     const TEXT: &[&str] = &keys_of!(source.reference: file, time_column);
@@ -386,7 +382,7 @@ fn reference_without_effect(
 }
 
 /// Problems of keys that are given and have no effect.
-pub(crate) fn refuse_without_effect(document: &DocumentTable) -> Vec<Problem> {
+pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
     let given = |(path, reason): (&str, &str)| {
         let place = first_given(document.at(path)?)?.place.clone();
         Some(Problem { place, path: path.to_owned(), message: reason.to_owned() })
@@ -395,14 +391,12 @@ pub(crate) fn refuse_without_effect(document: &DocumentTable) -> Vec<Problem> {
 }
 
 /// First value of a tree that isn't a default.
-fn first_given(node: &DocumentNode) -> Option<&DocumentNode> {
+fn first_given(node: &Node) -> Option<&Node> {
     if node.place != Place::Default {
         return Some(node);
     }
     match &node.value {
-        DocumentValue::Table(table) => {
-            table.entries.iter().find_map(|entry| first_given(&entry.node))
-        }
+        Value::Table(table) => table.entries.iter().find_map(|entry| first_given(&entry.node)),
         _ => None,
     }
 }

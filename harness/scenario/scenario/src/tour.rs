@@ -3,11 +3,11 @@
 //! Keys that are omitted by default, or that contradict another one, are comments in it.
 
 use super::complete::expected;
-use super::document::{join, parse_default, write_value};
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section, cases_in_words, key};
 use super::ports;
 use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
+use octant_toml_tree::{join, parse_default, write_value};
 
 /// Settings of the tour beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
@@ -430,7 +430,6 @@ pub fn fault_example(kind: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::complete::complete;
-    use super::super::document;
     use super::super::error::Place;
     use super::*;
 
@@ -537,7 +536,7 @@ mod tests {
             (own, "procedure.calibration.prior.position", "elsewhere"),
         ] {
             let text = format!("schema = 1\n{set}[procedure.calibration.least_squares]\n");
-            let mut document = document::parse(&text).unwrap();
+            let mut document = octant_toml_tree::parse(&text).unwrap();
             super::super::derive::derive(&mut document);
             let mut section = SCENARIO;
             let (parent, name) = path.rsplit_once('.').unwrap();
@@ -592,13 +591,14 @@ mod tests {
                 Default::Value(text) => format!("x = {}", written(text)),
                 _ => format!("x = {}", example_at(&path, &key.kind)),
             };
-            let mut table = document::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
+            let mut table =
+                octant_toml_tree::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
             let mut problems = Vec::new();
             let node = table.get_mut("x").unwrap();
             super::super::complete::check(node, key, &key.kind, &path, &mut problems);
             assert!(problems.is_empty(), "{path}: {text}: {problems:?}");
         }
-        let mut table = document::parse("").unwrap();
+        let mut table = octant_toml_tree::parse("").unwrap();
         let mut problems = Vec::new();
         complete(&mut table, SCENARIO, "", &Place::Default, &mut problems);
         assert_eq!(problems.len(), 1, "the schema alone has to be given: {problems:?}");

@@ -2,7 +2,6 @@
 
 use super::arguments::override_set;
 use super::derive::without_effect;
-use super::document::{DocumentNode, DocumentTable, DocumentValue, KeyEntry, join, write_value};
 use super::error::{Place, Problem};
 use super::keys::{Kind, SCENARIO, Section, key, keys_of};
 use super::model::{AlignmentSpec, MOTIONS, MotionSpec, Scenario};
@@ -10,6 +9,7 @@ use super::quantity::UnitDimension;
 use super::resolve::DrawnValues;
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
+use octant_toml_tree::{Entry, Node, Table, Value, join, write_value};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -22,8 +22,7 @@ impl Scenario {
         for (path, _) in without_effect(&document) {
             document.remove_at(path);
         }
-        document
-            .set(key!(seed), node(DocumentValue::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
+        document.set(key!(seed), node(Value::Integer(i64::try_from(seed).unwrap_or(i64::MAX))));
         let parameters = draws.parameters.to_array();
         for group in ParameterGroup::ALL {
             let values = quantities(dimension_of(group), &parameters[group.range()]);
@@ -33,7 +32,7 @@ impl Scenario {
         self.write_drawn(&mut document, draws);
         if let MotionSpec::Dockside(_) = &self.motion {
             document.remove_at(key!(motion.ship.spectrum));
-            document.set_at(key!(motion.ship.preset), node(DocumentValue::Text("calm".to_owned())));
+            document.set_at(key!(motion.ship.preset), node(Value::Text("calm".to_owned())));
             for (index, name) in MOTIONS.into_iter().enumerate() {
                 let amplitude =
                     if index < 3 { UnitDimension::ANGLE } else { UnitDimension::LENGTH };
@@ -45,7 +44,7 @@ impl Scenario {
                     ]))
                 };
                 let components = draws.motion[index].iter().map(component);
-                let components = DocumentValue::Array(components.collect());
+                let components = Value::Array(components.collect());
                 document.set_at(&join(key!(motion.ship), name), node(components));
             }
         }
@@ -83,7 +82,7 @@ impl Scenario {
     }
 
     /// Writes the errors beside the parameters that were drawn as given ones.
-    fn write_drawn(&self, document: &mut DocumentTable, draws: &DrawnValues) {
+    fn write_drawn(&self, document: &mut Table, draws: &DrawnValues) {
         let errors = self.true_further(draws);
         for (group, _) in FurtherGroup::ALL.iter().zip(&self.further).filter(|(_, of)| of.is_some())
         {
@@ -161,7 +160,7 @@ impl Scenario {
     }
 
     /// Makes relative file names absolute, because the resolved scenario is in another folder.
-    fn write_files(&self, document: &mut DocumentTable) {
+    fn write_files(&self, document: &mut Table) {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let absolute = |file: &str| {
             if file.starts_with("${") || Path::new(file).is_absolute() {
@@ -187,29 +186,29 @@ fn dimension_of(group: ParameterGroup) -> UnitDimension {
     }
 }
 
-fn node(value: DocumentValue) -> DocumentNode {
-    DocumentNode { value, place: Place::Default }
+fn node(value: Value) -> Node {
+    Node { value, place: Place::Default }
 }
 
-fn text(text: String) -> DocumentValue {
-    DocumentValue::Text(text)
+fn text(text: String) -> Value {
+    Value::Text(text)
 }
 
-fn quantities(dimension: UnitDimension, values: &[f64]) -> DocumentValue {
-    DocumentValue::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
+fn quantities(dimension: UnitDimension, values: &[f64]) -> Value {
+    Value::Array(values.iter().map(|value| node(text(dimension.write(*value)))).collect())
 }
 
-fn table(entries: Vec<(&str, DocumentValue)>) -> DocumentValue {
-    let entry = |(key, value): (&str, DocumentValue)| KeyEntry {
+fn table(entries: Vec<(&str, Value)>) -> Value {
+    let entry = |(key, value): (&str, Value)| Entry {
         key: key.to_owned(),
         place: Place::Default,
         node: node(value),
     };
-    DocumentValue::Table(DocumentTable { entries: entries.into_iter().map(entry).collect() })
+    Value::Table(Table { entries: entries.into_iter().map(entry).collect() })
 }
 
 /// Writes a table in the order of its keys: values first, then tables with their headers.
-fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut String) {
+fn write_table(table: &Table, section: &Section, path: &str, out: &mut String) {
     let mut later = Vec::new();
     for key in section.keys {
         let Some(node) = table.get(key.name) else { continue };
@@ -218,19 +217,19 @@ fn write_table(table: &DocumentTable, section: &Section, path: &str, out: &mut S
             kind => Some(kind),
         };
         match (kind, &node.value) {
-            (Some(Kind::Table(inner)), DocumentValue::Table(table)) if !inner.one_of => {
+            (Some(Kind::Table(inner)), Value::Table(table)) if !inner.one_of => {
                 later.push((key.name, *inner, vec![table], false));
             }
-            (Some(Kind::Tables(inner, ..)), DocumentValue::Array(entries)) if path.is_empty() => {
+            (Some(Kind::Tables(inner, ..)), Value::Array(entries)) if path.is_empty() => {
                 let tables = entries.iter().filter_map(|entry| match &entry.value {
-                    DocumentValue::Table(table) => Some(table),
+                    Value::Table(table) => Some(table),
                     _ => None,
                 });
                 later.push((key.name, *inner, tables.collect(), true));
             }
-            (Some(Kind::VariantTables(variants, _)), DocumentValue::Array(entries)) => {
+            (Some(Kind::VariantTables(variants, _)), Value::Array(entries)) => {
                 for entry in entries {
-                    if let DocumentValue::Table(table) = &entry.value
+                    if let Value::Table(table) = &entry.value
                         && let Some(inner) = variants.section(table)
                     {
                         later.push((key.name, inner, vec![table], true));

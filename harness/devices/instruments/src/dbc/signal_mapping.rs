@@ -88,10 +88,9 @@ impl SignalMapping {
     /// # Errors
     /// If the text is no mapping, with file, line and key.
     pub fn parse(file: &str, text: &str) -> Result<Self, DbcProblem> {
-        let mapping: Self = toml::from_str(text).map_err(|error| {
-            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+        let mapping: Self = octant_toml_tree::read_as(text).map_err(|(line, message)| {
             let place = line.map_or_else(|| file.into(), |line| std::format!("{file}:{line}"));
-            DbcProblem { place, what: error.message().trim().to_string() }
+            DbcProblem { place, what: message.trim().to_string() }
         })?;
         Ok(Self { file: file.into(), ..mapping })
     }

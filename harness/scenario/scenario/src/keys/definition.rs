@@ -1,10 +1,10 @@
 //! Definition of keys: their kinds, defaults and bounds.
 
 use crate::channel::Channel;
-use crate::document::{DocumentTable, DocumentValue, join};
 use crate::error::{Place, Problem};
 use crate::quantity::UnitDimension;
 use octant_base::names::{nearest, suggestion};
+use octant_toml_tree::{Table, Value, join};
 
 /// Version of the format that this program reads.
 pub const SCHEMA: i64 = 1;
@@ -232,10 +232,10 @@ impl Variants {
     }
 
     /// Keys of a table, by its content.
-    pub(crate) fn section(&self, table: &DocumentTable) -> Option<&'static Section> {
+    pub(crate) fn section(&self, table: &Table) -> Option<&'static Section> {
         match self.tag {
             Tag::Value(key) => match &table.get(key)?.value {
-                DocumentValue::Text(name) => self.form(name),
+                Value::Text(name) => self.form(name),
                 _ => None,
             },
             Tag::Key(_) => {
@@ -246,7 +246,7 @@ impl Variants {
     }
 
     /// Problem of a table without a form.
-    pub(crate) fn problem(&self, table: &DocumentTable, path: &str, place: &Place) -> Problem {
+    pub(crate) fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
         let problem = |place: &Place, path: String, message: String| Problem {
             place: place.clone(),
             path,
@@ -260,7 +260,7 @@ impl Variants {
                     return problem(place, path, format!("missing, expected one of {names}"));
                 };
                 let found = node.value.describe();
-                let text = if let DocumentValue::Text(text) = &node.value { text } else { "" };
+                let text = if let Value::Text(text) = &node.value { text } else { "" };
                 let known = suggestion(text, self.names(), "possible");
                 problem(&node.place, path, format!("found {found}, {known}"))
             }

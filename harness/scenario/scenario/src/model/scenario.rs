@@ -6,7 +6,6 @@ use super::fault::Fault;
 use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
-use crate::document::{DocumentNode, DocumentTable, DocumentValue};
 use crate::reference::ReferenceSpec;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
@@ -19,6 +18,7 @@ use octant_power::PowerPlan;
 #[cfg(doc)]
 use octant_sample::further::FurtherGroup;
 use octant_sample::parameters::ParameterGroup;
+use octant_toml_tree::{Node, Table, Value};
 use std::path::PathBuf;
 
 /// Noise of gyros, rad/√s, and of accelerometers, (m/s²)/√Hz, below which, both together, squares of normalized errors are
@@ -97,7 +97,7 @@ pub struct Scenario {
     /// Folder of the scenario, from which relative file names start.
     pub folder: PathBuf,
     /// Document with all defaults.
-    pub(crate) document: DocumentTable,
+    pub(crate) document: Table,
 }
 
 /// Distribution of the true values of a parameter group, SI.
@@ -206,7 +206,7 @@ impl Scenario {
         some.faults.retain(|_| numbers.next().is_some_and(&keep));
         if some.faults.is_empty() {
             some.document.remove("faults");
-        } else if let Some(DocumentNode { value: DocumentValue::Array(entries), .. }) =
+        } else if let Some(Node { value: Value::Array(entries), .. }) =
             some.document.get_mut("faults")
         {
             let mut numbers = 0..;
