@@ -185,11 +185,7 @@ fn axis_chart(title: &str, points: Vec<[f64; 2]>) -> Markup {
         role: Role::Reference,
         points: ends.iter().map(|&x| [x, -1.96, 1.96]).collect(),
     });
-    chart.lines.push(Line {
-        label: "innovation / σ".to_owned(),
-        role: Role::Primary,
-        points,
-    });
+    chart.lines.push(Line { label: "innovation / σ".to_owned(), role: Role::Primary, points });
     chart.levels.push((0.0, String::new()));
     chart.render()
 }
