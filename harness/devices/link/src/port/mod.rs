@@ -8,7 +8,6 @@ mod listen;
 mod pty;
 #[doc(hidden)]
 pub mod seal;
-mod secret;
 mod serial;
 mod slcan;
 mod tcp;

@@ -2,8 +2,7 @@
 
 use super::bytes::Bytes;
 use super::error::PortError;
-use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd};
-use super::secret::secret_in;
+use super::seal::{OpenedSeal, SEAL_LEN, Seal, SealEnd, secret_in};
 use super::udp_stamps::ArrivalStamps;
 use crate::uri::Udp;
 use octant_base::address::CONNECT_LIMIT;

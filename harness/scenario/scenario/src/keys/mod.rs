@@ -9,7 +9,6 @@ pub(crate) mod by_case;
 mod calibration;
 mod campaign;
 mod columns;
-mod connection;
 mod definition;
 mod drive;
 mod faults;
@@ -36,7 +35,6 @@ pub use campaign::Design;
 pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
 };
-pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_section};
 pub use definition::SCHEMA;
 pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, cases_in_words};
 pub(crate) use drive::DriveKeys;
@@ -64,6 +62,8 @@ pub(crate) use source::{
     McapKeys, ReferenceKind, SignalKeys, SourceKeys, SourceLiveKeys, SourceReferenceKeys, TextKeys,
 };
 pub(crate) use suite::{CaseKeys, SuiteKeys};
-pub(crate) use system::SystemRequirementsKeys;
+pub(crate) use system::{
+    ConnectionFaultKeys, ConnectionsKeys, SystemRequirementsKeys, connection_section,
+};
 pub(crate) use table::{At, FromTable, Keys, Raw};
 pub(crate) use trajectory::{ReferenceTrajectoryKeys, SolutionKeys, TrajectoryForm};

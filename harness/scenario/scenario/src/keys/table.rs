@@ -364,6 +364,15 @@ impl<T> At<T> {
     }
 }
 
+impl At<String> {
+    /// SI value of a unit, which is a key of its own.
+    pub(crate) fn unit_si(&self) -> Result<f64, Problem> {
+        crate::quantity::parse(&format!("1 {}", self.value))
+            .map(|quantity| quantity.si)
+            .map_err(|_| self.problem(format!("found the unknown unit {:?}", self.value)))
+    }
+}
+
 impl<T> Deref for At<T> {
     type Target = T;
 

@@ -1,11 +1,11 @@
-//! A checked scenario, in SI.
+//! A checked scenario, in SI, with its faults.
 
 use super::drive::Drive;
 use super::endpoint::EndpointSpec;
-use super::fault::Fault;
 use super::motion::MotionSpec;
 use super::procedure::{AlignmentSpec, CalibrationSpec, Method};
 use super::source::SourceSpec;
+use crate::error::Place;
 use crate::reference::ReferenceSpec;
 use octant_base::display::DisplayUnits;
 use octant_base::names::suggestion;
@@ -28,6 +28,18 @@ const QUIET_GYRO: f64 = 1e-5 * DEG_PER_SQRT_HOUR;
 const QUIET_ACCELEROMETER: [f64; 2] = [0.5 * MICRO_G, 1.5 * MICRO_G];
 /// Longest sub-step of several samples, ns.
 const SUB_STEP_NS: u64 = 50_000_000;
+
+/// A fault of a scenario.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// Specification for the station.
+    pub spec: FaultSpec,
+    /// Epochs at which it is fired by hand, in order. Empty if its trigger isn't manual, or if nobody
+    /// fires it.
+    pub fires: Vec<u64>,
+    /// Place in the scenario.
+    pub place: Place,
+}
 
 /// A checked scenario, in SI. Random values are still distributions: see [`resolve`](crate::resolve).
 #[derive(Clone, Debug)]

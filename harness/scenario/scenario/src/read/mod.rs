@@ -18,7 +18,6 @@ mod sequence;
 mod source;
 pub mod system;
 mod trajectory;
-mod unit_of;
 
 pub(crate) use reader::Reader;
 
