@@ -141,7 +141,7 @@ fn link(file: &str, name: &str) -> String {
     if file == "selftest" {
         return format!("[self-test](../selftest.md) `{name}`");
     }
-    format!("[{file}](../../..{file}) `{name}`")
+    format!("[{file}](../../{file}) `{name}`")
 }
 
 /// Renders `trace.md`.
