@@ -78,7 +78,7 @@ fn the_architecture_page_has_the_graphs_of_the_manifests() {
 fn the_functions_on_a_samples_way_are_in_their_files() {
     let page = std::fs::read_to_string(PAGE).unwrap();
     let (_, way) = page.split_once("## A faulted sample, station by station").unwrap();
-    let (way, _) = way.split_once("`Steps::step`").unwrap();
+    let (way, _) = way.split_once("\n#").unwrap();
     let row = Regex::new(r"(?m)^\| `([\w/.]+\.rs)` \| `(\w+)` \| .+ \|$").unwrap();
     let rows = row.captures_iter(way).map(|found| {
         let (file, function) = (&found[1], &found[2]);
