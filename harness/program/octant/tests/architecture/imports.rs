@@ -255,7 +255,7 @@ impl Crate {
             if binding.is_glob {
                 for name in &file.uses {
                     if self.has(&binding.from, name, &mut BTreeSet::new()) {
-                        take(&[binding.from.as_slice(), &[name.clone()]].concat());
+                        take(&[binding.from.as_slice(), std::slice::from_ref(name)].concat());
                     }
                 }
             }
