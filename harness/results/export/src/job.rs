@@ -13,8 +13,7 @@ use std::path::{Path, PathBuf};
 pub const EXPORT_VERSION: u32 = 1;
 
 /// Takes a row of the table with an index.
-pub(crate) type TakesIndexedRow<'a> =
-    dyn FnMut(usize, &[Cell]) -> Result<(), ExportFailure> + 'a;
+pub(crate) type TakesIndexedRow<'a> = dyn FnMut(usize, &[Cell]) -> Result<(), ExportFailure> + 'a;
 
 /// One export.
 pub(crate) struct Job<'a> {
