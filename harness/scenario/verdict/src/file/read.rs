@@ -7,12 +7,11 @@ use crate::requirement::{
     AttributeKind, Check, Definition, EnsembleRequirement, ForeignAttribute, FormattedText, Limit,
     Parent, Requirement, Requirements, Verification, probability,
 };
-use crate::table::{Lines, Problems, Reader, describe, schema};
+use crate::table::{Problems, Reader, schema};
 use crate::verdict::Comparison;
 use octant_base::names::suggestion;
-use std::cell::RefCell;
+use octant_toml_tree::Value;
 use std::collections::HashMap;
-use toml::de::DeValue;
 
 const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
@@ -48,9 +47,9 @@ pub fn read(
     file: &str,
     checker: &dyn Checker,
 ) -> Result<Requirements, RequirementsError> {
-    let problems = Problems { lines: Lines::new(text), all: RefCell::default() };
-    let table = problems.table(text, file)?;
-    let root = Reader::new(table.get_ref(), 0, "", &problems);
+    let problems = Problems::new(text);
+    let table = problems.table(file)?;
+    let root = Reader::root(&table, &problems);
     // A newer schema may have other keys: unknown ones in it are not reported.
     let found =
         if schema(&root, SCHEMA) { document(&root, checker) } else { Requirements::default() };
@@ -247,17 +246,17 @@ pub fn misfit(kind: &AttributeKind, values: &[String]) -> Option<String> {
 
 fn parents(table: &Reader<'_>) -> Vec<Parent> {
     let Some(value) = table.get("parents") else { return Vec::new() };
-    let DeValue::Array(entries) = value.get_ref() else {
-        let found = describe(value.get_ref());
+    let Value::Array(entries) = &value.value else {
+        let found = table.describe(value);
         table.problem("parents", format!("found {found}, expected an array of ids"));
         return Vec::new();
     };
     let mut parents = Vec::new();
     for entry in entries {
-        match entry.get_ref() {
-            DeValue::Table(inner) => {
+        match &entry.value {
+            Value::Table(inner) => {
                 let path = "requirements.parents";
-                let reader = Reader::new(inner, entry.span().start, path, table.problems());
+                let reader = Reader::new(inner, &entry.place, path, table.problems());
                 reader.known(&["id", "role"]);
                 let id = reader.required("id", "the id of the parent");
                 let role = reader.line_of("role");
@@ -358,9 +357,9 @@ fn limit(table: &Reader<'_>) -> Option<Limit> {
         table.problem("limit", "missing, expected a quantity, or a number in the measure's unit");
         return None;
     };
-    let number = match value.get_ref() {
-        DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
-        DeValue::Float(n) => n.as_str().parse::<f64>().ok(),
+    let number = match &value.value {
+        Value::Integer(number) => Some(*number as f64),
+        Value::Number(number) => Some(*number),
         _ => {
             let text = table.line_of("limit")?;
             return match Limit::of_text(&text) {
