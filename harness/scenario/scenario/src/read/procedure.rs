@@ -7,7 +7,7 @@ use crate::error::Problem;
 use crate::keys::{
     AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, FromTable,
     GateKeys, InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw,
-    Reference, Rotation, ScreeningKeys, SigmaLimitKeys,
+    Reference, Rotation, ScreeningKeys, SigmaLimitKeys, key,
 };
 use crate::model::{AlignmentSpec, CalibrationSpec, MotionSpec, case_attitude};
 use crate::quantity::{self, UnitDimension};
@@ -154,7 +154,7 @@ pub(super) fn baseline(
     setting: &Setting<'_>,
 ) -> Result<Option<CalibrationSpec>, Problem> {
     let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
-    let Some(Node { value: Value::Table(primary), .. }) = document.at("procedure.calibration")
+    let Some(Node { value: Value::Table(primary), .. }) = document.at(key!(procedure.calibration))
     else {
         let message = "found without procedure.calibration, which it is compared with";
         return Err(baseline.problem(message));
